@@ -1,0 +1,1 @@
+"""The rules of the language, one file a rule or a small family of rules."""

@@ -1,0 +1,1 @@
+"""The reference engine: executes an sct model with its supervisor."""

@@ -1,0 +1,99 @@
+"""How expression trees become text: one table of precedence, one printer that every target refines."""
+
+from collections.abc import Iterable, Mapping
+from functools import reduce
+from typing import ClassVar
+
+from robosc.metamodel import expression as ex
+
+#: Loosest to tightest, for RoboSC and for every target: none binds differently, and where one has finer levels
+#: (or a compiler that warns), `_LOOSE_PAIRS` adds parentheses.
+PRECEDENCE: Mapping[type[ex.Expression], int] = {
+    ex.Implication: 1,
+    ex.Disjunction: 2,
+    ex.Conjunction: 3,
+    ex.Equation: 4,
+    ex.Inequation: 4,
+    ex.LessThan: 5,
+    ex.LessOrEqual: 5,
+    ex.GreaterThan: 5,
+    ex.GreaterOrEqual: 5,
+    ex.Addition: 6,
+    ex.Subtraction: 6,
+    ex.Multiplication: 7,
+    ex.Division: 7,
+    ex.Negation: 8,
+    ex.UnaryMinus: 8,
+}
+ATOM = 9
+_CHAINS = (ex.Disjunction, ex.Conjunction, ex.Addition, ex.Multiplication)
+_LOOSE_PAIRS = {(2, 3), (1, 2), (1, 3), (4, 5)}
+
+
+def precedence(expression: ex.Expression) -> int:
+    """How tightly the expression's outermost operator binds; ATOM where it has none."""
+    return PRECEDENCE.get(type(expression), ATOM)
+
+
+class ExpressionPrinter:
+    """Prints an expression with the parentheses that its tree needs.
+
+    A target sets `symbols` (operator class to text) and overrides what it writes differently. An expression class
+    without a method raises TypeError: a target's preconditions must have refused it before.
+    """
+
+    symbols: ClassVar[Mapping[type[ex.Expression], str]]
+
+    def __call__(self, expression: ex.Expression) -> str:
+        """The text of the expression, without parentheses around it."""
+        if isinstance(expression, ex.BinaryExpression):
+            return self.binary(expression)
+        if isinstance(expression, (ex.Negation, ex.UnaryMinus)):
+            return self.unary(expression)
+        return self.atom(expression)
+
+    def binary(self, expression: ex.BinaryExpression) -> str:
+        """A binary operator between its operands."""
+        left = self.operand(expression, expression.left, chain=True)
+        right = self.operand(expression, expression.right, chain=isinstance(expression, ex.Implication))
+        return f"{left} {self.symbols[type(expression)]} {right}"
+
+    def unary(self, expression: ex.UnaryExpression) -> str:
+        """An operator before its operand; two in a row are kept apart, so that `--x` is never printed."""
+        text = self(expression.operand)
+        bare = precedence(expression.operand) == ATOM
+        return f"{self.symbols[type(expression)]}{text if bare else f'({text})'}"
+
+    def operand(self, parent: ex.BinaryExpression, child: ex.Expression, *, chain: bool) -> str:
+        """A child of a binary operator, in parentheses where the tree or a reader needs them."""
+        outer, inner = precedence(parent), precedence(child)
+        same = (
+            outer == inner
+            and chain
+            and (type(parent) is type(child))
+            and isinstance(parent, (*_CHAINS, ex.Implication))
+        )
+        if same and isinstance(parent, ex.Implication):
+            same = child is parent.right
+        bare = (inner > outer and (outer, inner) not in _LOOSE_PAIRS) or same
+        return self(child) if bare else f"({self(child)})"
+
+    def atom(self, expression: ex.Expression) -> str:
+        """Everything that is not an operator: literals, references, conversions."""
+        raise TypeError(f"{type(self).__name__} has no text for {type(expression).__name__}")
+
+
+def conjunction(parts: Iterable[ex.Expression]) -> ex.Expression | None:
+    """The conjunction of all parts, in their order; None of none. The parts become its children."""
+    return _chain(ex.Conjunction, parts)
+
+
+def disjunction(parts: Iterable[ex.Expression]) -> ex.Expression | None:
+    """The disjunction of all parts, in their order; None of none. The parts become its children."""
+    return _chain(ex.Disjunction, parts)
+
+
+def _chain(operator: type[ex.BinaryExpression], parts: Iterable[ex.Expression]) -> ex.Expression | None:
+    each = iter(parts)
+    first = next(each, None)
+    return None if first is None else reduce(lambda left, right: operator(left=left, right=right), each, first)

@@ -1,0 +1,1 @@
+"""The transformations from model to model."""

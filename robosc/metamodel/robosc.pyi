@@ -1,0 +1,298 @@
+"""Generated from metamodel/robosc.ecore by `python -m robosc.metamodel.stubs`."""
+
+from collections.abc import Iterable, MutableSequence
+from typing import Any, ClassVar
+
+from robosc.metamodel import expression
+
+class Base(expression.NamedElement):
+    """What one .rscd file holds (thesis figure 4.2)."""
+    file: str | None
+    definitions: MutableSequence[Definition]
+    def __init__(self, *, file: str | None = ..., definitions: Iterable[Definition] = ..., name: str | None = ..., source: str | None = ...) -> None: ...
+
+class Robot(Base):
+    """A robot: components, data types, interfaces, requirements and provided data."""
+    def __init__(self, *, file: str | None = ..., definitions: Iterable[Definition] = ..., name: str | None = ..., source: str | None = ...) -> None: ...
+
+class Library(Base):
+    """Components, data types and interfaces to be used in robots."""
+    def __init__(self, *, file: str | None = ..., definitions: Iterable[Definition] = ..., name: str | None = ..., source: str | None = ...) -> None: ...
+
+class Definition(expression.Located):
+    """Anything directly inside a robot or a library. Requirements and provide statements stand in robots only."""
+    def __init__(self, *, source: str | None = ...) -> None: ...
+
+class AccessibleItem(expression.NamedElement):
+    """What an expression can name: a component, a state, a variable, an enum value (thesis 4.2.4, the access model)."""
+    def __init__(self, *, name: str | None = ..., source: str | None = ...) -> None: ...
+
+class Interface(Definition, expression.NamedElement):
+    """A ROS message, service or action type of a package (thesis 4.2.5)."""
+    type: str
+    package: str
+    def __init__(self, *, type: str | None = ..., package: str | None = ..., source: str | None = ..., name: str | None = ...) -> None: ...
+
+class Component(Definition, AccessibleItem):
+    """A part of the robot (thesis figure 4.4)."""
+    type: ComponentType
+    def __init__(self, *, type: ComponentType | None = ..., source: str | None = ..., name: str | None = ...) -> None: ...
+
+class ComponentType(expression.Located):
+    """How a component is defined."""
+    def __init__(self, *, source: str | None = ...) -> None: ...
+
+class LocalComponent(ComponentType):
+    """A component defined in this file."""
+    definitions: MutableSequence[ComponentDefinition]
+    def __init__(self, *, definitions: Iterable[ComponentDefinition] = ..., source: str | None = ...) -> None: ...
+
+class ImportedComponent(ComponentType):
+    """An instance of a component of a library, with plants, variables and topics of its own."""
+    library: Library
+    definition: Component
+    remappings: MutableSequence[TopicRemapping]
+    def __init__(self, *, library: Library | None = ..., definition: Component | None = ..., remappings: Iterable[TopicRemapping] = ..., source: str | None = ...) -> None: ...
+
+class TopicRemapping(expression.Located):
+    """Gives a communication of an imported component another topic."""
+    communicationType: CommunicationType
+    identifier: str
+    def __init__(self, *, communicationType: CommunicationType | None = ..., identifier: str | None = ..., source: str | None = ...) -> None: ...
+
+class ComponentDefinition(expression.Located):
+    """Anything directly inside a local component."""
+    def __init__(self, *, source: str | None = ...) -> None: ...
+
+class ComponentBehaviour(ComponentDefinition):
+    """The behaviour of a component."""
+    automaton: Automaton
+    def __init__(self, *, automaton: Automaton | None = ..., source: str | None = ...) -> None: ...
+
+class CommunicationType(ComponentDefinition, expression.NamedElement):
+    """A message, service or action of a component (thesis figure 4.9)."""
+    identifier: str | None
+    interface: Interface | None
+    def __init__(self, *, identifier: str | None = ..., interface: Interface | None = ..., source: str | None = ..., name: str | None = ...) -> None: ...
+
+class Message(CommunicationType):
+    """A message on a topic."""
+    direction: MessageDirection
+    type: DataType
+    def __init__(self, *, direction: MessageDirection | None = ..., type: DataType | None = ..., identifier: str | None = ..., interface: Interface | None = ..., source: str | None = ..., name: str | None = ...) -> None: ...
+
+class Service(CommunicationType):
+    """A request that is answered once."""
+    requestType: DataType
+    responseType: DataType
+    def __init__(self, *, requestType: DataType | None = ..., responseType: DataType | None = ..., identifier: str | None = ..., interface: Interface | None = ..., source: str | None = ..., name: str | None = ...) -> None: ...
+
+class Action(CommunicationType):
+    """A longer task: goal, feedback, result, and it can be cancelled."""
+    requestType: DataType
+    responseType: DataType
+    feedbackType: DataType
+    def __init__(self, *, requestType: DataType | None = ..., responseType: DataType | None = ..., feedbackType: DataType | None = ..., identifier: str | None = ..., interface: Interface | None = ..., source: str | None = ..., name: str | None = ...) -> None: ...
+
+class MessageDirection:
+    """incoming: the component receives it and the controller sends it; outgoing: the other way."""
+    name: str
+    incoming: ClassVar[MessageDirection]
+    outgoing: ClassVar[MessageDirection]
+
+class CommunicationReference(expression.Located):
+    """Names a communication, with its component where the bare name would not do."""
+    component: Component | None
+    communicationType: CommunicationType
+    def __init__(self, *, component: Component | None = ..., communicationType: CommunicationType | None = ..., source: str | None = ...) -> None: ...
+
+class CommunicationTypeSet(expression.Located):
+    """One communication, or several in braces."""
+    communicationTypes: MutableSequence[CommunicationReference]
+    def __init__(self, *, communicationTypes: Iterable[CommunicationReference] = ..., source: str | None = ...) -> None: ...
+
+class Automaton(expression.Located):
+    """States, variables and transitions (thesis figure 4.11)."""
+    definitions: MutableSequence[AutomatonDefinition]
+    def __init__(self, *, definitions: Iterable[AutomatonDefinition] = ..., source: str | None = ...) -> None: ...
+
+class AutomatonDefinition(expression.Located):
+    """A variable, a state, or a transition that every state has."""
+    def __init__(self, *, source: str | None = ...) -> None: ...
+
+class Variable(AutomatonDefinition, AccessibleItem):
+    """Data that a component remembers."""
+    type: DataType
+    initial: expression.Expression | None
+    def __init__(self, *, type: DataType | None = ..., initial: expression.Expression | None = ..., source: str | None = ..., name: str | None = ...) -> None: ...
+
+class State(AutomatonDefinition, AccessibleItem):
+    """A state of a component."""
+    initial: bool
+    marked: bool
+    transitions: MutableSequence[Transition]
+    def __init__(self, *, initial: bool | None = ..., marked: bool | None = ..., transitions: Iterable[Transition] = ..., source: str | None = ..., name: str | None = ...) -> None: ...
+
+class Transition(AutomatonDefinition):
+    """A change of state, of variables, or of both."""
+    assignments: MutableSequence[Assignment]
+    target: State | None
+    def __init__(self, *, assignments: Iterable[Assignment] = ..., target: State | None = ..., source: str | None = ...) -> None: ...
+
+class ResultTransition(Transition):
+    """Happens with communication."""
+    resultType: ResultType
+    communicationType: CommunicationReference
+    def __init__(self, *, resultType: ResultType | None = ..., communicationType: CommunicationReference | None = ..., assignments: Iterable[Assignment] = ..., target: State | None = ..., source: str | None = ...) -> None: ...
+
+class ResultType:
+    """The events of a communication that a component can react to (thesis table 5.1)."""
+    name: str
+    request: ClassVar[ResultType]
+    response: ClassVar[ResultType]
+    error: ClassVar[ResultType]
+    feedback: ClassVar[ResultType]
+    cancel: ClassVar[ResultType]
+
+class TauTransition(Transition):
+    """Happens silently, as soon as its guard holds."""
+    guard: expression.Expression | None
+    def __init__(self, *, guard: expression.Expression | None = ..., assignments: Iterable[Assignment] = ..., target: State | None = ..., source: str | None = ...) -> None: ...
+
+class Assignment(expression.Located):
+    """Gives a variable a value."""
+    item: Access
+    value: expression.Expression
+    def __init__(self, *, item: Access | None = ..., value: expression.Expression | None = ..., source: str | None = ...) -> None: ...
+
+class DataType(expression.Located):
+    """The type of data (thesis figure 4.5)."""
+    def __init__(self, *, source: str | None = ...) -> None: ...
+
+class BasicDataType(DataType):
+    """A type that needs no definition."""
+    def __init__(self, *, source: str | None = ...) -> None: ...
+
+class StringDataType(BasicDataType):
+    """Text."""
+    def __init__(self, *, source: str | None = ...) -> None: ...
+
+class IntegerDataType(BasicDataType):
+    """A whole number."""
+    minimum: int | None
+    maximum: int | None
+    def __init__(self, *, minimum: int | None = ..., maximum: int | None = ..., source: str | None = ...) -> None: ...
+
+class BooleanDataType(BasicDataType):
+    """true or false."""
+    def __init__(self, *, source: str | None = ...) -> None: ...
+
+class DoubleDataType(BasicDataType):
+    """A number with a fraction."""
+    def __init__(self, *, source: str | None = ...) -> None: ...
+
+class NoneDataType(BasicDataType):
+    """No data."""
+    def __init__(self, *, source: str | None = ...) -> None: ...
+
+class Array(DataType):
+    """A list of values of one type, in data from the middleware only."""
+    type: DataType
+    def __init__(self, *, type: DataType | None = ..., source: str | None = ...) -> None: ...
+
+class ComplexDataTypeReference(DataType):
+    """Names an object or an enum."""
+    type: ComplexDataType
+    def __init__(self, *, type: ComplexDataType | None = ..., source: str | None = ...) -> None: ...
+
+class ComplexDataType(Definition, expression.NamedElement):
+    """A data type with a name."""
+    def __init__(self, *, source: str | None = ..., name: str | None = ...) -> None: ...
+
+class ObjectDataType(ComplexDataType):
+    """Properties, each with a type."""
+    properties: MutableSequence[ObjectProperty]
+    def __init__(self, *, properties: Iterable[ObjectProperty] = ..., source: str | None = ..., name: str | None = ...) -> None: ...
+
+class ObjectProperty(expression.NamedElement):
+    """A property of an object."""
+    type: DataType
+    def __init__(self, *, type: DataType | None = ..., name: str | None = ..., source: str | None = ...) -> None: ...
+
+class EnumDataType(ComplexDataType):
+    """Turns data into one of finitely many values."""
+    type: DataType
+    rules: MutableSequence[EnumRule]
+    def __init__(self, *, type: DataType | None = ..., rules: Iterable[EnumRule] = ..., source: str | None = ..., name: str | None = ...) -> None: ...
+
+class EnumRule(expression.Located):
+    """A rule of an enum."""
+    value: EnumValue
+    def __init__(self, *, value: EnumValue | None = ..., source: str | None = ...) -> None: ...
+
+class EnumTransformationRule(EnumRule):
+    """Gives its value where its condition holds."""
+    condition: expression.Expression
+    def __init__(self, *, condition: expression.Expression | None = ..., value: EnumValue | None = ..., source: str | None = ...) -> None: ...
+
+class EnumDefaultRule(EnumRule):
+    """Gives its value where no other rule does."""
+    def __init__(self, *, value: EnumValue | None = ..., source: str | None = ...) -> None: ...
+
+class EnumValue(AccessibleItem):
+    """A value of an enum."""
+    def __init__(self, *, name: str | None = ..., source: str | None = ...) -> None: ...
+
+class Access(expression.Expression):
+    """Reads what a name stands for, or the data of the event (`value`)."""
+    value: bool
+    component: Component | None
+    item: AccessibleItem | None
+    segments: MutableSequence[AccessSegment]
+    def __init__(self, *, value: bool | None = ..., component: Component | None = ..., item: AccessibleItem | None = ..., segments: Iterable[AccessSegment] = ..., source: str | None = ...) -> None: ...
+
+class AccessSegment(expression.Located):
+    """One step into data."""
+    def __init__(self, *, source: str | None = ...) -> None: ...
+
+class PropertySegment(AccessSegment):
+    """A property of an object."""
+    property: ObjectProperty
+    def __init__(self, *, property: ObjectProperty | None = ..., source: str | None = ...) -> None: ...
+
+class IndexSegment(AccessSegment):
+    """An element of an array."""
+    index: int
+    def __init__(self, *, index: int | None = ..., source: str | None = ...) -> None: ...
+
+class Requirement(Definition):
+    """Restricts when communication may start (thesis figure 4.13)."""
+    target: CommunicationTypeSet
+    condition: expression.Expression
+    def __init__(self, *, target: CommunicationTypeSet | None = ..., condition: expression.Expression | None = ..., source: str | None = ...) -> None: ...
+
+class NeedsRequirement(Requirement):
+    """The communication may start only where the condition holds."""
+    def __init__(self, *, target: CommunicationTypeSet | None = ..., condition: expression.Expression | None = ..., source: str | None = ...) -> None: ...
+
+class DisablesRequirement(Requirement):
+    """The communication may not start where the condition holds."""
+    def __init__(self, *, target: CommunicationTypeSet | None = ..., condition: expression.Expression | None = ..., source: str | None = ...) -> None: ...
+
+class ProvideStatement(Definition):
+    """The data that is sent along (thesis figure 4.12)."""
+    communicationType: CommunicationReference
+    data: expression.Expression
+    condition: expression.Expression | None
+    def __init__(self, *, communicationType: CommunicationReference | None = ..., data: expression.Expression | None = ..., condition: expression.Expression | None = ..., source: str | None = ...) -> None: ...
+
+class ObjectValue(expression.Expression):
+    """A value for an object; properties left out keep their ROS default. Only as provided data."""
+    properties: MutableSequence[ObjectPropertyValue]
+    def __init__(self, *, properties: Iterable[ObjectPropertyValue] = ..., source: str | None = ...) -> None: ...
+
+class ObjectPropertyValue(expression.Located):
+    """A value for one property."""
+    property: ObjectProperty
+    value: expression.Expression
+    def __init__(self, *, property: ObjectProperty | None = ..., value: expression.Expression | None = ..., source: str | None = ...) -> None: ...

@@ -1,0 +1,131 @@
+"""Generated from metamodel/sct.ecore by `python -m robosc.metamodel.stubs`."""
+
+from collections.abc import Iterable, MutableSequence
+from typing import Any, ClassVar
+
+from robosc.metamodel import expression
+
+class SupervisoryControlModel(expression.NamedElement):
+    """Everything about one robot."""
+    enumerations: MutableSequence[expression.Enumeration]
+    plants: MutableSequence[Plant]
+    requirements: MutableSequence[Requirement]
+    supervisor: Supervisor | None
+    def __init__(self, *, enumerations: Iterable[expression.Enumeration] = ..., plants: Iterable[Plant] = ..., requirements: Iterable[Requirement] = ..., supervisor: Supervisor | None = ..., name: str | None = ..., source: str | None = ...) -> None: ...
+
+class Plant(expression.NamedElement):
+    """An automaton with variables. From each location, at most one edge has a given event."""
+    kind: PlantKind
+    origin: str | None
+    topic: str | None
+    events: MutableSequence[Event]
+    inputs: MutableSequence[Input]
+    variables: MutableSequence[DiscreteVariable]
+    locations: MutableSequence[Location]
+    def __init__(self, *, kind: PlantKind | None = ..., origin: str | None = ..., topic: str | None = ..., events: Iterable[Event] = ..., inputs: Iterable[Input] = ..., variables: Iterable[DiscreteVariable] = ..., locations: Iterable[Location] = ..., name: str | None = ..., source: str | None = ...) -> None: ...
+
+class PlantKind:
+    """message, service, action: communication (thesis listings 5.1 to 5.3); behaviour: a component's automaton; data: the provide statements of one communication (listing 5.4)."""
+    name: str
+    message: ClassVar[PlantKind]
+    service: ClassVar[PlantKind]
+    action: ClassVar[PlantKind]
+    behaviour: ClassVar[PlantKind]
+    data: ClassVar[PlantKind]
+
+class Event(expression.NamedElement):
+    """Something that happens, in all plants that have it in their alphabet at once."""
+    controllable: bool
+    kind: EventKind
+    inputs: MutableSequence[Input]
+    def __init__(self, *, controllable: bool | None = ..., kind: EventKind | None = ..., inputs: Iterable[Input] = ..., name: str | None = ..., source: str | None = ...) -> None: ...
+
+class EventKind:
+    """trigger, cancel: sent by the controller; response, error, feedback: come from the robot; reset, tau: silent; data: which provided data goes out."""
+    name: str
+    trigger: ClassVar[EventKind]
+    response: ClassVar[EventKind]
+    error: ClassVar[EventKind]
+    feedback: ClassVar[EventKind]
+    cancel: ClassVar[EventKind]
+    reset: ClassVar[EventKind]
+    tau: ClassVar[EventKind]
+    data: ClassVar[EventKind]
+
+class Input(expression.NamedElement):
+    """Data that comes with an event. Only updates on edges of an event that names the input read it."""
+    type: expression.Type
+    def __init__(self, *, type: expression.Type | None = ..., name: str | None = ..., source: str | None = ...) -> None: ...
+
+class DiscreteVariable(expression.NamedElement):
+    """A variable of a plant."""
+    type: expression.Type
+    initial: expression.Expression
+    def __init__(self, *, type: expression.Type | None = ..., initial: expression.Expression | None = ..., name: str | None = ..., source: str | None = ...) -> None: ...
+
+class Location(expression.NamedElement):
+    """A location of a plant."""
+    initial: bool
+    marked: bool
+    edges: MutableSequence[Edge]
+    def __init__(self, *, initial: bool | None = ..., marked: bool | None = ..., edges: Iterable[Edge] = ..., name: str | None = ..., source: str | None = ...) -> None: ...
+
+class Edge(expression.Located):
+    """A possible step of one plant."""
+    event: Event
+    guard: expression.Expression | None
+    updates: MutableSequence[Update]
+    target: Location
+    def __init__(self, *, event: Event | None = ..., guard: expression.Expression | None = ..., updates: Iterable[Update] = ..., target: Location | None = ..., source: str | None = ...) -> None: ...
+
+class Update(expression.Located):
+    """Gives a variable a value. A value outside the range of an integer variable becomes the nearest bound."""
+    variable: DiscreteVariable
+    value: expression.Expression
+    def __init__(self, *, variable: DiscreteVariable | None = ..., value: expression.Expression | None = ..., source: str | None = ...) -> None: ...
+
+class Requirement(expression.Located):
+    """Restricts a controllable event."""
+    event: Event
+    kind: RequirementKind
+    condition: expression.Expression
+    text: str | None
+    def __init__(self, *, event: Event | None = ..., kind: RequirementKind | None = ..., condition: expression.Expression | None = ..., text: str | None = ..., source: str | None = ...) -> None: ...
+
+class RequirementKind:
+    """needs: the event happens only where the condition holds; disables: only where it does not."""
+    name: str
+    needs: ClassVar[RequirementKind]
+    disables: ClassVar[RequirementKind]
+
+class Supervisor(expression.Located):
+    """The maximally permissive, controllable, non-blocking supervisor."""
+    uncontrolledStates: int
+    controlledStates: int
+    bddNodes: int
+    settlingBound: int | None
+    guards: MutableSequence[EventGuard]
+    def __init__(self, *, uncontrolledStates: int | None = ..., controlledStates: int | None = ..., bddNodes: int | None = ..., settlingBound: int | None = ..., guards: Iterable[EventGuard] = ..., source: str | None = ...) -> None: ...
+
+class EventGuard(expression.Located):
+    """When the supervisor allows an event: where both parts hold. What the plants forbid is not repeated."""
+    event: Event
+    requirement: expression.Expression | None
+    synthesis: expression.Expression | None
+    everEnabled: bool
+    def __init__(self, *, event: Event | None = ..., requirement: expression.Expression | None = ..., synthesis: expression.Expression | None = ..., everEnabled: bool | None = ..., source: str | None = ...) -> None: ...
+
+class LocationReference(expression.Expression):
+    """True while its plant is in the location."""
+    location: Location
+    def __init__(self, *, location: Location | None = ..., source: str | None = ...) -> None: ...
+
+class VariableReference(expression.Expression):
+    """The value of a variable."""
+    variable: DiscreteVariable
+    def __init__(self, *, variable: DiscreteVariable | None = ..., source: str | None = ...) -> None: ...
+
+class InputReference(expression.Expression):
+    """The value of an input."""
+    input: Input
+    def __init__(self, *, input: Input | None = ..., source: str | None = ...) -> None: ...

@@ -1,0 +1,88 @@
+"""Writes the type stubs of the metamodel modules: `python -m robosc.metamodel.stubs`."""
+
+from pathlib import Path
+
+from pyecore.ecore import EClass, EPackage, EStructuralFeature
+
+from robosc.metamodel._ecore import PACKAGES, packages
+
+_TYPES = {
+    "EString": "str",
+    "EBoolean": "bool",
+    "ELong": "int",
+    "ELongObject": "int",
+    "EBigInteger": "int",
+    "EDouble": "float",
+}
+
+
+def _documentation(element: EClass | EPackage) -> str:
+    return str(element.eAnnotations[0].details["documentation"])
+
+
+def _type(feature: EStructuralFeature, package: EPackage) -> str:
+    target = feature.eType
+    name: str = _TYPES.get(target.name, target.name)
+    if target.name not in _TYPES and target.ePackage is not package:
+        name = f"{target.ePackage.name}.{name}"
+    return name
+
+
+def _parameter(feature: EStructuralFeature, package: EPackage) -> str:
+    kind = _type(feature, package)
+    return f"{feature.name}: Iterable[{kind}] = ..." if feature.many else f"{feature.name}: {kind} | None = ..."
+
+
+def _attribute(feature: EStructuralFeature, package: EPackage) -> str:
+    kind = _type(feature, package)
+    if feature.many:
+        return f"{feature.name}: MutableSequence[{kind}]"
+    # What the metamodel requires is there in every valid model, so its type is not optional.
+    return f"{feature.name}: {kind}" if feature.lowerBound else f"{feature.name}: {kind} | None"
+
+
+def stub(name: str) -> str:
+    """The text of the stub of one metamodel module."""
+    package = packages()[name]
+    others = [other for other in PACKAGES if other != name and f"{other}.ecore" in _references(package)]
+    lines = [
+        f'"""Generated from metamodel/{name}.ecore by `python -m robosc.metamodel.stubs`."""',
+        "",
+        "from collections.abc import Iterable, MutableSequence",
+        "from typing import Any, ClassVar",
+        "",
+    ]
+    lines += [f"from robosc.metamodel import {', '.join(others)}", ""] if others else []
+    for classifier in package.eClassifiers:
+        doc = f'    """{_documentation(classifier)}"""'
+        if not isinstance(classifier, EClass):
+            lines += [f"class {classifier.name}:", doc, "    name: str"]
+            lines += [f"    {literal.name}: ClassVar[{classifier.name}]" for literal in classifier.eLiterals]
+            lines += [""]
+            continue
+        parents = ", ".join(
+            parent.name if parent.ePackage is package else f"{parent.ePackage.name}.{parent.name}"
+            for parent in classifier.eSuperTypes
+        )
+        lines += [f"class {classifier.name}({parents}):" if parents else f"class {classifier.name}:", doc]
+        lines += [f"    {_attribute(feature, package)}" for feature in classifier.eStructuralFeatures]
+        if not parents:
+            lines += ["    def eContainer(self) -> Any: ...", "    @property", "    def eClass(self) -> Any: ..."]
+        features = classifier.eAllStructuralFeatures()
+        parameters = ", ".join(["self", "*", *(_parameter(feature, package) for feature in features)])
+        lines += [f"    def __init__({parameters}) -> None: ...", ""]
+    return "\n".join(lines)
+
+
+def _references(package: EPackage) -> set[str]:
+    used = set()
+    for classifier in package.eClassifiers:
+        if isinstance(classifier, EClass):
+            targets = list(classifier.eSuperTypes) + [f.eType for f in classifier.eAllStructuralFeatures()]
+            used |= {f"{t.ePackage.name}.ecore" for t in targets if t.ePackage is not None}
+    return used
+
+
+if __name__ == "__main__":
+    for each in PACKAGES:
+        Path(__file__).with_name(f"{each}.pyi").write_text(stub(each), encoding="utf-8")

@@ -1,0 +1,1 @@
+"""From plants and requirements to the supervisor, over decision diagrams."""
