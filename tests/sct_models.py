@@ -1,0 +1,331 @@
+"""Writes SCT models in a few lines, for the tests of everything that reads them.
+
+    model(
+        plants=[
+            plant("machine", {"idle": [edge("start", to="busy", when="n < 3", do={"n": "n + 1"})],
+                              "busy": [edge("done", to="idle", do={"n": "x"})]},
+                  controllable=["start"], uncontrollable={"done": ["x"]},
+                  variables={"n": "0..5 = 1"}, inputs={"x": "-1..5"}),
+        ],
+        requirements=[needs("start", "machine.idle and n != 2", text="machine needs ...")],
+        enumerations={"Colour": ["red", "green"]},
+    )
+
+Expressions are Python's: `and or not == != < <= > >= + - *`, `a if c else b`, `implies(a, b)`, `/` and `double(x)` for
+what an SCT model must not hold. A name is a variable, input or location of the own plant, else an enumeration literal,
+else a variable of any plant; `p.x` is x of plant p, `Colour.red` a literal. A type is `bool`, `0..5` or an
+enumeration; ` = value` gives a variable's initial value, by default false, the value nearest to 0, the first literal.
+"""
+
+import ast
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from robosc.metamodel import expression as ex
+from robosc.metamodel import sct
+
+_BINARY = {
+    ast.And: ex.Conjunction,
+    ast.Or: ex.Disjunction,
+    ast.Eq: ex.Equation,
+    ast.NotEq: ex.Inequation,
+    ast.Lt: ex.LessThan,
+    ast.LtE: ex.LessOrEqual,
+    ast.Gt: ex.GreaterThan,
+    ast.GtE: ex.GreaterOrEqual,
+    ast.Add: ex.Addition,
+    ast.Sub: ex.Subtraction,
+    ast.Mult: ex.Multiplication,
+    ast.Div: ex.Division,
+}
+_UNARY = {ast.Not: ex.Negation, ast.USub: ex.UnaryMinus}
+_KINDS = ("trigger", "response", "error", "feedback", "cancel", "reset", "tau")
+
+
+@dataclass(frozen=True)
+class _Edge:
+    event: str
+    to: str | None
+    when: str | None
+    do: Mapping[str, str]
+
+
+@dataclass(frozen=True)
+class _Plant:
+    element: sct.Plant
+    locations: Mapping[str, Sequence[_Edge]]
+    carries: Mapping[str, Sequence[str]]
+    variables: Mapping[str, str]
+    inputs: Mapping[str, str]
+
+
+@dataclass(frozen=True)
+class _Requirement:
+    kind: str
+    event: str
+    condition: str
+    text: str | None
+
+
+def edge(event: str, to: str | None = None, *, when: str | None = None, do: Mapping[str, Any] | None = None) -> _Edge:
+    """An edge to location `to` (absent: a self-loop) under guard `when` with the updates `do` (variable to value)."""
+    return _Edge(event, to, when, {name: str(value) for name, value in (do or {}).items()})
+
+
+def plant(
+    name: str,
+    locations: Mapping[str, Sequence[_Edge]],
+    *,
+    controllable: Iterable[str] = (),
+    uncontrollable: Iterable[str] | Mapping[str, Sequence[str]] = (),
+    variables: Mapping[str, str] | None = None,
+    inputs: Mapping[str, str] | None = None,
+    initial: str | None = None,
+    marked: Sequence[str] | None = None,
+    kind: str = "behaviour",
+    topic: str | None = None,
+    origin: str | None = None,
+) -> _Plant:
+    """A plant and the events it declares, each given by name, or as a mapping to the inputs that carry its data.
+
+    The first location is initial and alone marked unless said otherwise. An event's kind follows from its name
+    (`c_trigger`, `u_response`, `c_tau1`); in a data plant it is data; else trigger or response.
+    """
+    first = next(iter(locations))
+    declared = [(event, True) for event in controllable] + [(event, False) for event in uncontrollable]
+    return _Plant(
+        sct.Plant(
+            name=name,
+            kind=getattr(sct.PlantKind, kind),
+            topic=topic,
+            origin=origin,
+            events=[
+                sct.Event(name=event, controllable=allowed, kind=_event_kind(event, kind, allowed))
+                for event, allowed in declared
+            ],
+            locations=[
+                sct.Location(
+                    name=location,
+                    initial=location == (initial or first),
+                    marked=location in ([initial or first] if marked is None else marked),
+                )
+                for location in locations
+            ],
+        ),
+        locations,
+        {
+            event: inputs_of
+            for events in (controllable, uncontrollable)
+            if isinstance(events, Mapping)
+            for event, inputs_of in events.items()
+        },
+        variables or {},
+        inputs or {},
+    )
+
+
+def needs(event: str, condition: str, text: str | None = None) -> _Requirement:
+    """A requirement: the event needs the condition."""
+    return _Requirement("needs", event, condition, text)
+
+
+def disables(event: str, condition: str, text: str | None = None) -> _Requirement:
+    """A requirement: the condition disables the event."""
+    return _Requirement("disables", event, condition, text)
+
+
+def model(
+    plants: Sequence[_Plant],
+    requirements: Sequence[_Requirement] = (),
+    enumerations: Mapping[str, Sequence[str]] | None = None,
+    *,
+    name: str = "robot",
+    guards: Mapping[str, str | tuple[str | None, str | None]] | None = None,
+) -> sct.SupervisoryControlModel:
+    """The model. `guards` attaches a supervisor that was not synthesized: event to requirement part, or both parts."""
+    scope = _Scope(
+        [each.element for each in plants],
+        [
+            ex.Enumeration(name=each, literals=[ex.EnumerationLiteral(name=literal) for literal in literals])
+            for each, literals in (enumerations or {}).items()
+        ],
+    )
+    for each in plants:
+        scope.declare(each)
+    for each in plants:
+        scope.fill(each)
+    made = sct.SupervisoryControlModel(
+        name=name,
+        enumerations=scope.enumerations,
+        plants=scope.plants,
+        requirements=[
+            sct.Requirement(
+                event=scope.event(each.event, None),
+                kind=getattr(sct.RequirementKind, each.kind),
+                condition=scope.expression(each.condition, None),
+                text=each.text,
+            )
+            for each in requirements
+        ],
+    )
+    if guards is not None:
+        made.supervisor = scope.supervisor(guards)
+    return made
+
+
+def _event_kind(event: str, plant_kind: str, controllable: bool) -> sct.EventKind:
+    if plant_kind == "data":
+        return sct.EventKind.data
+    stem = event.partition("_")[2].rstrip("0123456789")
+    return getattr(sct.EventKind, stem if stem in _KINDS else "trigger" if controllable else "response")
+
+
+@dataclass
+class _Scope:
+    plants: list[sct.Plant]
+    enumerations: list[ex.Enumeration]
+    names: dict[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        for enumeration in self.enumerations:
+            for literal in enumeration.literals:
+                self.names[f"{enumeration.name}.{literal.name}"] = self.names[literal.name] = literal
+
+    def declare(self, given: _Plant) -> None:
+        owner = given.element
+        for name, text in given.inputs.items():
+            owner.inputs.append(sct.Input(name=name, type=self.type(text)))
+        for name, text in given.variables.items():
+            kind, _, value = text.partition("=")
+            made = self.type(kind.strip())
+            owner.variables.append(
+                sct.DiscreteVariable(
+                    name=name, type=made, initial=self.expression(value, owner) if value else _default(made)
+                )
+            )
+        for event in owner.events:
+            event.inputs.extend(
+                next(each for each in owner.inputs if each.name == name) for name in given.carries.get(event.name, ())
+            )
+        for element in (*owner.locations, *owner.inputs, *owner.variables):
+            self.names[f"{owner.name}.{element.name}"] = element
+            if isinstance(element, sct.DiscreteVariable):
+                self.names.setdefault(element.name, element)
+
+    def fill(self, given: _Plant) -> None:
+        owner = given.element
+        for location in owner.locations:
+            for each in given.locations[location.name]:
+                location.edges.append(
+                    sct.Edge(
+                        event=self.event(each.event, owner),
+                        guard=None if each.when is None else self.expression(each.when, owner),
+                        target=self.find(each.to or location.name, owner),
+                        updates=[
+                            sct.Update(variable=self.find(name, owner), value=self.expression(value, owner))
+                            for name, value in each.do.items()
+                        ],
+                    )
+                )
+
+    def supervisor(self, guards: Mapping[str, Any]) -> sct.Supervisor:
+        parts = {
+            self.event(event, None): given if isinstance(given, tuple) else (given, None)
+            for event, given in guards.items()
+        }
+        return sct.Supervisor(
+            uncontrolledStates=1,
+            controlledStates=1,
+            bddNodes=1,
+            guards=[
+                sct.EventGuard(
+                    event=event,
+                    everEnabled=True,
+                    **{
+                        part: self.expression(text, None)
+                        for part, text in zip(("requirement", "synthesis"), parts.get(event, (None, None)), strict=True)
+                        if text is not None
+                    },
+                )
+                for each in self.plants
+                for event in each.events
+                if event.controllable
+            ],
+        )
+
+    def type(self, text: str) -> ex.Type:
+        if text == "bool":
+            return ex.BooleanType()
+        if ".." in text:
+            minimum, maximum = text.split("..")
+            return ex.IntegerType(minimum=int(minimum), maximum=int(maximum))
+        return ex.EnumerationType(enumeration=next(each for each in self.enumerations if each.name == text))
+
+    def event(self, name: str, owner: sct.Plant | None) -> sct.Event:
+        wanted, _, bare = name.rpartition(".")
+        found = [
+            event for each in self.plants if wanted in ("", each.name) for event in each.events if event.name == bare
+        ]
+        own = [event for event in found if event.eContainer() is owner]
+        if len(own or found) != 1:
+            raise LookupError(f"{len(found)} events are called {name}")
+        return (own or found)[0]
+
+    def find(self, name: str, owner: sct.Plant | None) -> Any:
+        own = None if owner is None else self.names.get(f"{owner.name}.{name}")
+        return own if own is not None else self.names[name]
+
+    def expression(self, text: str, owner: sct.Plant | None) -> ex.Expression:
+        return self._expression(ast.parse(text.strip(), mode="eval").body, owner)
+
+    def _expression(self, node: ast.expr, owner: sct.Plant | None) -> ex.Expression:  # noqa: C901
+        def of(child: ast.expr) -> ex.Expression:
+            return self._expression(child, owner)
+
+        match node:
+            case ast.BoolOp(op, [first, *others]):
+                made = of(first)
+                for other in others:
+                    made = _BINARY[type(op)](left=made, right=of(other))
+                return made
+            case ast.Compare(left, [op], [right]) | ast.BinOp(left, op, right):
+                return _BINARY[type(op)](left=of(left), right=of(right))
+            case ast.UnaryOp(op, operand):
+                return _UNARY[type(op)](operand=of(operand))
+            case ast.IfExp(condition, then, otherwise):
+                return ex.Conditional(condition=of(condition), then=of(then), otherwise=of(otherwise))
+            case ast.Call(ast.Name("implies"), [left, right]):
+                return ex.Implication(left=of(left), right=of(right))
+            case ast.Call(ast.Name("double"), [operand]):
+                return ex.DoubleConversion(operand=of(operand))
+            case ast.Constant(value):
+                literal = {bool: ex.BooleanLiteral, int: ex.IntegerLiteral, float: ex.DoubleLiteral}[type(value)]
+                return literal(value=value)
+            case ast.Name("true" | "false" as value):
+                return ex.BooleanLiteral(value=value == "true")
+            case ast.Name() | ast.Attribute():
+                return _reference(self.find(ast.unparse(node), owner))
+        raise ValueError(f"no expression: {ast.unparse(node)}")
+
+
+def _reference(element: Any) -> ex.Expression:
+    match element:
+        case sct.DiscreteVariable():
+            return sct.VariableReference(variable=element)
+        case sct.Input():
+            return sct.InputReference(input=element)
+        case sct.Location():
+            return sct.LocationReference(location=element)
+    return ex.EnumerationLiteralReference(literal=element)
+
+
+def _default(kind: ex.Type) -> ex.Expression:
+    match kind:
+        case ex.BooleanType():
+            return ex.BooleanLiteral(value=False)
+        case ex.IntegerType():
+            value = min(max(0, kind.minimum), kind.maximum)
+            literal = ex.IntegerLiteral(value=abs(value))
+            return literal if value >= 0 else ex.UnaryMinus(operand=literal)
+    return ex.EnumerationLiteralReference(literal=kind.enumeration.literals[0])
