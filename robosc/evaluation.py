@@ -1,0 +1,92 @@
+"""The value of an expression, computed as every generated program computes it."""
+
+from __future__ import annotations
+
+import math
+import operator
+from typing import TYPE_CHECKING, TypeAlias
+
+from robosc.metamodel import expression as ex
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+#: An enumeration's value stands for itself (its literal object).
+Value: TypeAlias = bool | int | float | str | object
+
+_ORDERED: dict[type[ex.Expression], Callable[..., bool]] = {
+    ex.LessThan: operator.lt,
+    ex.LessOrEqual: operator.le,
+    ex.GreaterThan: operator.gt,
+    ex.GreaterOrEqual: operator.ge,
+}
+_ARITHMETIC: dict[type[ex.Expression], Callable[..., int | float]] = {
+    ex.Addition: operator.add,
+    ex.Subtraction: operator.sub,
+    ex.Multiplication: operator.mul,
+}
+
+
+def evaluate(expression: ex.Expression, read: Callable[[ex.Expression], Value]) -> Value:
+    """The value of a well-typed expression; `read` gives the value of every reference in it.
+
+    Doubles follow IEEE 754, division by zero included; every comparison with NaN is false.
+    """
+    match expression:
+        case ex.BooleanLiteral() | ex.IntegerLiteral() | ex.DoubleLiteral() | ex.StringLiteral():
+            return expression.value
+        case ex.Negation():
+            return not evaluate(expression.operand, read)
+        case ex.UnaryMinus():
+            return -_number(expression.operand, read)
+        case ex.DoubleConversion():
+            return float(_number(expression.operand, read))
+        case ex.Conditional():
+            chosen = expression.then if evaluate(expression.condition, read) else expression.otherwise
+            return evaluate(chosen, read)
+        case ex.BinaryExpression():
+            return _binary(expression, read)
+    return read(expression)
+
+
+def _binary(expression: ex.BinaryExpression, read: Callable[[ex.Expression], Value]) -> Value:
+    kind = type(expression)
+    left = evaluate(expression.left, read)
+    if kind is ex.Conjunction:
+        return bool(left) and bool(evaluate(expression.right, read))
+    if kind is ex.Disjunction:
+        return bool(left) or bool(evaluate(expression.right, read))
+    if kind is ex.Implication:
+        return not left or bool(evaluate(expression.right, read))
+    right = evaluate(expression.right, read)
+    if kind is ex.Equation:
+        return left == right
+    if kind is ex.Inequation:
+        return left != right and left == left and right == right  # noqa: PLR0124 - false where one is NaN
+    if kind in _ORDERED:
+        return _ORDERED[kind](left, right)
+    if kind is ex.Division:
+        return divide(float(left), float(right))  # type: ignore[arg-type]
+    return _ARITHMETIC[kind](left, right)
+
+
+def _number(expression: ex.Expression, read: Callable[[ex.Expression], Value]) -> int | float:
+    value = evaluate(expression, read)
+    assert isinstance(value, (int, float))
+    return value
+
+
+def divide(left: float, right: float) -> float:
+    """The quotient as IEEE 754 has it: infinite or NaN where the divisor is zero."""
+    if right:
+        return left / right
+    if left == 0 or math.isnan(left) or math.isnan(right):
+        return math.nan
+    return math.copysign(math.inf, left) * math.copysign(1.0, right)
+
+
+def saturate(value: int, minimum: int | None, maximum: int | None) -> int:
+    """The value, or the nearest bound where it is outside the range; an absent bound does not bound."""
+    if minimum is not None:
+        value = max(value, minimum)
+    return value if maximum is None else min(value, maximum)

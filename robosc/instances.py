@@ -1,0 +1,121 @@
+"""The components that a robot really has: its own, and one instance of a library's component for each import."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from robosc.metamodel import robosc
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+
+@dataclass(frozen=True, eq=False)
+class Instance:
+    """One component of a robot, or of a library looked at by itself.
+
+    `home` is the robot or library whose text defines it; names in that text mean what they mean there.
+    """
+
+    component: robosc.Component
+    local: robosc.LocalComponent
+    home: robosc.Base
+    topics: dict[robosc.CommunicationType, str] = field(default_factory=dict)
+
+    @property
+    def name(self) -> str:
+        """The component's name in the robot."""
+        return self.component.name
+
+    @property
+    def communications(self) -> list[robosc.CommunicationType]:
+        """Its messages, services and actions, in the order of the text."""
+        return [each for each in self.local.definitions if isinstance(each, robosc.CommunicationType)]
+
+    @property
+    def automaton(self) -> robosc.Automaton | None:
+        """Its behaviour, if it has one."""
+        behaviours = (each for each in self.local.definitions if isinstance(each, robosc.ComponentBehaviour))
+        return next((each.automaton for each in behaviours), None)
+
+    def topic(self, communication: robosc.CommunicationType) -> str:
+        """The ROS name of one of its communications: re-mapped, given, or the communication's own name."""
+        return self.topics.get(communication) or communication.identifier or communication.name
+
+
+@dataclass(frozen=True)
+class Occurrence:
+    """A communication of one instance."""
+
+    instance: Instance
+    communication: robosc.CommunicationType
+
+
+@dataclass(frozen=True)
+class InstanceVariable:
+    """A variable of one instance."""
+
+    instance: Instance
+    variable: robosc.Variable
+
+
+class Instances:
+    """All instances of a base, in the order of its text, and what references in texts mean among them.
+
+    References that linking could not resolve mean None.
+    """
+
+    def __init__(self, base: robosc.Base) -> None:
+        self.base = base
+        self._of: dict[robosc.Component, Instance] = {}
+        for definition in base.definitions:
+            if isinstance(definition, robosc.Component):
+                instance = _instantiate(definition, base)
+                if instance is not None:
+                    self._of[definition] = instance
+
+    def __iter__(self) -> Iterator[Instance]:
+        return iter(self._of.values())
+
+    def occurrences(self) -> Iterator[Occurrence]:
+        """Every communication of every instance, in the order of the text."""
+        for instance in self:
+            for communication in instance.communications:
+                yield Occurrence(instance, communication)
+
+    def instance(self, component: robosc.Component | None, within: Instance | None) -> Instance | None:
+        """The instance that a text means by a component; `within` is the instance whose behaviour the text is."""
+        if within is not None and within.home is not self.base:
+            return within  # A library's text speaks of its own component only.
+        return within if component is None else self._of.get(component)
+
+    def occurrence(self, reference: robosc.CommunicationReference, within: Instance | None) -> Occurrence | None:
+        """The communication that a reference means."""
+        instance = self.instance(reference.component, within)
+        if instance is None or reference.communicationType is None:
+            return None
+        return Occurrence(instance, reference.communicationType)
+
+    def variable(self, access: robosc.Access, within: Instance | None) -> InstanceVariable | None:
+        """The variable that an access reads; None where it reads something else."""
+        instance = self.instance(access.component, within)
+        if instance is None or not isinstance(access.item, robosc.Variable):
+            return None
+        return InstanceVariable(instance, access.item)
+
+
+def _instantiate(component: robosc.Component, base: robosc.Base) -> Instance | None:
+    """Follows imports to the component's definition; outer re-mappings win."""
+    topics: dict[robosc.CommunicationType, str] = {}
+    home, current, seen = base, component, {component}
+    while isinstance(current.type, robosc.ImportedComponent):
+        for remapping in current.type.remappings:
+            topics.setdefault(remapping.communicationType, remapping.identifier)
+        home, current = current.type.library, current.type.definition
+        if home is None or current is None or current in seen:
+            return None
+        seen.add(current)
+    if not isinstance(current.type, robosc.LocalComponent):
+        return None
+    return Instance(component, current.type, home, topics)
