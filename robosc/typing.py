@@ -1,0 +1,222 @@
+"""The type of any expression of a robosc model: thesis table 4.1, made strict by the language reference.
+
+Types are values: the basic ones are members of `BasicType`, arrays compare by their elements, objects and enums by
+their definition (nominally). What can't be known, such as the type of an unresolved name, is `UNKNOWN`, fits
+everywhere and draws no finding. An integer's range is no part of its type.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import TYPE_CHECKING, TypeAlias
+
+from robosc.metamodel import expression as ex
+from robosc.metamodel import robosc as rsc
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+
+class BasicType(StrEnum):
+    """The types without a definition, and the type of what can't be typed."""
+
+    BOOLEAN = "boolean"
+    INTEGER = "integer"
+    DOUBLE = "double"
+    STRING = "string"
+    NONE = "none"
+    UNKNOWN = "unknown"
+
+
+@dataclass(frozen=True)
+class ArrayType:
+    """A list of values of one type."""
+
+    element: Type
+
+    def __str__(self) -> str:
+        return f"array({self.element})"
+
+
+@dataclass(frozen=True)
+class ObjectType:
+    """An object data type."""
+
+    definition: rsc.ObjectDataType
+
+    def __str__(self) -> str:
+        return f"object {self.definition.name}"
+
+
+@dataclass(frozen=True)
+class EnumType:
+    """An enum data type."""
+
+    definition: rsc.EnumDataType
+
+    def __str__(self) -> str:
+        return f"enum {self.definition.name}"
+
+
+Type: TypeAlias = BasicType | ArrayType | ObjectType | EnumType
+
+BOOLEAN, INTEGER, DOUBLE, STRING, NONE, UNKNOWN = BasicType
+
+_BASIC: Mapping[type[rsc.DataType], BasicType] = {
+    rsc.BooleanDataType: BOOLEAN,
+    rsc.IntegerDataType: INTEGER,
+    rsc.DoubleDataType: DOUBLE,
+    rsc.StringDataType: STRING,
+    rsc.NoneDataType: NONE,
+}
+_LITERAL: Mapping[type[ex.Expression], BasicType] = {
+    ex.BooleanLiteral: BOOLEAN,
+    ex.IntegerLiteral: INTEGER,
+    ex.DoubleLiteral: DOUBLE,
+    ex.StringLiteral: STRING,
+}
+LOGICAL = (ex.Conjunction, ex.Disjunction, ex.Implication, ex.Negation)
+EQUALITY = (ex.Equation, ex.Inequation)
+ORDERING = (ex.LessThan, ex.LessOrEqual, ex.GreaterThan, ex.GreaterOrEqual)
+_ARITHMETIC = (ex.Addition, ex.Subtraction, ex.Multiplication)
+
+
+def declared_type(data_type: rsc.DataType | None) -> Type:
+    """The type that a declaration names; UNKNOWN where it is missing or its name is unresolved."""
+    if isinstance(data_type, rsc.Array):
+        return ArrayType(declared_type(data_type.type))
+    if isinstance(data_type, rsc.ComplexDataTypeReference):
+        definition = data_type.type
+        if isinstance(definition, rsc.ObjectDataType):
+            return ObjectType(definition)
+        return EnumType(definition) if isinstance(definition, rsc.EnumDataType) else UNKNOWN
+    return UNKNOWN if data_type is None else _BASIC[type(data_type)]
+
+
+def event_data_type(communication: rsc.CommunicationType | None, result_type: rsc.ResultType) -> Type | None:
+    """The type of the data that an event of a communication carries to the component, which `value` reads.
+
+    None for the events without data: requests, errors and cancels. UNKNOWN for an event that the communication does
+    not have (the rule `result-type`) and where the communication is unresolved.
+    """
+    event = str(result_type)
+    match communication:
+        case rsc.Message():
+            if event == "request" and str(communication.direction) == "incoming":
+                return None
+            return declared_type(communication.type) if event == "response" else UNKNOWN
+        case rsc.Service():
+            if event in {"request", "error"}:
+                return None
+            return declared_type(communication.responseType) if event == "response" else UNKNOWN
+        case rsc.Action():
+            if event in {"request", "error", "cancel"}:
+                return None
+            return declared_type(communication.responseType if event == "response" else communication.feedbackType)
+    return UNKNOWN
+
+
+def provided_data_type(communication: rsc.CommunicationType | None) -> Type:
+    """The type of the data that goes out with a communication: a message's, or that of a request.
+
+    UNKNOWN where nothing goes out (an outgoing message is the component's own, the rule `data-provisioning`) and where
+    the communication is unresolved.
+    """
+    match communication:
+        case rsc.Message():
+            return declared_type(communication.type) if str(communication.direction) == "incoming" else UNKNOWN
+        case rsc.Service() | rsc.Action():
+            return declared_type(communication.requestType)
+    return UNKNOWN
+
+
+def value_type(element: ex.Located) -> Type | None:
+    """What `value` stands for at a place in the model; None where there is no `value`.
+
+    Inside an enum it is the enum's source, inside a transition the data of its event.
+    """
+    around = element
+    while around is not None:
+        if isinstance(around, rsc.EnumDataType):
+            return declared_type(around.type)
+        if isinstance(around, rsc.ResultTransition):
+            reference: rsc.CommunicationReference | None = around.communicationType
+            return event_data_type(reference.communicationType if reference else None, around.resultType)
+        around = around.eContainer()
+    return None
+
+
+def is_number(each: Type) -> bool:
+    """Whether it is an integer or a double."""
+    return each in {INTEGER, DOUBLE}
+
+
+def operator_type(operator: ex.Expression, *operands: Type) -> Type:
+    """The type of an operator's value, given its operands' types; as good as known even if an operand is wrong."""
+    match operator:
+        case ex.Division():
+            return DOUBLE
+        case ex.UnaryMinus():
+            return operands[0] if is_number(operands[0]) else UNKNOWN
+        case _ if not isinstance(operator, _ARITHMETIC):
+            return BOOLEAN
+    if not all(is_number(each) or each == UNKNOWN for each in operands):
+        return UNKNOWN
+    if DOUBLE in operands:
+        return DOUBLE
+    return UNKNOWN if UNKNOWN in operands else INTEGER
+
+
+def item_type(item: rsc.AccessibleItem | None) -> Type:
+    """The type of what a name stands for: a state is a boolean; a bare component has no value and is UNKNOWN."""
+    match item:
+        case rsc.State():
+            return BOOLEAN
+        case rsc.Variable():
+            return declared_type(item.type)
+        case rsc.EnumValue():
+            return EnumType(item.eContainer().eContainer())
+    return UNKNOWN
+
+
+def segment_type(before: Type, segment: rsc.AccessSegment) -> Type:
+    """The type after one step into data of type `before`; UNKNOWN where the step can't be taken."""
+    match segment:
+        case rsc.PropertySegment():
+            return declared_type(segment.property.type) if segment.property else UNKNOWN
+        case rsc.IndexSegment() if isinstance(before, ArrayType):
+            return before.element
+    return UNKNOWN
+
+
+def access_types(access: rsc.Access, value: Type | None = None) -> list[Type]:
+    """The types along an access: of what it starts from, then after each of its segments.
+
+    `value` is the type of `value` there, None where there is none.
+    """
+    types = [(UNKNOWN if value is None else value) if access.value else item_type(access.item)]
+    for segment in access.segments:
+        types.append(segment_type(types[-1], segment))
+    return types
+
+
+def infer(expression: ex.Expression | None, value: Type | None = None) -> Type:
+    """The type of an expression (thesis table 4.1). Finds no fault: what has no type is UNKNOWN.
+
+    `value` is the type of `value` there, None where there is none. An object value takes its type from the
+    communication that it is provided to, so that on its own it is UNKNOWN.
+    """
+    match expression:
+        case rsc.Access():
+            return access_types(expression, value)[-1]
+        case ex.BinaryExpression():
+            return operator_type(expression, infer(expression.left, value), infer(expression.right, value))
+        case ex.Negation() | ex.UnaryMinus():
+            return operator_type(expression, infer(expression.operand, value))
+    return _LITERAL.get(type(expression), UNKNOWN) if expression is not None else UNKNOWN
+
+
+def type_of(expression: ex.Expression) -> Type:
+    """The type of an expression of a model, `value` understood from the place where the expression stands."""
+    return infer(expression, value_type(expression))
