@@ -1,0 +1,78 @@
+"""What a finding is: where, what, which rule, how to mend it.
+
+How findings are shown is in `as_text`, `as_json` and `as_sarif`; what their rules mean is in `rules`.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+
+class Severity(StrEnum):
+    """How much a finding matters: an error keeps the model from being used."""
+
+    ERROR = "error"
+    WARNING = "warning"
+
+
+@dataclass(frozen=True, order=True)
+class Span:
+    """A range of text, counted from 1 in lines and code points, the end exclusive."""
+
+    line: int
+    column: int
+    end_line: int
+    end_column: int
+
+    @classmethod
+    def parse(cls, source: str | None) -> Span | None:
+        """The span of a model element's `source`, with or without a file before it; None where there is none."""
+        found = re.search(r"(\d{1,9}):(\d{1,9})-(\d{1,9}):(\d{1,9})$", source or "")
+        return cls(*(int(each) for each in found.groups())) if found else None
+
+    def contains(self, other: Span) -> bool:
+        """Whether the other span lies within this one."""
+        starts = (self.line, self.column) <= (other.line, other.column)
+        return starts and (other.end_line, other.end_column) <= (self.end_line, self.end_column)
+
+
+#: Where a finding stands that concerns a whole file.
+START = Span(1, 1, 1, 1)
+
+
+@dataclass(frozen=True)
+class Diagnostic:
+    """One finding of one rule at one place; `hint` says how to mend it."""
+
+    file: str
+    span: Span
+    severity: Severity
+    rule: str
+    message: str
+    hint: str | None = None
+
+
+class ModelError(Exception):
+    """A model that can't be used, with all that was found wrong with it."""
+
+    def __init__(self, diagnostics: Sequence[Diagnostic]) -> None:
+        self.diagnostics = list(diagnostics)
+        super().__init__("\n".join(each.message for each in self.diagnostics))
+
+
+def in_order(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
+    """Each finding once, by file, position and rule."""
+    return sorted(
+        dict.fromkeys(findings), key=lambda each: (each.file, each.span, each.rule, each.message, each.hint or "")
+    )
+
+
+def has_errors(findings: Iterable[Diagnostic]) -> bool:
+    """Whether one of the findings keeps the model from being used."""
+    return any(each.severity is Severity.ERROR for each in findings)

@@ -1,0 +1,70 @@
+"""Findings for code hosts and editors: SARIF 2.1.0 (OASIS, 2020)."""
+
+from __future__ import annotations
+
+import json
+from pathlib import PurePath
+from typing import TYPE_CHECKING, Any
+from urllib.parse import quote
+
+from robosc.diagnostics import in_order
+from robosc.diagnostics.rules import page, summary
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from robosc.diagnostics import Diagnostic
+
+_SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
+
+
+def render(findings: Iterable[Diagnostic], version: str) -> str:
+    """A SARIF log of one run by this version of the tool, with the findings in order. Ends with a line break.
+
+    Regions count columns in code points. The rules that drew a finding are described from their pages.
+    """
+    found = in_order(findings)
+    rules = sorted({each.rule for each in found})
+    run = {
+        "tool": {"driver": {"name": "robosc", "version": version, "rules": [_rule(each) for each in rules]}},
+        "columnKind": "unicodeCodePoints",
+        "results": [_result(each, rules.index(each.rule)) for each in found],
+    }
+    return json.dumps({"$schema": _SCHEMA, "version": "2.1.0", "runs": [run]}, indent=2) + "\n"
+
+
+def _rule(rule: str) -> dict[str, Any]:
+    text = page(rule)
+    if text is None:
+        return {"id": rule}
+    return {"id": rule, "shortDescription": {"text": summary(text)}, "help": {"text": text, "markdown": text}}
+
+
+def _result(finding: Diagnostic, rule_index: int) -> dict[str, Any]:
+    hint = f"\n\nHint: {finding.hint}" if finding.hint else ""
+    span = finding.span
+    return {
+        "ruleId": finding.rule,
+        "ruleIndex": rule_index,
+        "level": finding.severity.value,
+        "message": {"text": finding.message + hint},
+        "locations": [
+            {
+                "physicalLocation": {
+                    "artifactLocation": {"uri": _uri(finding.file)},
+                    "region": {
+                        "startLine": span.line,
+                        "startColumn": span.column,
+                        "endLine": span.end_line,
+                        "endColumn": span.end_column,
+                    },
+                }
+            }
+        ],
+    }
+
+
+def _uri(file: str) -> str:
+    path = PurePath(file)
+    # Undecodable bytes of a file name go out as they came in.
+    return path.as_uri() if path.is_absolute() else quote(path.as_posix().encode(errors="surrogateescape"))

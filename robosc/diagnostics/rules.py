@@ -1,0 +1,20 @@
+"""What each rule means: its page, which ships with the tool."""
+
+from __future__ import annotations
+
+from robosc.resources import locate
+
+
+def rules() -> list[str]:
+    """The identifiers of all rules that have a page, in alphabetical order."""
+    return sorted(path.stem for path in locate("docs/rules").glob("*.md"))
+
+
+def page(rule: str) -> str | None:
+    """The page of a rule in Markdown; None where there is no such rule."""
+    return locate(f"docs/rules/{rule}.md").read_text(encoding="utf-8") if rule in rules() else None
+
+
+def summary(text: str) -> str:
+    """The paragraph after a page's title, on one line."""
+    return " ".join(text.split("\n\n")[1].split())
