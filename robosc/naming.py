@@ -1,0 +1,55 @@
+"""Names in generated text: snake case, keywords escaped one-to-one, clashes resolved."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterable
+
+    from robosc.metamodel import expression as ex
+
+_WORD = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
+
+
+def snake_case(name: str) -> str:
+    """The name in lower case, underscores between its words: `LineFollower` and `lineFollower` give `line_follower`.
+
+    Not one-to-one: `AB` and `ab` give the same.
+    """
+    return _WORD.sub("_", name).lower()
+
+
+def controller_name(robot: ex.NamedElement) -> str:
+    """The name of a robot's package, node and executable: in snake case, ending in `_controller`."""
+    name = snake_case(robot.name)
+    return name if name == "controller" or name.endswith("_controller") else f"{name}_controller"
+
+
+def escape(name: str, keywords: Collection[str]) -> str:
+    """The name, with underscores behind it where a keyword differs from it in underscores at the end only.
+
+    No two names are escaped to the same, and none to a keyword: where `if` is a keyword, `if` gives `if_`, `if_`
+    gives `if__`. Everything else stays as it is.
+    """
+    stem = name.rstrip("_")
+    longest = max((len(each) for each in keywords if each.rstrip("_") == stem), default=None)
+    return name if longest is None else name + "_" * (longest - len(stem) + 1)
+
+
+class Names:
+    """The names of one scope; one that is taken gets underscores."""
+
+    def __init__(self, taken: Iterable[str] = ()) -> None:
+        self._taken = set(taken)
+
+    def fresh(self, name: str) -> str:
+        """The name itself where it is free, else the name with as few underscores behind it as make it so.
+
+        The same names in the same order give the same result. The name is taken from then on.
+        """
+        while name in self._taken:
+            name += "_"
+        self._taken.add(name)
+        return name
