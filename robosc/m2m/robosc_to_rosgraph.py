@@ -1,0 +1,372 @@
+"""From a robot model to the ROS side of its controller (thesis 5.3, table 5.3)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+from robosc.instances import Instance, InstanceVariable, Occurrence
+from robosc.m2m.constants import default_value, initial_value, literal
+from robosc.m2m.enumerations import Enumerations
+from robosc.m2m.names import Names
+from robosc.m2m.node_expressions import NodeExpressions, as_double
+from robosc.m2m.sources import source
+from robosc.m2m.trace import EVENT_OF
+from robosc.metamodel import expression as ex
+from robosc.metamodel import robosc, rosgraph, sct
+from robosc.needed import transitions
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from robosc.m2m.trace import Trace
+
+#: The wire types of basic data without `links`, all of std_msgs.
+_BASIC = {
+    robosc.BooleanDataType: "Bool",
+    robosc.IntegerDataType: "Int16",
+    robosc.DoubleDataType: "Float32",
+    robosc.StringDataType: "String",
+    robosc.NoneDataType: "Empty",
+}
+#: The field that holds a basic value.
+_FIELD = "data"
+
+
+class _Part(NamedTuple):
+    """What one event of a communication carries."""
+
+    occurrence: Occurrence
+    type: robosc.DataType
+
+
+def transform(trace: Trace) -> rosgraph.RosGraph:
+    """The ROS graph of the robot whose transformation to the sct model left this trace.
+
+    Topics, services and actions stand in the order of the text. All messages that one topic feeds with one ROS type
+    are one subscription.
+    """
+    return _Transformation(trace).run()
+
+
+class _Transformation:
+    def __init__(self, trace: Trace) -> None:
+        self.trace = trace
+        self.instances = trace.instances
+        robot = self.instances.base
+        self.graph = rosgraph.RosGraph(name=robot.name, model=trace.model, source=source(robot, robot))
+        self.interfaces: dict[tuple[str, str, str], rosgraph.Interface] = {}
+        self.variables: dict[InstanceVariable, rosgraph.NodeVariable] = {}
+        self.conversions: dict[robosc.EnumDataType, rosgraph.Conversion] = {}
+        self.enumerations = Enumerations(self.graph, trace.enumerations)
+        self.conversion_names = Names()
+        self.subscriptions: dict[tuple[str, rosgraph.Interface], rosgraph.Subscription] = {}
+        self.publishers: dict[tuple[str, rosgraph.Interface], rosgraph.Publisher] = {}
+        self.expressions = NodeExpressions(trace, self.variables, self.enumerations)
+
+    def run(self) -> rosgraph.RosGraph:
+        for instance in self.instances:
+            for definition in instance.automaton.definitions if instance.automaton else ():
+                if isinstance(definition, robosc.Variable):
+                    self.variable(InstanceVariable(instance, definition))
+        for occurrence in self.instances.occurrences():
+            if isinstance(occurrence.communication, robosc.Message):
+                self.message(occurrence, occurrence.communication)
+            elif isinstance(occurrence.communication, robosc.Service):
+                self.service(occurrence, occurrence.communication)
+            elif isinstance(occurrence.communication, robosc.Action):
+                self.action(occurrence, occurrence.communication)
+        for instance in self.instances:
+            self.reactions(instance)
+        return self.graph
+
+    # Data that the node keeps
+
+    def variable(self, owned: InstanceVariable) -> None:
+        if owned in self.trace.variables:
+            return
+        value = initial_value(owned.variable)
+        variable = rosgraph.NodeVariable(
+            name=owned.variable.name,
+            component=owned.instance.name,
+            type=self.type(owned.variable.type),
+            initial=literal(self.enumerations.literal(value) if isinstance(value, robosc.EnumValue) else value),
+            source=source(owned.variable, owned.instance.home),
+        )
+        self.variables[owned] = variable
+        self.graph.variables.append(variable)
+
+    def type(self, kind: robosc.DataType) -> ex.Type:
+        match kind:
+            case robosc.BooleanDataType():
+                return ex.BooleanType()
+            case robosc.IntegerDataType():
+                return ex.IntegerType(minimum=kind.minimum, maximum=kind.maximum)
+            case robosc.DoubleDataType():
+                return ex.DoubleType()
+            case robosc.StringDataType():
+                return ex.StringType()
+        assert isinstance(kind, robosc.ComplexDataTypeReference)
+        assert isinstance(kind.type, robosc.EnumDataType)
+        return ex.EnumerationType(enumeration=self.enumerations.enumeration(kind.type))
+
+    # Communication
+
+    def message(self, occurrence: Occurrence, message: robosc.Message) -> None:
+        topic = occurrence.instance.topic(message)
+        interface = self.interface(message, message.type, rosgraph.InterfaceKind.message)
+        where = source(message, occurrence.instance.home)
+        if message.direction == robosc.MessageDirection.outgoing:
+            subscription = self.subscriptions.get((topic, interface))
+            if subscription is None:
+                subscription = rosgraph.Subscription(topic=topic, interface=interface, source=where)
+                self.subscriptions[topic, interface] = subscription
+                self.graph.subscriptions.append(subscription)
+            part = _Part(occurrence, message.type)
+            subscription.receptions.append(self.reception(part, robosc.ResultType.response))
+        else:
+            publisher = self.publishers.get((topic, interface))
+            if publisher is None:
+                publisher = rosgraph.Publisher(topic=topic, interface=interface, source=where)
+                self.publishers[topic, interface] = publisher
+                self.graph.publishers.append(publisher)
+            publisher.sendings.append(self.sending(occurrence))
+
+    def service(self, occurrence: Occurrence, service: robosc.Service) -> None:
+        self.graph.serviceClients.append(
+            rosgraph.ServiceClient(
+                identifier=occurrence.instance.topic(service),
+                interface=self.interface(service, service.requestType, rosgraph.InterfaceKind.service),
+                request=self.sending(occurrence),
+                response=self.reception(_Part(occurrence, service.responseType), robosc.ResultType.response),
+                error=self.trace.event(occurrence, sct.EventKind.error),
+                reset=self.trace.event(occurrence, sct.EventKind.reset),
+                source=source(service, occurrence.instance.home),
+            )
+        )
+
+    def action(self, occurrence: Occurrence, action: robosc.Action) -> None:
+        self.graph.actionClients.append(
+            rosgraph.ActionClient(
+                identifier=occurrence.instance.topic(action),
+                interface=self.interface(action, action.requestType, rosgraph.InterfaceKind.action),
+                request=self.sending(occurrence),
+                feedback=self.reception(_Part(occurrence, action.feedbackType), robosc.ResultType.feedback),
+                response=self.reception(_Part(occurrence, action.responseType), robosc.ResultType.response),
+                error=self.trace.event(occurrence, sct.EventKind.error),
+                cancel=self.trace.event(occurrence, sct.EventKind.cancel),
+                reset=self.trace.event(occurrence, sct.EventKind.reset),
+                source=source(action, occurrence.instance.home),
+            )
+        )
+
+    def interface(
+        self, communication: robosc.CommunicationType, carried: robosc.DataType, kind: rosgraph.InterfaceKind
+    ) -> rosgraph.Interface:
+        linked = communication.interface
+        if linked is not None:
+            package, name = linked.package, linked.type
+        elif kind == rosgraph.InterfaceKind.service:
+            package, name = "std_srvs", "Empty"
+        else:
+            package, name = "std_msgs", _BASIC[type(_wire_type(carried))]
+        key = (package, name, kind.name)
+        if key not in self.interfaces:
+            interface = rosgraph.Interface(package=package, type=name, kind=kind)
+            interface.source = source(linked, linked.eContainer()) if linked is not None else None
+            self.interfaces[key] = interface
+            self.graph.interfaces.append(interface)
+        return self.interfaces[key]
+
+    def sending(self, occurrence: Occurrence) -> rosgraph.Sending:
+        sending = rosgraph.Sending(
+            name=occurrence.communication.name,
+            event=self.trace.event(occurrence, sct.EventKind.trigger),
+            source=source(occurrence.communication, occurrence.instance.home),
+        )
+        robot = self.instances.base
+        for statement in robot.definitions:
+            if (
+                isinstance(statement, robosc.ProvideStatement)
+                and self.instances.occurrence(statement.communicationType, None) == occurrence
+            ):
+                alternative = rosgraph.ProvidedData(
+                    location=self.trace.provided[statement], source=source(statement, robot)
+                )
+                declared = _request_type(occurrence.communication)
+                for field in self.fields(statement.data, (), declared):
+                    alternative.fields.append(field)
+                sending.alternatives.append(alternative)
+        return sending
+
+    def fields(
+        self, data: ex.Expression, path: tuple[str, ...], declared: robosc.DataType
+    ) -> list[rosgraph.FieldAssignment]:
+        if isinstance(data, robosc.ObjectValue):
+            return [
+                field
+                for each in data.properties
+                for field in self.fields(each.value, (*path, each.property.name), each.property.type)
+            ]
+        value = self.expressions(data, None)
+        return [
+            rosgraph.FieldAssignment(
+                path=list(path or (_FIELD,)),
+                type=self.type(declared),
+                value=as_double(value) if isinstance(declared, robosc.DoubleDataType) else value,
+                source=source(data, self.instances.base),
+            )
+        ]
+
+    # Data that comes in
+
+    def reception(self, part: _Part, result_type: robosc.ResultType) -> rosgraph.Reception:
+        occurrence = part.occurrence
+        reception = rosgraph.Reception(
+            name=occurrence.communication.name,
+            event=self.trace.event(occurrence, EVENT_OF[result_type.name]),
+            source=source(occurrence.communication, occurrence.instance.home),
+        )
+        for data, declared in self.trace.inputs.items():
+            if data.occurrence == occurrence and data.result_type == result_type:
+                segments = [robosc.PropertySegment(property=each) for each in data.path]
+                reception.inputs.append(rosgraph.InputAssignment(input=declared, value=self.wire(part.type)(segments)))
+        return reception
+
+    def wire(self, whole: robosc.DataType) -> Callable[[Sequence[robosc.AccessSegment]], ex.Expression]:
+        """What `value` with its segments means where the ROS message carries data of this type."""
+
+        def access(segments: Sequence[robosc.AccessSegment]) -> ex.Expression:
+            steps, reached = _steps(segments, whole)
+            if not isinstance(_wire_type(whole), robosc.ComplexDataTypeReference):
+                steps.insert(0, rosgraph.FieldStep(name=_FIELD))
+            if isinstance(reached, robosc.ComplexDataTypeReference) and isinstance(reached.type, robosc.EnumDataType):
+                conversion = self.conversion(reached.type)
+                argument = rosgraph.WireAccess(steps=steps, type=self.basic_type(reached.type.type))
+                return rosgraph.ConversionCall(conversion=conversion, argument=argument)
+            return rosgraph.WireAccess(steps=steps, type=self.basic_type(reached))
+
+        return access
+
+    def basic_type(self, kind: robosc.DataType) -> ex.Type | None:
+        return self.type(kind) if isinstance(kind, robosc.BasicDataType) else None
+
+    def conversion(self, enum: robosc.EnumDataType) -> rosgraph.Conversion:
+        """Listing 5.13."""
+        if enum not in self.conversions:
+            home = enum.eContainer()
+            conversion = rosgraph.Conversion(
+                name=self.conversion_names.fresh(enum.name),
+                enumeration=self.enumerations.enumeration(enum),
+                default=self.enumerations.literal(default_value(enum)),
+                source=source(enum, home),
+            )
+            self.conversions[enum] = conversion
+            for rule in enum.rules:
+                if isinstance(rule, robosc.EnumTransformationRule):
+                    condition = self.expressions(rule.condition, None, self.argument(enum.type))
+                    conversion.rules.append(
+                        rosgraph.ConversionRule(
+                            condition=condition,
+                            literal=self.enumerations.literal(rule.value),
+                            source=source(rule, home),
+                        )
+                    )
+            self.graph.conversions.append(conversion)
+        return self.conversions[enum]
+
+    def argument(self, whole: robosc.DataType) -> Callable[[Sequence[robosc.AccessSegment]], ex.Expression]:
+        """What `value` with its segments means in the rules of an enum over this type."""
+
+        def access(segments: Sequence[robosc.AccessSegment]) -> ex.Expression:
+            steps, reached = _steps(segments, whole)
+            if isinstance(reached, robosc.ComplexDataTypeReference) and isinstance(reached.type, robosc.EnumDataType):
+                nested = rosgraph.WireAccess(steps=steps, type=self.basic_type(reached.type.type))
+                return rosgraph.ConversionCall(conversion=self.conversion(reached.type), argument=nested)
+            return rosgraph.WireAccess(steps=steps, type=self.basic_type(reached))
+
+        return access
+
+    # What events change in the node
+
+    def reactions(self, instance: Instance) -> None:
+        assert instance.automaton is not None or not list(transitions(instance))
+        for transition, state in transitions(instance):
+            assignments = [
+                each
+                for each in transition.assignments
+                if self.instances.variable(each.item, instance) in self.variables
+            ]
+            if not assignments:
+                continue
+            event, data = self.event_and_data(transition, instance)
+            places = self.trace.behaviours[instance].locations
+            reaction = rosgraph.Reaction(
+                event=event,
+                locations=list(places) if state is None else [self.trace.locations[instance, state]],
+                source=source(transition, instance.home),
+            )
+            for each in assignments:
+                owned = self.instances.variable(each.item, instance)
+                assert owned is not None
+                variable = self.variables[owned]
+                value = self.expressions(each.value, instance, data)
+                reaction.assignments.append(
+                    rosgraph.NodeAssignment(variable=variable, value=value, source=source(each, instance.home))
+                )
+            self.graph.reactions.append(reaction)
+
+    def event_and_data(
+        self, transition: robosc.Transition, instance: Instance
+    ) -> tuple[sct.Event, Callable[[Sequence[robosc.AccessSegment]], ex.Expression] | None]:
+        if isinstance(transition, robosc.TauTransition):
+            return self.trace.taus[instance, transition], None
+        assert isinstance(transition, robosc.ResultTransition)
+        occurrence = self.instances.occurrence(transition.communicationType, instance)
+        assert occurrence is not None
+        event = self.trace.event(occurrence, EVENT_OF[transition.resultType.name])
+        carried = _received_type(occurrence.communication, transition.resultType)
+        return event, None if carried is None else self.wire(carried)
+
+
+def _wire_type(kind: robosc.DataType) -> robosc.DataType:
+    """An enum has the wire type of its base."""
+    if isinstance(kind, robosc.ComplexDataTypeReference) and isinstance(kind.type, robosc.EnumDataType):
+        return _wire_type(kind.type.type)
+    return kind
+
+
+def _steps(
+    segments: Sequence[robosc.AccessSegment], whole: robosc.DataType
+) -> tuple[list[rosgraph.WireStep], robosc.DataType]:
+    """The steps into ROS data that segments mean, and the type of what they reach."""
+    steps: list[rosgraph.WireStep] = []
+    reached = whole
+    for segment in segments:
+        if isinstance(segment, robosc.PropertySegment):
+            steps.append(rosgraph.FieldStep(name=segment.property.name))
+            reached = segment.property.type
+        else:
+            assert isinstance(segment, robosc.IndexSegment)
+            assert isinstance(reached, robosc.Array)
+            steps.append(rosgraph.IndexStep(index=segment.index))
+            reached = reached.type
+    return steps, reached
+
+
+def _request_type(communication: robosc.CommunicationType) -> robosc.DataType:
+    if isinstance(communication, robosc.Message):
+        return communication.type
+    assert isinstance(communication, (robosc.Service, robosc.Action))
+    return communication.requestType
+
+
+def _received_type(communication: robosc.CommunicationType, result_type: robosc.ResultType) -> robosc.DataType | None:
+    """The data that an event of a communication brings; None for the events that bring none."""
+    if result_type == robosc.ResultType.feedback and isinstance(communication, robosc.Action):
+        return communication.feedbackType
+    if result_type != robosc.ResultType.response:
+        return None
+    if isinstance(communication, robosc.Message):
+        return communication.type
+    assert isinstance(communication, (robosc.Service, robosc.Action))
+    return communication.responseType

@@ -1,0 +1,384 @@
+"""From a robot model to plants and requirements: thesis 5.2 as the specification of the semantics makes it exact."""
+
+from __future__ import annotations
+
+from robosc.expressions import RoboscPrinter, conjunction, disjunction
+from robosc.instances import Instance, Instances, InstanceVariable, Occurrence
+from robosc.m2m.constants import initial_value, literal
+from robosc.m2m.enumerations import Enumerations
+from robosc.m2m.names import Names
+from robosc.m2m.sct_expressions import SctExpressions
+from robosc.m2m.sources import source
+from robosc.m2m.trace import EVENT_OF, Trace
+from robosc.metamodel import expression as ex
+from robosc.metamodel import robosc, sct
+from robosc.needed import Data, needed, transitions
+
+#: What comes from outside, or must always be possible: a component elsewhere than in the right state ignores it.
+_NEVER_BLOCKED = (sct.EventKind.response, sct.EventKind.error, sct.EventKind.feedback, sct.EventKind.cancel)
+
+
+def transform(robot: robosc.Robot) -> tuple[sct.SupervisoryControlModel, Trace]:
+    """The plants and requirements of a robot that the checks accept, and what became of what.
+
+    Plants stand in the order of the text, component by component: communication, then behaviour; data plants last.
+    Raises ModelError where a comparison of doubles ranges over too many integers.
+    """
+    return _Transformation(robot).run()
+
+
+class _Transformation:
+    def __init__(self, robot: robosc.Robot) -> None:
+        self.robot = robot
+        self.instances = Instances(robot)
+        self.model = sct.SupervisoryControlModel(name=robot.name, source=source(robot, robot))
+        self.trace = Trace(self.instances, needed(self.instances), self.model, Enumerations(self.model))
+        self.enumerations = self.trace.enumerations
+        self.expressions = SctExpressions(self.trace)
+        self.print = RoboscPrinter()
+        self.plant_names = Names()
+
+    def run(self) -> tuple[sct.SupervisoryControlModel, Trace]:
+        # Targets first, then what refers to them: a guard may name any component's state.
+        for instance in self.instances:
+            for communication in instance.communications:
+                self.communication(Occurrence(instance, communication))
+            if instance.automaton is not None:
+                self.behaviour(instance)
+        for instance in self.instances:
+            for variable in self.needed_variables(instance):
+                self.initial(variable)
+            if instance.automaton is not None:
+                self.edges(instance)
+        for occurrence in self.instances.occurrences():
+            self.data_plant(occurrence)
+        self.requirements()
+        return self.model, self.trace
+
+    # Communication
+
+    def communication(self, occurrence: Occurrence) -> None:
+        instance, communication = occurrence.instance, occurrence.communication
+        kind = type(communication).__name__.lower()
+        plant = sct.Plant(
+            name=self.plant_names.fresh(f"{kind}_{self.communication_name(occurrence)}"),
+            kind=getattr(sct.PlantKind, kind),
+            origin=f"{instance.name}.{communication.name}",
+            topic=instance.topic(communication),
+            source=source(communication, instance.home),
+        )
+        self.model.plants.append(plant)
+        self.trace.plants[occurrence] = plant
+        self.trace.origins[plant] = communication
+        if isinstance(communication, robosc.Message):
+            self.message(plant, occurrence, communication)
+        elif isinstance(communication, robosc.Service):
+            self.service(plant, occurrence)
+        else:
+            self.action(plant, occurrence)
+        self.inputs(plant, occurrence)
+
+    def communication_name(self, occurrence: Occurrence) -> str:
+        name = occurrence.communication.name
+        shared = sum(each.communication.name == name for each in self.instances.occurrences()) > 1
+        return f"{occurrence.instance.name}_{name}" if shared else name
+
+    def message(self, plant: sct.Plant, occurrence: Occurrence, message: robosc.Message) -> None:
+        """Listing 5.1."""
+        outgoing = message.direction == robosc.MessageDirection.outgoing
+        event = self.event(plant, occurrence, sct.EventKind.response if outgoing else sct.EventKind.trigger)
+        location = _location(plant, "ready", initial=True, marked=True)
+        _edge(location, event, location)
+
+    def service(self, plant: sct.Plant, occurrence: Occurrence) -> None:
+        """Listing 5.2."""
+        trigger = self.event(plant, occurrence, sct.EventKind.trigger)
+        reset = self.event(plant, occurrence, sct.EventKind.reset)
+        response = self.event(plant, occurrence, sct.EventKind.response)
+        error = self.event(plant, occurrence, sct.EventKind.error)
+        idle = _location(plant, "idle", initial=True, marked=True)
+        waiting, ready, failed = (_location(plant, name) for name in ("wait_for_response", "ready", "error"))
+        _edge(idle, trigger, waiting)
+        _edge(waiting, response, ready)
+        _edge(waiting, error, failed)
+        _edge(ready, reset, idle)
+        _edge(failed, reset, idle)
+
+    def action(self, plant: sct.Plant, occurrence: Occurrence) -> None:
+        """Listing 5.3."""
+        trigger = self.event(plant, occurrence, sct.EventKind.trigger)
+        reset = self.event(plant, occurrence, sct.EventKind.reset)
+        cancel = self.event(plant, occurrence, sct.EventKind.cancel)
+        feedback = self.event(plant, occurrence, sct.EventKind.feedback)
+        response = self.event(plant, occurrence, sct.EventKind.response)
+        error = self.event(plant, occurrence, sct.EventKind.error)
+        idle = _location(plant, "idle", initial=True, marked=True)
+        executing, ready, failed = (_location(plant, name) for name in ("executing", "ready", "error"))
+        _edge(idle, trigger, executing)
+        _edge(executing, feedback, executing)
+        _edge(executing, response, ready)
+        _edge(executing, error, failed)
+        _edge(executing, cancel, idle)
+        _edge(ready, reset, idle)
+        _edge(failed, reset, idle)
+
+    def event(self, plant: sct.Plant, occurrence: Occurrence, kind: sct.EventKind) -> sct.Event:
+        controllable = kind in (sct.EventKind.trigger, sct.EventKind.reset, sct.EventKind.cancel)
+        event = sct.Event(
+            name=f"{'c' if controllable else 'u'}_{kind.name}",
+            kind=kind,
+            controllable=controllable,
+            source=plant.source,
+        )
+        plant.events.append(event)
+        self.trace.events[occurrence, kind.name] = event
+        return event
+
+    def inputs(self, plant: sct.Plant, occurrence: Occurrence) -> None:
+        """Algorithm 1, for what is needed."""
+        names = Names()
+        for data in self.trace.needed.data:
+            if data.occurrence == occurrence:
+                kind = EVENT_OF[data.result_type.name]
+                name = "_".join([f"i_{kind.name}", *(each.name for each in data.path)])
+                declared = sct.Input(name=names.fresh(name), type=self.type(self.data_type(data)))
+                plant.inputs.append(declared)
+                self.trace.event(occurrence, kind).inputs.append(declared)
+                self.trace.inputs[data] = declared
+
+    @staticmethod
+    def data_type(data: Data) -> robosc.DataType:
+        if data.path:
+            return data.path[-1].type
+        communication = data.occurrence.communication
+        if isinstance(communication, robosc.Message):
+            return communication.type
+        assert isinstance(communication, (robosc.Service, robosc.Action))
+        if isinstance(communication, robosc.Action) and data.result_type == robosc.ResultType.feedback:
+            return communication.feedbackType
+        return communication.responseType
+
+    def type(self, kind: robosc.DataType) -> ex.Type:
+        if isinstance(kind, robosc.BooleanDataType):
+            return ex.BooleanType()
+        if isinstance(kind, robosc.IntegerDataType):
+            return ex.IntegerType(minimum=kind.minimum, maximum=kind.maximum)
+        assert isinstance(kind, robosc.ComplexDataTypeReference)
+        assert isinstance(kind.type, robosc.EnumDataType)
+        return ex.EnumerationType(enumeration=self.enumerations.enumeration(kind.type))
+
+    # Behaviour
+
+    def behaviour(self, instance: Instance) -> None:
+        """Locations, variables and silent events of section 5.2.1; the edges follow once all targets exist."""
+        assert instance.automaton is not None
+        plant = sct.Plant(
+            name=self.plant_names.fresh(f"component_{instance.name}"),
+            kind=sct.PlantKind.behaviour,
+            origin=instance.name,
+            source=source(instance.component, self.robot),
+        )
+        self.model.plants.append(plant)
+        self.trace.behaviours[instance] = plant
+        self.trace.origins[plant] = instance.component
+        names = Names()
+        for state in _states(instance):
+            location = _location(plant, names.fresh(state.name), initial=state.initial, marked=state.marked)
+            location.source = source(state, instance.home)
+            self.trace.locations[instance, state] = location
+            self.trace.origins[location] = state
+        for owned in self.needed_variables(instance):
+            variable = sct.DiscreteVariable(
+                name=names.fresh(owned.variable.name),
+                type=self.type(owned.variable.type),
+                source=source(owned.variable, instance.home),
+            )
+            plant.variables.append(variable)
+            self.trace.variables[owned] = variable
+            self.trace.origins[variable] = owned.variable
+        taus = (each for each, _ in transitions(instance) if isinstance(each, robosc.TauTransition))
+        for number, transition in enumerate(taus, start=1):
+            event = sct.Event(
+                name=names.fresh(f"c_tau{number}"),
+                kind=sct.EventKind.tau,
+                controllable=True,
+                source=source(transition, instance.home),
+            )
+            plant.events.append(event)
+            self.trace.taus[instance, transition] = event
+            self.trace.origins[event] = transition
+
+    def needed_variables(self, instance: Instance) -> list[InstanceVariable]:
+        definitions = instance.automaton.definitions if instance.automaton else ()
+        declared = (InstanceVariable(instance, each) for each in definitions if isinstance(each, robosc.Variable))
+        return [each for each in declared if each in self.trace.needed.variables]
+
+    def initial(self, owned: InstanceVariable) -> None:
+        value = initial_value(owned.variable)
+        if isinstance(value, robosc.EnumValue):
+            value = self.enumerations.literal(value)
+        self.trace.variables[owned].initial = literal(value)
+
+    def edges(self, instance: Instance) -> None:
+        everywhere = [each for each, state in transitions(instance) if state is None]
+        mentioned = [
+            event
+            for event in dict.fromkeys(self.event_of(each, instance) for each, _ in transitions(instance))
+            if event.kind in _NEVER_BLOCKED
+        ]
+        for state in _states(instance):
+            location = self.trace.locations[instance, state]
+            for transition in [*state.transitions, *everywhere]:
+                self.edge(location, transition, instance)
+            present = {edge.event for edge in location.edges}
+            for event in mentioned:
+                if event not in present:
+                    _edge(location, event, location)
+
+    def event_of(self, transition: robosc.Transition, instance: Instance) -> sct.Event:
+        """Table 5.1, and an event of its own for each tau transition."""
+        if isinstance(transition, robosc.TauTransition):
+            return self.trace.taus[instance, transition]
+        assert isinstance(transition, robosc.ResultTransition)
+        occurrence = self.instances.occurrence(transition.communicationType, instance)
+        assert occurrence is not None
+        return self.trace.event(occurrence, EVENT_OF[transition.resultType.name])
+
+    def edge(self, location: sct.Location, transition: robosc.Transition, instance: Instance) -> None:
+        target = location if transition.target is None else self.trace.locations[instance, transition.target]
+        edge = _edge(location, self.event_of(transition, instance), target)
+        edge.source = source(transition, instance.home)
+        self.trace.origins[edge] = transition
+        if isinstance(transition, robosc.TauTransition) and transition.guard is not None:
+            edge.guard = self.expressions.condition(transition.guard, instance)
+        for assignment in transition.assignments:
+            owned = self.instances.variable(assignment.item, instance)
+            if owned in self.trace.variables:
+                value = self.expressions.value(assignment.value, instance, transition)
+                edge.updates.append(
+                    sct.Update(
+                        variable=self.trace.variables[owned],
+                        value=value,
+                        source=source(assignment, instance.home),
+                    )
+                )
+
+    # Provided data
+
+    def data_plant(self, occurrence: Occurrence) -> None:
+        """Listing 5.4, with names that do not change from run to run."""
+        statements = [
+            each
+            for each in self.robot.definitions
+            if isinstance(each, robosc.ProvideStatement)
+            and self.instances.occurrence(each.communicationType, None) == occurrence
+        ]
+        if not statements:
+            return
+        plant = sct.Plant(
+            name=self.plant_names.fresh(f"data_{self.communication_name(occurrence)}"),
+            kind=sct.PlantKind.data,
+            origin=self.trace.plants[occurrence].origin,
+            source=source(statements[0], self.robot),
+        )
+        self.model.plants.append(plant)
+        steps: list[tuple[sct.Event, sct.Location, robosc.ProvideStatement | None]] = []
+        nothing = _location(plant, "none", initial=True, marked=True)
+        for number, statement in enumerate(statements, start=1):
+            location = _location(plant, f"d{number}", marked=True)
+            location.source = source(statement, self.robot)
+            steps.append((_data_event(plant, f"c_d{number}", location.source), location, statement))
+            self.trace.provided[statement] = location
+            self.trace.origins[location] = statement
+        steps.append((_data_event(plant, "c_none", plant.source), nothing, None))
+        for location in plant.locations:
+            for event, target, provided in steps:
+                edge = _edge(location, event, target)
+                edge.guard = self.none_holds(statements) if provided is None else self.holds(provided)
+
+    def holds(self, statement: robosc.ProvideStatement) -> ex.Expression | None:
+        return None if statement.condition is None else self.expressions.condition(statement.condition, None)
+
+    def none_holds(self, statements: list[robosc.ProvideStatement]) -> ex.Expression | None:
+        conditions = [self.holds(each) for each in statements]
+        if None in conditions:
+            return ex.BooleanLiteral(value=False)
+        return conjunction(ex.Negation(operand=each) for each in conditions if each is not None)
+
+    # Requirements
+
+    def requirements(self) -> None:
+        """Section 5.2.2: one for each communication named, on its trigger; and the cancelling of actions."""
+        on_action: dict[Occurrence, list[robosc.Requirement]] = {
+            each: [] for each in self.instances.occurrences() if isinstance(each.communication, robosc.Action)
+        }
+        for requirement in self.robot.definitions:
+            if not isinstance(requirement, robosc.Requirement):
+                continue
+            named = [self.instances.occurrence(each, None) for each in requirement.target.communicationTypes]
+            for occurrence in dict.fromkeys(each for each in named if each is not None):
+                self.requirement(requirement, occurrence)
+                if occurrence in on_action:
+                    on_action[occurrence].append(requirement)
+        for occurrence, requirements in on_action.items():
+            self.cancelling(occurrence, requirements)
+
+    def requirement(self, requirement: robosc.Requirement, occurrence: Occurrence) -> None:
+        disables = isinstance(requirement, robosc.DisablesRequirement)
+        name, condition = self.shown(occurrence), self.print(requirement.condition)
+        target = sct.Requirement(
+            event=self.trace.event(occurrence, sct.EventKind.trigger),
+            kind=sct.RequirementKind.disables if disables else sct.RequirementKind.needs,
+            condition=self.expressions.condition(requirement.condition, None),
+            text=f"requirement {condition} disables {name}" if disables else f"requirement {name} needs {condition}",
+            source=source(requirement, self.robot),
+        )
+        self.model.requirements.append(target)
+        self.trace.origins[target] = requirement
+
+    def cancelling(self, occurrence: Occurrence, requirements: list[robosc.Requirement]) -> None:
+        """Algorithm 2, starting at false: an action is cancelled exactly when it could not be started any more."""
+        broken: list[ex.Expression] = []
+        for requirement in requirements:
+            condition = self.expressions.condition(requirement.condition, None)
+            disables = isinstance(requirement, robosc.DisablesRequirement)
+            broken.append(condition if disables else ex.Negation(operand=condition))
+        name = self.shown(occurrence)
+        self.model.requirements.append(
+            sct.Requirement(
+                event=self.trace.event(occurrence, sct.EventKind.cancel),
+                kind=sct.RequirementKind.needs,
+                condition=disjunction(broken) or ex.BooleanLiteral(value=False),
+                text=f"{name} is cancelled where a requirement on it no longer holds"
+                if broken
+                else f"{name} is never cancelled: no requirement restricts it",
+                source=self.trace.plants[occurrence].source,
+            )
+        )
+
+    def shown(self, occurrence: Occurrence) -> str:
+        name = occurrence.communication.name
+        return f"{occurrence.instance.name}.{name}" if self.communication_name(occurrence) != name else name
+
+
+def _states(instance: Instance) -> list[robosc.State]:
+    definitions = instance.automaton.definitions if instance.automaton else ()
+    return [each for each in definitions if isinstance(each, robosc.State)]
+
+
+def _location(plant: sct.Plant, name: str, *, initial: bool = False, marked: bool = False) -> sct.Location:
+    location = sct.Location(name=name, initial=initial, marked=marked, source=plant.source)
+    plant.locations.append(location)
+    return location
+
+
+def _edge(location: sct.Location, event: sct.Event, target: sct.Location) -> sct.Edge:
+    edge = sct.Edge(event=event, target=target)
+    location.edges.append(edge)
+    return edge
+
+
+def _data_event(plant: sct.Plant, name: str, where: str | None) -> sct.Event:
+    event = sct.Event(name=name, kind=sct.EventKind.data, controllable=True, source=where)
+    plant.events.append(event)
+    return event

@@ -1,0 +1,143 @@
+"""Expressions of a robot model as expressions of its sct model."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robosc.diagnostics import START, Diagnostic, ModelError, Severity, Span
+from robosc.m2m.tabulation import TooLargeError, tabulate
+from robosc.metamodel import expression as ex
+from robosc.metamodel import robosc, sct
+from robosc.metamodel.files import path_of
+from robosc.needed import Data, property_path
+
+if TYPE_CHECKING:
+    from robosc.instances import Instance
+    from robosc.m2m.trace import Trace
+
+_COMPARISONS = (
+    ex.Equation,
+    ex.Inequation,
+    ex.LessThan,
+    ex.LessOrEqual,
+    ex.GreaterThan,
+    ex.GreaterOrEqual,
+)
+
+
+class SctExpressions:
+    """Translates the expressions that the supervisor needs; what they read is in the trace already."""
+
+    def __init__(self, trace: Trace) -> None:
+        self._trace = trace
+
+    def condition(self, expression: ex.Expression, within: Instance | None) -> ex.Expression:
+        """A guard, a requirement, or a condition of provided data; `within` is the instance whose text it is."""
+        return self._translate(expression, within, None)
+
+    def value(self, expression: ex.Expression, within: Instance, transition: robosc.Transition) -> ex.Expression:
+        """The right-hand side of an assignment of a transition, whose event's data it may read."""
+        return self._translate(expression, within, transition)
+
+    def _translate(
+        self, expression: ex.Expression, within: Instance | None, transition: robosc.Transition | None
+    ) -> ex.Expression:
+        def translate(each: ex.Expression) -> ex.Expression:
+            return self._translate(each, within, transition)
+
+        match expression:
+            case robosc.Access():
+                return self._access(expression, within, transition)
+            case ex.BooleanLiteral() | ex.IntegerLiteral() | ex.DoubleLiteral():
+                return type(expression)(value=expression.value)  # type: ignore[arg-type]
+            case ex.UnaryExpression():
+                return type(expression)(operand=translate(expression.operand))
+        assert isinstance(expression, ex.BinaryExpression)
+        translated = type(expression)(left=translate(expression.left), right=translate(expression.right))
+        if isinstance(translated, _COMPARISONS) and _has_double(translated):
+            return self._tabulate(translated, expression, within)
+        return translated
+
+    def _access(
+        self, access: robosc.Access, within: Instance | None, transition: robosc.Transition | None
+    ) -> ex.Expression:
+        instances = self._trace.instances
+        if access.value:
+            assert isinstance(transition, robosc.ResultTransition)
+            occurrence = instances.occurrence(transition.communicationType, within)
+            path = property_path(access)
+            assert occurrence is not None
+            assert path is not None
+            return sct.InputReference(input=self._trace.inputs[Data(occurrence, transition.resultType, path)])
+        if isinstance(access.item, robosc.State):
+            instance = instances.instance(access.component, within)
+            assert instance is not None
+            return sct.LocationReference(location=self._trace.locations[instance, access.item])
+        if isinstance(access.item, robosc.EnumValue):
+            return ex.EnumerationLiteralReference(literal=self._trace.enumerations.literal(access.item))
+        owned = instances.variable(access, within)
+        assert owned is not None
+        return sct.VariableReference(variable=self._trace.variables[owned])
+
+    def _tabulate(self, comparison: ex.Expression, original: ex.Expression, within: Instance | None) -> ex.Expression:
+        references = list({_declaration(each): each for each in _references(comparison)}.values())
+        try:
+            return tabulate(comparison, references, [_range(each) for each in references], _copy)
+        except TooLargeError as error:
+            home = self._trace.instances.base if within is None else within.home
+            raise ModelError(
+                [
+                    Diagnostic(
+                        file=path_of(home),
+                        span=Span.parse(original.source) or START,
+                        severity=Severity.ERROR,
+                        rule="integer-range",
+                        message=f"this comparison of doubles depends on {error}, too many to tabulate",
+                        hint="compare integers, or give the integers smaller ranges",
+                    )
+                ]
+            ) from error
+
+
+def _has_double(expression: ex.Expression) -> bool:
+    match expression:
+        case ex.DoubleLiteral() | ex.Division():
+            return True
+        case ex.BinaryExpression():
+            return _has_double(expression.left) or _has_double(expression.right)
+        case ex.UnaryExpression():
+            return _has_double(expression.operand)
+    return False
+
+
+def _references(expression: ex.Expression) -> list[ex.Expression]:
+    match expression:
+        case ex.BinaryExpression():
+            return _references(expression.left) + _references(expression.right)
+        case ex.UnaryExpression():
+            return _references(expression.operand)
+        case sct.VariableReference() | sct.InputReference():
+            return [expression]
+    return []
+
+
+def _declaration(reference: ex.Expression) -> sct.DiscreteVariable | sct.Input:
+    if isinstance(reference, sct.VariableReference):
+        return reference.variable
+    assert isinstance(reference, sct.InputReference)
+    return reference.input
+
+
+def _copy(reference: ex.Expression) -> ex.Expression:
+    if isinstance(reference, sct.VariableReference):
+        return sct.VariableReference(variable=reference.variable)
+    assert isinstance(reference, sct.InputReference)
+    return sct.InputReference(input=reference.input)
+
+
+def _range(reference: ex.Expression) -> range:
+    kind = _declaration(reference).type
+    assert isinstance(kind, ex.IntegerType)
+    assert kind.minimum is not None
+    assert kind.maximum is not None
+    return range(kind.minimum, kind.maximum + 1)

@@ -1,0 +1,48 @@
+"""What became of each element of a robot model, and where each element of an sct model comes from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from robosc.metamodel import sct
+
+if TYPE_CHECKING:
+    from robosc.instances import Instance, Instances, InstanceVariable, Occurrence
+    from robosc.m2m.enumerations import Enumerations
+    from robosc.metamodel import expression as ex
+    from robosc.metamodel import robosc
+    from robosc.needed import Data, Needed
+
+
+#: Table 5.1: the plant's event that a result type means.
+EVENT_OF = {
+    "request": sct.EventKind.trigger,
+    "response": sct.EventKind.response,
+    "error": sct.EventKind.error,
+    "feedback": sct.EventKind.feedback,
+    "cancel": sct.EventKind.cancel,
+}
+
+
+@dataclass
+class Trace:
+    """The links of one transformation; an element that the supervisor does not need has no target."""
+
+    instances: Instances
+    needed: Needed
+    model: sct.SupervisoryControlModel
+    enumerations: Enumerations
+    plants: dict[Occurrence, sct.Plant] = field(default_factory=dict)
+    events: dict[tuple[Occurrence, str], sct.Event] = field(default_factory=dict)
+    inputs: dict[Data, sct.Input] = field(default_factory=dict)
+    behaviours: dict[Instance, sct.Plant] = field(default_factory=dict)
+    locations: dict[tuple[Instance, robosc.State], sct.Location] = field(default_factory=dict)
+    taus: dict[tuple[Instance, robosc.TauTransition], sct.Event] = field(default_factory=dict)
+    variables: dict[InstanceVariable, sct.DiscreteVariable] = field(default_factory=dict)
+    provided: dict[robosc.ProvideStatement, sct.Location] = field(default_factory=dict)
+    origins: dict[ex.Located, ex.Located] = field(default_factory=dict)
+
+    def event(self, occurrence: Occurrence, kind: sct.EventKind) -> sct.Event:
+        """The event of that kind of a communication; KeyError where its kind of communication has none."""
+        return self.events[occurrence, kind.name]
