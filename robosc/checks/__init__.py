@@ -1,1 +1,50 @@
-"""The rules of the language, one file a rule or a small family of rules."""
+"""The rules that a model must follow beyond its syntax (thesis 4.5): one small module a rule or family.
+
+A new rule is a new module in this folder with a function decorated by `rule`, a page in `docs/rules`, and models in
+`tests/checks`.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from pkgutil import iter_modules
+from typing import TYPE_CHECKING
+
+from robosc.checks.libraries import reachable
+from robosc.checks.rule import RULES
+from robosc.diagnostics import Diagnostic, in_order
+from robosc.metamodel.files import path_of
+from robosc.metamodel.places import place
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from robosc.diagnostics import Span
+    from robosc.metamodel import robosc as rsc
+
+for _module in iter_modules(__path__):
+    import_module(f"{__name__}.{_module.name}")
+
+
+def check(base: rsc.Base, known: Iterable[Diagnostic] = ()) -> list[Diagnostic]:
+    """All breaches of rules in a robot or library and in every library that its imports reach, in order.
+
+    `known` are the findings from reading the text: a rule that concludes something from what is absent keeps silent
+    where text could not be read or a name not be resolved. They are not repeated in the answer.
+    """
+    unread: dict[str, list[Span]] = {}
+    for each in known:
+        unread.setdefault(each.file, []).append(each.span)
+    findings: list[Diagnostic] = []
+    for each_base in [base, *reachable(base)]:
+        findings += _findings(each_base, unread.get(path_of(each_base), []))
+    return in_order(findings)
+
+
+def _findings(base: rsc.Base, unread: Iterable[Span]) -> Iterator[Diagnostic]:
+    file = path_of(base)
+    for rule in RULES.values():
+        for each in rule.check(base):
+            if each.relies_on is None or not any(place(each.relies_on)[1].contains(span) for span in unread):
+                span = place(each.element)[1]
+                yield Diagnostic(file, span, rule.severity, rule.id, each.message, each.hint)

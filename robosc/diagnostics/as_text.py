@@ -43,7 +43,7 @@ def summary(findings: Iterable[Diagnostic]) -> str:
 
 
 def _render(finding: Diagnostic, lines: list[str], paint: Callable[[Part, str], str]) -> str:
-    place = f"{finding.file}:{finding.span.line}:{finding.span.column}:"
+    place = f"{_safe(finding.file)}:{finding.span.line}:{finding.span.column}:"
     severity: Part = "error" if finding.severity is Severity.ERROR else "warning"
     head = f"{paint('place', place)} {paint(severity, f'{severity}:')}"
     shown = [f"{head} {_safe(finding.message)} {paint('rule', f'[{finding.rule}]')}"]
@@ -69,8 +69,8 @@ def underlined(finding: Diagnostic, line: str) -> tuple[str, str]:
     # A combining character belongs to the one before it: it neither starts nor ends an underline.
     while 0 < start < len(line) and unicodedata.combining(line[start]):
         start -= 1
-    left = len(_cells(line[:start]))
-    width = len(_cells(line[:end])) - left
+    left = _columns(line[:start])
+    width = _columns(line[:end]) - left
     return _shown(line).rstrip(), " " * left + "^" * max(width, 1)
 
 
@@ -88,6 +88,5 @@ def _safe(text: str) -> str:
     return _UNPRINTABLE.sub("\N{REPLACEMENT CHARACTER}", text)
 
 
-def _cells(text: str) -> str:
-    """As many blanks as the text takes columns."""
-    return " " * cell_len(_shown(text))
+def _columns(text: str) -> int:
+    return cell_len(_shown(text))

@@ -1,0 +1,236 @@
+"""Finds what is wrong with the types in one expression, each fault once, where it is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from typing import TYPE_CHECKING
+
+from robosc.checks.rule import Finding
+from robosc.checks.type_repairs import equality_repair, repair
+from robosc.metamodel import expression as ex
+from robosc.metamodel import robosc as rsc
+from robosc.typing import (
+    BOOLEAN,
+    DOUBLE,
+    EQUALITY,
+    INTEGER,
+    LOGICAL,
+    STRING,
+    UNKNOWN,
+    ArrayType,
+    EnumType,
+    ObjectType,
+    Type,
+    access_types,
+    declared_type,
+    infer,
+    is_number,
+    operator_type,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+_SYMBOL: Mapping[type[ex.Expression], str] = {
+    ex.Implication: "=>",
+    ex.Disjunction: "or",
+    ex.Conjunction: "and",
+    ex.Equation: "=",
+    ex.Inequation: "!=",
+    ex.LessThan: "<",
+    ex.LessOrEqual: "<=",
+    ex.GreaterThan: ">",
+    ex.GreaterOrEqual: ">=",
+    ex.Addition: "+",
+    ex.Subtraction: "-",
+    ex.Multiplication: "*",
+    ex.Division: "/",
+    ex.Negation: "!",
+    ex.UnaryMinus: "-",
+}
+
+
+class Restriction(Enum):
+    """Which names an expression may read."""
+
+    FREE = "any"
+    CONSTANT = "enum values"
+    ENUM_RULE = "`value` and enum values"
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where an expression stands: the type of `value` there, or why there is none, and which names it may read."""
+
+    value: Type | None
+    why_no_value: str = ""
+    restriction: Restriction = Restriction.FREE
+
+
+CONSTANT = Place(None, restriction=Restriction.CONSTANT)
+ENUM_RULE = Restriction.ENUM_RULE
+
+
+class ExpressionCheck:
+    """Types an expression at a place and collects what is wrong with it.
+
+    An expression with a fault of its own is unknown to what is around it, so that no fault draws a second finding.
+    """
+
+    def __init__(self, place: Place) -> None:
+        self.place = place
+        self.findings: list[Finding] = []
+
+    def expect(self, expression: ex.Expression | None, wanted: Type, what: str) -> None:
+        """Demands that the expression has exactly this type; `what` says what it is for."""
+        found = self.type(expression)
+        if expression is not None and UNKNOWN not in {found, wanted} and found != wanted:
+            wants, finds = names(wanted, found)
+            self.report(expression, f"{what} must be {wants}, found {finds}", repair(expression, found, wanted))
+
+    def provided(self, value: ex.Expression | None, wanted: Type, what: str) -> None:
+        """Demands that provided data has this type; of an object value each property has its own."""
+        if not isinstance(value, rsc.ObjectValue):
+            self.expect(value, wanted, what)
+            return
+        if wanted != UNKNOWN and not isinstance(wanted, ObjectType):
+            self.report(value, f"{what} must be {wanted}, found an object value", repair(value, UNKNOWN, wanted))
+        for each in value.properties:
+            name = f"the value of property `{each.property.name}`" if each.property else "the value"
+            self.provided(each.value, declared_type(each.property.type) if each.property else UNKNOWN, name)
+
+    def type(self, expression: ex.Expression | None) -> Type:
+        """The type of the expression, UNKNOWN if it has a fault itself; what is wrong within it is reported."""
+        match expression:
+            case rsc.Access():
+                return self._access(expression)
+            case ex.BinaryExpression():
+                return self._operator(expression, expression.left, expression.right)
+            case ex.Negation() | ex.UnaryMinus():
+                return self._operator(expression, expression.operand)
+            case rsc.ObjectValue():
+                self.report(
+                    expression,
+                    "an object value stands in an expression, expected a value of a basic type or an enum",
+                    "provide objects as a whole or as the value of a property",
+                )
+        return infer(expression)
+
+    def report(self, element: ex.Located, message: str, hint: str) -> None:
+        """Notes a finding."""
+        self.findings.append(Finding(element, message, hint))
+
+    def _operator(self, operator: ex.Expression, *operands: ex.Expression | None) -> Type:
+        types = [self.type(each) for each in operands]
+        if isinstance(operator, EQUALITY):
+            self._equality(operator, types)
+        else:
+            logical = isinstance(operator, LOGICAL)
+            wants = "boolean" if logical else "integer or double"
+            for operand, found in zip(operands, types, strict=True):
+                fits = found == BOOLEAN if logical else is_number(found)
+                if operand is not None and not fits and found != UNKNOWN:
+                    self.report(
+                        operand,
+                        f"an operand of `{_SYMBOL[type(operator)]}` must be {wants}, found {found}",
+                        repair(operand, found, BOOLEAN if logical else DOUBLE),
+                    )
+        return operator_type(operator, *types)
+
+    def _equality(self, operator: ex.Equation | ex.Inequation, types: list[Type]) -> None:
+        symbol = _SYMBOL[type(operator)]
+        operands = (operator.left, operator.right)
+        comparable = [
+            each in {BOOLEAN, INTEGER, DOUBLE, STRING, UNKNOWN} or isinstance(each, EnumType) for each in types
+        ]
+        for operand, found, fits in zip(operands, types, comparable, strict=True):
+            if not fits:
+                self.report(
+                    operand,
+                    f"an operand of `{symbol}` must be boolean, integer, double, string or an enum, found {found}",
+                    repair(operand, found, UNKNOWN),
+                )
+        left, right = types
+        if all(comparable) and UNKNOWN not in types and left != right:
+            finds = " and ".join(names(left, right))
+            place, hint = equality_repair(operator, left, right)
+            self.report(place, f"both sides of `{symbol}` must have one type, found {finds}", hint)
+
+    def _access(self, access: rsc.Access) -> Type:
+        refusal = self._refusal(access)
+        if refusal:
+            self.report(access, *refusal)
+            return UNKNOWN
+        types = access_types(access, self.place.value)
+        for before, segment in zip(types, access.segments, strict=False):
+            if isinstance(segment, rsc.IndexSegment) and not isinstance(before, ArrayType) and before != UNKNOWN:
+                self.report(
+                    segment,
+                    f"the index `[{segment.index}]` must follow an array, found {before}",
+                    f"leave `[{segment.index}]` out",
+                )
+                return UNKNOWN
+        return types[-1]
+
+    def _refusal(self, access: rsc.Access) -> tuple[str, str] | None:
+        """Why this can't be read here, and the repair; None where it can."""
+        item, restriction = access.item, self.place.restriction
+        if restriction is Restriction.CONSTANT and (access.value or (item and not isinstance(item, rsc.EnumValue))):
+            return (
+                f"an initial value must be a constant, found {_describe(access)}",
+                "use literals, operators and enum values; a transition can assign the rest",
+            )
+        if restriction is Restriction.ENUM_RULE and item and not isinstance(item, rsc.EnumValue):
+            return (
+                f"an enum rule reads `value`, literals and enum values only, found {_describe(access)}",
+                "compare `value` with literals; requirements and guards can combine the enum with the rest",
+            )
+        if access.value and self.place.value is None:
+            return (
+                f"`value` can't be read here: {self.place.why_no_value}",
+                "store it in a variable by `on response from … do variable := value`, and read the variable",
+            )
+        if isinstance(item, rsc.Component):
+            members = [f"`{item.name}.{each}`" for each in _members(item)]
+            return (
+                f"component `{item.name}` has no value of its own, expected one of its states or variables",
+                f"write {' or '.join(members[:3])}" if members else f"`{item.name}` has neither: leave it out",
+            )
+        return None
+
+
+def names(first: Type, second: Type) -> tuple[str, str]:
+    """Two different types as a message names them, with their libraries where their names alone are equal."""
+    if str(first) == str(second):
+        return _with_home(first), _with_home(second)
+    return str(first), str(second)
+
+
+def _with_home(each: Type) -> str:
+    if not isinstance(each, (EnumType, ObjectType)):
+        return str(each)
+    home = each.definition.eContainer()
+    return f"{each} of {type(home).__name__.lower()} {home.name}" if home else str(each)
+
+
+def _describe(access: rsc.Access) -> str:
+    if access.value or access.item is None:
+        return "`value`"
+    return f"{type(access.item).__name__.lower()} `{access.item.name}`"
+
+
+def _members(component: rsc.Component) -> list[str]:
+    local, seen = component, {component}
+    while isinstance(local.type, rsc.ImportedComponent) and local.type.definition not in seen:
+        local = local.type.definition
+        seen.add(local)
+        if local is None:
+            return []
+    if not isinstance(local.type, rsc.LocalComponent):
+        return []
+    behaviours = (each for each in local.type.definitions if isinstance(each, rsc.ComponentBehaviour))
+    automata = [each.automaton for each in behaviours if each.automaton]
+    return [
+        each.name for automaton in automata for each in automaton.definitions if isinstance(each, rsc.AccessibleItem)
+    ]

@@ -1,0 +1,59 @@
+"""What a rule is, and the register of all of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, TypeAlias
+
+from robosc.diagnostics import Severity
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from robosc.metamodel import expression as ex
+    from robosc.metamodel import robosc as rsc
+
+
+@dataclass(frozen=True)
+class Finding:
+    """What a rule found at an element of the model.
+
+    `relies_on` is an element that must be free of syntax errors and unresolved names for the finding to be true: what
+    is concluded from something being absent.
+    """
+
+    element: ex.Located
+    message: str
+    hint: str
+    relies_on: ex.Located | None = None
+
+
+Check: TypeAlias = "Callable[[rsc.Base], Iterator[Finding]]"
+
+
+@dataclass(frozen=True)
+class Rule:
+    """A rule: its identifier, its severity, and what looks for breaches of it in one robot or library."""
+
+    id: str
+    severity: Severity
+    check: Check
+
+
+#: All rules by identifier, once their modules are imported.
+RULES: dict[str, Rule] = {}
+
+
+def rule(identifier: str, severity: Severity = Severity.ERROR) -> Callable[[Check], Check]:
+    """Registers a function as the check of a rule; the rule's page is `docs/rules/<identifier>.md`.
+
+    The function is called with a robot or a library, partly linked perhaps, and yields the findings in it; libraries
+    that it imports are checked by themselves.
+    """
+
+    def register(check: Check) -> Check:
+        assert identifier not in RULES, f"two checks for the rule {identifier}"
+        RULES[identifier] = Rule(identifier, severity, check)
+        return check
+
+    return register

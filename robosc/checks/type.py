@@ -1,0 +1,91 @@
+"""`type` (thesis 4.5.11, table 4.1): where expressions stand in a model, and which type each must have there."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robosc.checks.automata import behaviours, transitions
+from robosc.checks.expression_types import CONSTANT, ENUM_RULE, ExpressionCheck, Place
+from robosc.checks.rule import Finding, rule
+from robosc.metamodel import robosc as rsc
+from robosc.typing import BOOLEAN, NONE, UNKNOWN, ArrayType, ObjectType, Type, declared_type, provided_data_type
+from robosc.typing import value_type as value_type_in
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from robosc.metamodel import expression as ex
+
+_GUARD = Place(None, "a guard reads what the component remembers, and `value` is the data of one event")
+_REQUIREMENT = Place(None, "a requirement reads what components remember, and `value` is the data of one event")
+_PROVIDE = Place(None, "provided data is read from what components remember, and `value` is the data of one event")
+_SILENT = Place(None, "a silent transition has no event that could carry data")
+
+
+@rule("type")
+def types(base: rsc.Base) -> Iterator[Finding]:
+    """Every expression has the type that its place wants, and its operators the operands that they want."""
+    for definition in base.definitions:
+        match definition:
+            case rsc.EnumDataType():
+                yield from _enum(definition)
+            case rsc.Requirement():
+                yield from _boolean(definition.condition, "the condition of a requirement", _REQUIREMENT)
+            case rsc.ProvideStatement():
+                yield from _provide(definition)
+    for _, behaviour in behaviours(base):
+        for each in behaviour.automaton.definitions:
+            if isinstance(each, rsc.Variable) and each.initial:
+                check = ExpressionCheck(CONSTANT)
+                check.expect(each.initial, _variable_type(each), f"the initial value of `{each.name}`")
+                yield from check.findings
+        for transition in transitions(behaviour.automaton):
+            yield from _transition(transition)
+
+
+def _enum(enum: rsc.EnumDataType) -> Iterator[Finding]:
+    place = Place(declared_type(enum.type), restriction=ENUM_RULE)
+    for each in enum.rules:
+        if isinstance(each, rsc.EnumTransformationRule):
+            yield from _boolean(each.condition, "the condition of an enum rule", place)
+
+
+def _provide(statement: rsc.ProvideStatement) -> Iterator[Finding]:
+    communication = statement.communicationType.communicationType if statement.communicationType else None
+    check = ExpressionCheck(_PROVIDE)
+    what = f"the data of `{communication.name}`" if communication else "the data"
+    check.provided(statement.data, provided_data_type(communication), what)
+    yield from check.findings
+    yield from _boolean(statement.condition, "the condition of a provide statement", _PROVIDE)
+
+
+def _transition(transition: rsc.Transition) -> Iterator[Finding]:
+    place = _SILENT
+    if isinstance(transition, rsc.TauTransition):
+        yield from _boolean(transition.guard, "a guard", _GUARD)
+    elif isinstance(transition, rsc.ResultTransition):
+        place = Place(value_type_in(transition), f"the event `{transition.resultType}` carries no data to a component")
+    for assignment in transition.assignments:
+        # Any other target is the matter of `assignment-scope`.
+        variable = assignment.item.item if assignment.item else None
+        check = ExpressionCheck(place)
+        if isinstance(variable, rsc.Variable):
+            check.type(assignment.item)
+            wanted = UNKNOWN if assignment.item.segments else _variable_type(variable)
+            check.expect(assignment.value, wanted, f"a value for `{variable.name}`")
+        else:
+            check.type(assignment.value)
+        yield from check.findings
+
+
+def _variable_type(variable: rsc.Variable) -> Type:
+    """What a variable holds; what no variable can hold is the matter of `variable-type`."""
+    declared = declared_type(variable.type)
+    return UNKNOWN if declared == NONE or isinstance(declared, (ArrayType, ObjectType)) else declared
+
+
+def _boolean(condition: ex.Expression | None, what: str, place: Place) -> Iterator[Finding]:
+    if condition is not None:
+        check = ExpressionCheck(place)
+        check.expect(condition, BOOLEAN, what)
+        yield from check.findings

@@ -1,0 +1,108 @@
+"""What to write in place of an expression of the wrong type."""
+
+from __future__ import annotations
+
+from robosc.metamodel import expression as ex
+from robosc.typing import (
+    BOOLEAN,
+    DOUBLE,
+    INTEGER,
+    NONE,
+    STRING,
+    ArrayType,
+    BasicType,
+    EnumType,
+    ObjectType,
+    Type,
+    declared_type,
+)
+
+_COMPARISON = {
+    INTEGER: "compare it, such as `… > 0`",
+    DOUBLE: "compare it, such as `… > 0.0`",
+    STRING: 'compare it, such as `… = "…"`',
+}
+_LITERALS = {BOOLEAN: "`true` or `false`", INTEGER: "a whole number such as `0`", DOUBLE: "a number such as `0.0`"}
+
+
+def repair(expression: ex.Expression, found: Type, wanted: Type) -> str:
+    """How an expression of one type becomes one of the wanted type; UNKNOWN wants any that can be compared."""
+    if isinstance(found, (ObjectType, ArrayType)) or found == NONE:
+        return _part(found, wanted)
+    match wanted:
+        case EnumType():
+            return f"write one of its values: {_alternatives(wanted)}"
+        case ObjectType():
+            first = next(iter(wanted.definition.properties), None)
+            return f"write an object value, such as `{{ {first.name}: … }}`" if first else "write `{}`"
+        case ArrayType():
+            return "leave it out: there is no way to write an array"
+        case BasicType.NONE:
+            return "leave the provide statement out: there is no data to send along"
+    return literal_repair(expression, found, wanted) or _conversion(expression, found, wanted)
+
+
+def literal_repair(expression: ex.Expression, found: Type, wanted: Type) -> str | None:
+    """The literal of the wanted type that means the same, as a repair; None where there is none."""
+    inner = expression.operand if isinstance(expression, ex.UnaryMinus) else expression
+    sign = "" if inner is expression else "-"
+    text = None
+    match inner, wanted:
+        case ex.IntegerLiteral(), BasicType.DOUBLE:
+            text = f"{sign}{inner.value}.0"
+        case ex.DoubleLiteral(), BasicType.INTEGER if inner.value.is_integer():
+            text = f"{sign}{int(inner.value)}"
+        case ex.IntegerLiteral() | ex.DoubleLiteral(), BasicType.STRING:
+            text = f'"{sign}{inner.value}"'
+        case ex.BooleanLiteral(), BasicType.STRING:
+            text = f'"{str(inner.value).lower()}"'
+        case ex.IntegerLiteral(), BasicType.BOOLEAN if inner.value in {0, 1}:
+            text = str(bool(inner.value)).lower()
+        case ex.StringLiteral(), BasicType.BOOLEAN if inner.value in {"true", "false"}:
+            text = inner.value
+    return f"write `{text}`" if text is not None and found != wanted else None
+
+
+def equality_repair(operator: ex.Equation | ex.Inequation, left: Type, right: Type) -> tuple[ex.Expression, str]:
+    """Where and how to mend a comparison of two types: at a literal that can be rewritten, else as a whole."""
+    sides = ((operator.right, right, left), (operator.left, left, right))
+    for expression, found, wanted in sides:
+        literal = literal_repair(expression, found, wanted)
+        if literal:
+            return expression, literal
+    for _, found, wanted in sides:
+        if isinstance(wanted, EnumType):
+            return operator, f"compare with one of {_alternatives(wanted)}"
+        if {found, wanted} == {INTEGER, DOUBLE}:
+            return operator, "multiply the integer by `1.0`, or compare by `<`, `<=`, `>` or `>=`"
+    return operator, f"compare {left} with {left}, or {right} with {right}"
+
+
+def _part(found: Type, wanted: Type) -> str:
+    if isinstance(found, ArrayType):
+        return "read one of its elements, such as `…[0]`"
+    if not isinstance(found, ObjectType):
+        return "leave it out: this event carries no data"
+    properties = list(found.definition.properties)
+    fitting = [each for each in properties if declared_type(each.type) == wanted] or properties
+    return f"read one of its properties, such as `….{fitting[0].name}`" if fitting else "it has no property to read"
+
+
+def _conversion(expression: ex.Expression, found: Type, wanted: Type) -> str:
+    if wanted == BOOLEAN:
+        if isinstance(found, EnumType):
+            return f"compare it with one of its values: {_alternatives(found)}"
+        return _COMPARISON[found] if isinstance(found, BasicType) else "compare it"
+    if (found, wanted) == (INTEGER, DOUBLE):
+        return "multiply it by `1.0`"
+    if (found, wanted) == (DOUBLE, INTEGER):
+        why = "`/` always gives a double" if isinstance(expression, ex.Division) else "a double is never rounded"
+        return f"write a whole number or declare it double: {why}"
+    if isinstance(found, EnumType):
+        return "compare an enum's values by `=` only"
+    return f"write {_LITERALS[wanted]}" if wanted in _LITERALS else 'write a string such as `"…"`'
+
+
+def _alternatives(enum: EnumType) -> str:
+    values = dict.fromkeys(each.value.name for each in enum.definition.rules if each.value)
+    return ", ".join(f"`{each}`" for each in values)

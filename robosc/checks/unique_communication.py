@@ -1,0 +1,44 @@
+"""`unique-communication` (thesis 4.5.12)."""
+
+from collections.abc import Iterator
+
+from robosc.checks.libraries import reachable
+from robosc.checks.rule import Finding, rule
+from robosc.instances import Instances, Occurrence
+from robosc.metamodel import robosc as rsc
+
+
+@rule("unique-communication")
+def unique_communication(base: rsc.Base) -> Iterator[Finding]:
+    """No two communications of a robot or library have one name, except those of instances of one component."""
+    in_libraries = [{each.communication for each in Instances(other).occurrences()} for other in reachable(base)]
+    firsts: dict[str, Occurrence] = {}
+    for second in Instances(base).occurrences():
+        if not second.communication.name:
+            continue
+        first = firsts.setdefault(second.communication.name, second)
+        pair = {first.communication, second.communication}
+        # Of two in one library, that library has the finding.
+        if len(pair) == 2 and not any(pair <= each for each in in_libraries):
+            own = second.instance.home is base
+            yield Finding(
+                second.communication if own else second.instance.component,
+                f"{_describe(second)} has the name of {_describe(first)}, expected a name of its own",
+                _repair(first, second, base),
+            )
+
+
+def _describe(occurrence: Occurrence) -> str:
+    kind = type(occurrence.communication).__name__.lower()
+    return f"{kind} `{occurrence.communication.name}` of `{occurrence.instance.name}`"
+
+
+def _repair(first: Occurrence, second: Occurrence, base: rsc.Base) -> str:
+    own = [each for each in (second, first) if each.instance.home is base]
+    if not own:
+        return "import only one of these components: names that come from libraries can't be changed here"
+    name = own[0].communication.name
+    new = f"{name}_{own[0].instance.name.lower()}"
+    topic = own[0].communication.identifier
+    keep = "" if topic else f' and add `identifier: "{name}"` to keep its topic'
+    return f"rename it in `{own[0].instance.name}`, such as `{new}`{keep}"

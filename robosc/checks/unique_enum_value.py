@@ -1,0 +1,74 @@
+"""`unique-enum-value` (thesis 4.5.12)."""
+
+from collections.abc import Iterator
+
+from robosc.checks.libraries import imports, reachable
+from robosc.checks.rule import Finding, rule
+from robosc.checks.unique_names import on_line
+from robosc.metamodel import robosc as rsc
+
+
+@rule("unique-enum-value")
+def unique_enum_value(base: rsc.Base) -> Iterator[Finding]:
+    """No two enum values of a robot or library and its imports have one name."""
+    firsts: dict[str, rsc.EnumValue] = {}
+    for value in (each for library in reachable(base) for each in enum_values(library)):
+        firsts.setdefault(value.name, value)
+    for value in enum_values(base):
+        first = firsts.setdefault(value.name, value)
+        if first is not value:
+            yield Finding(
+                value,
+                f"{_describe(value)} has the name of {_describe(first)}{on_line(first)}, expected a name of its own",
+                _repair(value, first),
+            )
+    yield from _between_imports(base)
+
+
+def enum_values(base: rsc.Base) -> Iterator[rsc.EnumValue]:
+    """The enum values that the base itself declares, in the order of the text."""
+    for definition in base.definitions:
+        if isinstance(definition, rsc.EnumDataType):
+            for each in definition.rules:
+                if each.value and each.value.name:
+                    yield each.value
+
+
+def _between_imports(base: rsc.Base) -> Iterator[Finding]:
+    """Values of two libraries that only this base brings together; of one library's own imports it has the finding."""
+    firsts: dict[str, rsc.EnumValue] = {}
+    together = [{id(each) for each in _with_imports(library)} for library in reachable(base)]
+    once = {library: component for component, library in reversed(list(imports(base)))}
+    for library, component in reversed(once.items()):
+        for value in _with_imports(library):
+            first = firsts.setdefault(value.name, value)
+            if first is not value and not any({id(first), id(value)} <= each for each in together):
+                yield Finding(
+                    component,
+                    f"the import of `{library.name}` brings {_describe(value)}, which has the name of"
+                    f" {_describe(first)}, expected a name of its own",
+                    "import only one of these libraries: names that come from libraries can't be changed here",
+                )
+
+
+def _with_imports(library: rsc.Library) -> Iterator[rsc.EnumValue]:
+    for each in [library, *reachable(library)]:
+        yield from enum_values(each)
+
+
+def _enum(value: rsc.EnumValue) -> rsc.EnumDataType:
+    enum: rsc.EnumDataType = value.eContainer().eContainer()
+    return enum
+
+
+def _describe(value: rsc.EnumValue) -> str:
+    enum = _enum(value)
+    home = enum.eContainer()
+    library = f" in library `{home.name}`" if isinstance(home, rsc.Library) else ""
+    return f"value `{value.name}` of enum `{enum.name}`{library}"
+
+
+def _repair(value: rsc.EnumValue, first: rsc.EnumValue) -> str:
+    if _enum(value) is _enum(first):
+        return f"join the two rules by `or`, so that `{value.name}` stands once"
+    return f"rename it, such as `{value.name}_{_enum(value).name.lower()}`"

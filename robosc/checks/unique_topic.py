@@ -1,0 +1,46 @@
+"""`unique-topic` (thesis 4.5.12)."""
+
+from collections.abc import Iterator
+
+from robosc.checks.rule import Finding, rule
+from robosc.diagnostics import Severity
+from robosc.instances import Instances, Occurrence
+from robosc.metamodel import expression as ex
+from robosc.metamodel import robosc as rsc
+
+
+@rule("unique-topic", Severity.WARNING)
+def unique_topic(base: rsc.Base) -> Iterator[Finding]:
+    """No two components send messages on one topic, with or without a `/` before it."""
+    firsts: dict[str, Occurrence] = {}
+    for second in Instances(base).occurrences():
+        message = second.communication
+        if not isinstance(message, rsc.Message) or str(message.direction) != "outgoing":
+            continue
+        topic = second.instance.topic(message)
+        first = firsts.setdefault(topic.removeprefix("/"), second)
+        if first.instance is not second.instance:
+            yield Finding(
+                _place(second, base),
+                f"message `{message.name}` of `{second.instance.name}` and `{first.communication.name}` of"
+                f" `{first.instance.name}` share the topic `{topic}`, expected one each: what either component sends"
+                " arrives as both",
+                _repair(second, base),
+            )
+
+
+def _place(occurrence: Occurrence, base: rsc.Base) -> ex.Located:
+    if occurrence.instance.home is base:
+        return occurrence.communication
+    component = occurrence.instance.component
+    assert isinstance(component.type, rsc.ImportedComponent)
+    remapped = (each for each in component.type.remappings if each.communicationType is occurrence.communication)
+    return next(remapped, component)
+
+
+def _repair(occurrence: Occurrence, base: rsc.Base) -> str:
+    name, instance = occurrence.communication.name, occurrence.instance
+    topic = f"/{instance.name.lower()}/{name}"
+    if instance.home is base:
+        return f'give it a topic of its own, such as `identifier: "{topic}"`'
+    return f'give it a topic of its own, such as `with {{ {name}: "{topic}" }}` after the import'
