@@ -1,0 +1,174 @@
+"""From a parse tree to model elements: a rule makes an element of its class, an assignment sets its feature."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from robosc.expressions import PRECEDENCE
+from robosc.language.grammar import attribute
+from robosc.metamodel import expression as ex
+from robosc.metamodel import robosc as rsc
+
+if TYPE_CHECKING:
+    from robosc.diagnostics import Diagnostic
+    from robosc.language.grammar import Node
+    from robosc.language.text import Text
+
+_LARGEST = 2**63 - 1
+_ESCAPES = {"b": "\b", "t": "\t", "n": "\n", "f": "\f", "r": "\r", '"': '"', "'": "'", "\\": "\\"}
+_ESCAPE = re.compile(r"\\(u[0-9A-Fa-f]{4}|x[0-9A-Fa-f]{2}|.)")
+
+
+@dataclass(frozen=True)
+class Name:
+    """A name that refers to something, and where it stands (offsets in the text)."""
+
+    text: str
+    start: int
+    end: int
+
+
+def element_class(rule: str) -> Any | None:
+    """The class of the elements that a rule makes; None for an abstract rule and for one that only matches words."""
+    found = getattr(rsc, rule, None) or getattr(ex, rule, None)
+    eclass = getattr(found, "eClass", None)
+    return found if eclass is not None and not eclass.abstract else None
+
+
+class Builder:
+    """Makes the model of one text, or of parts of it.
+
+    References are not linked: `references` holds, in the order of the text, their names by element and feature.
+    `findings` are words that the grammar admits and that still mean nothing, such as a number too large.
+    """
+
+    def __init__(self, text: Text) -> None:
+        self.references: dict[Any, dict[str, Name]] = {}
+        self.findings: list[Diagnostic] = []
+        self._text = text
+
+    def build(self, node: Node, offset: int = 0) -> Any:
+        """The element of a parse tree, whose text starts at an offset of the file's."""
+        self._offset = offset
+        return self._build(node)
+
+    def _build(self, node: Node) -> Any:
+        rule = node.rule_name
+        if rule == "Expression":
+            return self._expression(node)
+        made = element_class(rule)
+        if made is not None:
+            return self._element(node, made)
+        return self._build(next(each for each in node if each.rule_name))
+
+    def _element(self, node: Node, made: Any) -> Any:
+        element = made(source=self._source(node.position, node.position_end))
+        for child in node if isinstance(node, list) else ():
+            feature = attribute(child)
+            if feature is not None:
+                for value in child:
+                    if value.rule_name != "sep":
+                        self._set(element, feature, value)
+        return element
+
+    def _set(self, element: Any, feature: str, node: Node) -> None:
+        definition = element.eClass.findEStructuralFeature(feature)
+        if definition.is_attribute:
+            setattr(element, feature, self._word(node))
+        elif not definition.containment:
+            start, end = node.position + self._offset, node.position_end + self._offset
+            self.references.setdefault(element, {})[feature] = Name(node.value.lstrip("^"), start, end)
+        elif definition.many:
+            getattr(element, feature).append(self._build(node))
+        else:
+            setattr(element, feature, self._build(node))
+
+    def _expression(self, node: Node) -> Any:
+        """Operands with operators between them, as a tree: an operator waits for those that bind tighter."""
+        operands = [(self._build(node[0]), node[0].position, node[0].position_end)]
+        waiting: list[Any] = []
+
+        def reduce() -> None:
+            right, _, end = operands.pop()
+            left, start, _ = operands.pop()
+            made = waiting.pop()
+            operands.append((made(left=left, right=right, source=self._source(start, end)), start, end))
+
+        for each in node[1:]:
+            operator = element_class(each[0].rule_name)
+            assert operator is not None
+            while waiting and _binds_first(waiting[-1], operator):
+                reduce()
+            waiting.append(operator)
+            operand = next(child for child in each[0] if attribute(child) == "right")[0]
+            operands.append((self._build(operand), operand.position, operand.position_end))
+        while waiting:
+            reduce()
+        return operands[0][0]
+
+    def _word(self, node: Node) -> Any:
+        """The value of a match rule; a keyword that is assigned by itself is a flag that is set."""
+        match node.rule_name:
+            case "Name" | "UnreservedName":
+                return node.value.lstrip("^")
+            case "Integer" | "SignedInteger":
+                return self._integer(node)
+            case "Double":
+                return self._double(node)
+            case "String":
+                return self._string(node)
+            case "Boolean":
+                return node.value == "true"
+            case "MessageDirection" | "ResultType":
+                return getattr(rsc, node.rule_name).getEEnumLiteral(node.value)
+        return True
+
+    def _integer(self, node: Node) -> int:
+        digits = "".join(node.value.split())
+        # Python itself refuses to read numbers of more than some thousand digits.
+        if len(digits.lstrip("-0")) > 19 or not -_LARGEST - 1 <= int(digits) <= _LARGEST:
+            self._fault(node, "an integer lies between -9223372036854775808 and 9223372036854775807")
+            return 0
+        return int(digits)
+
+    def _double(self, node: Node) -> float:
+        value = float(node.value)
+        if value == float("inf"):
+            self._fault(node, "a double is smaller than 1.8 times 10 to the power of 308")
+            return 0.0
+        return value
+
+    def _string(self, node: Node) -> str:
+        def replace(found: re.Match[str]) -> str:
+            code = found[1]
+            if len(code) > 1:
+                return chr(int(code[1:], 16))
+            if code not in _ESCAPES:
+                start = node.position + 1 + found.start()
+                self._fault(node, f"`\\{code}` means nothing in a string", "write `\\\\` for a backslash", start)
+            return _ESCAPES.get(code, code)
+
+        text = _ESCAPE.sub(replace, node.value[1:-1])
+        try:
+            # Two escapes may be the halves of one code point, as in Java; a half alone is no text.
+            return text.encode("utf-16", "surrogatepass").decode("utf-16")
+        except UnicodeDecodeError:
+            self._fault(node, "a code point between `\\uD800` and `\\uDFFF` is no character")
+            return ""
+
+    def _fault(self, node: Node, message: str, hint: str | None = None, start: int | None = None) -> None:
+        first, end = (node.position, node.position_end) if start is None else (start, start + 2)
+        finding = self._text.error("syntax", first + self._offset, end + self._offset, message, hint)
+        self.findings.append(finding)
+
+    def _source(self, start: int, end: int) -> str:
+        return self._text.source(start + self._offset, end + self._offset)
+
+
+def _binds_first(left: Any, right: Any) -> bool:
+    """Whether in `a left b right c` the left operator takes `b`."""
+    if left is ex.Implication and right is ex.Implication:
+        return False
+    return PRECEDENCE[left] >= PRECEDENCE[right]

@@ -1,0 +1,70 @@
+"""Finds libraries by the names that their files declare."""
+
+from __future__ import annotations
+
+import os
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from robosc.resources import locate
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+_BLANK = rb"(?:\s|//[^\n]*|/\*[\s\S]*?\*/)"
+_HEADER = re.compile(rb"(?:\xef\xbb\xbf)?" + _BLANK + rb"*+library\b" + _BLANK + rb"*+\^?([A-Za-z_]\w*)")
+
+
+class LibraryPath:
+    """The folders in which libraries are looked for, each listed once."""
+
+    def __init__(self, given: Iterable[Path | str]) -> None:
+        """`given` are the folders of the call; those of ROBOSC_PATH and the one that ships with the tool come after."""
+        environment = [each for each in os.environ.get("ROBOSC_PATH", "").split(os.pathsep) if each]
+        self._folders = [*map(Path, given), *map(Path, environment), locate("stdlib")]
+        self._declared: dict[Path, Mapping[str, list[Path]]] = {}
+
+    def find(self, name: str, beside: Path) -> list[Path]:
+        """The files that declare a library of a name, all in the first folder that has one; empty if none has.
+
+        `beside` is the importing file; its own folder comes first. A folder that can't be read, and files that hold
+        something else, are passed over.
+        """
+        for folder in (beside.parent, *self._folders):
+            found = self.declared(folder).get(name)
+            if found:
+                return found
+        return []
+
+    def known(self, beside: Path) -> list[str]:
+        """The names of all libraries that a file could import from."""
+        return [name for folder in (beside.parent, *self._folders) for name in self.declared(folder)]
+
+    def declared(self, folder: Path) -> Mapping[str, list[Path]]:
+        """The libraries that the files of a folder declare, by name; their paths start with the folder's."""
+        if folder not in self._declared:
+            self._declared[folder] = _declared(folder)
+        return self._declared[folder]
+
+
+def _declared(folder: Path) -> Mapping[str, list[Path]]:
+    libraries: dict[str, list[Path]] = {}
+    try:
+        with os.scandir(folder) as entries:
+            names = sorted(each.name for each in entries if each.name.endswith(".rscd") and each.is_file())
+    except OSError:
+        return {}
+    for each in names:
+        name = _declared_name(folder / each)
+        if name is not None:
+            libraries.setdefault(name, []).append(folder / each)
+    return libraries
+
+
+def _declared_name(path: Path) -> str | None:
+    try:
+        found = _HEADER.match(path.read_bytes())
+    except OSError:
+        return None
+    return found[1].decode("ascii") if found else None

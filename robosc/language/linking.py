@@ -1,0 +1,306 @@
+"""Gives every name the element that it stands for, or says that there is none."""
+
+from __future__ import annotations
+
+from difflib import get_close_matches
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from robosc.language.scopes import File, Names, Scope
+from robosc.metamodel import expression as ex
+from robosc.metamodel import robosc as rsc
+from robosc.typing import (
+    UNKNOWN,
+    ArrayType,
+    EnumType,
+    ObjectType,
+    Type,
+    access_types,
+    declared_type,
+    provided_data_type,
+    value_type,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from robosc.diagnostics import Diagnostic
+    from robosc.language.building import Name
+
+_Element = TypeVar("_Element")
+RULE = "unresolved-reference"
+
+
+def link(file: File) -> list[Diagnostic]:
+    """Resolves the names of a file, whose libraries are read and linked; returns a finding for each that can't be.
+
+    A name without element leaves its feature unset. A name that stands or falls with another one that is not
+    resolved, or that text with a syntax error may declare, draws no finding of its own.
+    """
+    if file.base is None:
+        return []
+    linker = _Linker(file)
+    linker.imports()
+    linker.link(Scope(file, file.base))
+    return linker.findings
+
+
+class _Linker:
+    def __init__(self, file: File) -> None:
+        self.findings: list[Diagnostic] = []
+        self._file = file
+        self._scope: Scope
+
+    def imports(self) -> None:
+        """The components that are imported: all other names may look into them."""
+        for element, names in self._file.references.items():
+            if isinstance(element, rsc.ImportedComponent):
+                self._import(element, names)
+
+    def link(self, scope: Scope) -> None:
+        """What declarations name, then what uses them, in the order of the text: each looks at what stands before."""
+        self._scope = scope
+        for element, names in self._file.references.items():
+            self._declaration(element, names)
+        for element, names in self._file.references.items():
+            self._use(element, names)
+
+    def _declaration(self, element: ex.Located, names: Mapping[str, Name]) -> None:
+        match element:
+            case rsc.CommunicationType():
+                element.interface = self._definition(rsc.Interface, "interface", names["interface"])
+            case rsc.ComplexDataTypeReference():
+                found = self._definition(rsc.ComplexDataType, "object or enum", names["type"])
+                if found is not None:
+                    element.type = found
+
+    def _use(self, element: ex.Located, names: Mapping[str, Name]) -> None:
+        match element:
+            case rsc.TopicRemapping():
+                self._remapping(element, names["communicationType"])
+            case rsc.CommunicationReference():
+                self._communication(element, names)
+            case rsc.Transition():
+                self._target(element, names["target"])
+            case rsc.Access():
+                self._access(element, names)
+            case rsc.PropertySegment():
+                self._segment(element, names["property"])
+            case rsc.ObjectPropertyValue():
+                self._property_value(element, names["property"])
+
+    # Imports and definitions
+
+    def _import(self, element: rsc.ImportedComponent, names: Mapping[str, Name]) -> None:
+        library = self._file.libraries.get(names["library"].text)
+        if library is None or not isinstance(library.base, rsc.Library):
+            return  # Whoever looked for the library has said why there is none.
+        element.library = library.base
+        components, name = library.declared[rsc.Component], names["definition"]
+        if name.text in components:
+            element.definition = components[name.text]
+        elif not library.may_declare(name.text, imported=False):
+            self._missing(name, f"library `{library.base.name}` has no component", components)
+
+    def _definition(self, kind: type[_Element], what: str, name: Name) -> _Element | None:
+        found = self._scope.find(kind, name.text)
+        if len(found) > 1:
+            self._ambiguous(what, name, [file for file, _ in found])
+        elif not found and not self._file.may_declare(name.text, imported=True):
+            self._missing(name, f"there is no {what}", self._scope.usable(kind))
+        return found[0][1] if len(found) == 1 else None
+
+    def _ambiguous(self, what: str, name: Name, files: Iterable[File]) -> None:
+        libraries = " and ".join(f"`{each.base.name}`" for each in files if each.base)
+        message = f"{what} `{name.text}` is declared by the libraries {libraries}"
+        self._report(name, message, f"declare `{name.text}` in this file")
+
+    def _remapping(self, remapping: rsc.TopicRemapping, name: Name) -> None:
+        component = _around(remapping, rsc.Component)
+        communications = self._scope.communications(component) if component else None
+        if component is not None and communications is not None:
+            found = self._member(communications, name, component, "communication")
+            remapping.communicationType = found
+
+    # Communication
+
+    def _communication(self, reference: rsc.CommunicationReference, names: Mapping[str, Name]) -> None:
+        name = names["communicationType"]
+        if "component" in names:
+            component = self._component(names["component"])
+            communications = self._scope.communications(component) if component else None
+            if component is not None:
+                reference.component = component
+            if component is not None and communications is not None:
+                reference.communicationType = self._member(communications, name, component, "communication")
+            return
+        found = self._bare_communication(reference, name)
+        if found is not None:
+            reference.component, reference.communicationType = found
+
+    def _bare_communication(
+        self, reference: rsc.CommunicationReference, name: Name
+    ) -> tuple[rsc.Component, rsc.CommunicationType] | None:
+        own = _around(reference, rsc.Component)
+        if own is not None:
+            communications = self._scope.communications(own) or {}
+            if name.text in communications:
+                return own, communications[name.text]
+            if isinstance(self._file.base, rsc.Library):
+                if not self._file.may_declare(name.text, imported=False):
+                    message = f"component `{own.name}` has no communication"
+                    self._missing(name, message, communications, "a library's component speaks of its own members only")
+                return None
+        found = self._scope.communicating(name.text)
+        if not found:
+            if not self._file.may_declare(name.text, imported=True):
+                self._missing(name, "there is no communication", self._scope.all_communications())
+            return None
+        if len({communication for _, communication in found}) < len(found):
+            candidates = " or ".join(f"`{component.name}.{name.text}`" for component, _ in found)
+            self._report(name, f"`{name.text}` is ambiguous: it may be {candidates}", f"write {candidates}")
+            return None
+        return found[0]
+
+    def _component(self, name: Name) -> rsc.Component | None:
+        component: rsc.Component | None = self._scope.components.get(name.text)
+        if component is None and not self._file.may_declare(name.text, imported=False):
+            self._missing(name, "there is no component", self._scope.components)
+        return component
+
+    def _member(self, members: Names, name: Name, component: rsc.Component, what: str) -> Any:
+        found = members.get(name.text)
+        if found is None and not self._file.may_declare(name.text, imported=True):
+            self._missing(name, f"component `{component.name}` has no {what}", members)
+        return found
+
+    def _target(self, transition: rsc.Transition, name: Name) -> None:
+        own = _around(transition, rsc.Component)
+        members = self._scope.members(own) if own is not None else None
+        states = {each: member for each, member in (members or {}).items() if isinstance(member, rsc.State)}
+        if name.text in states:
+            transition.target = states[name.text]
+        elif own is not None and not self._file.may_declare(name.text, imported=False):
+            self._missing(name, f"component `{own.name}` has no state", states)
+
+    # Expressions
+
+    def _access(self, access: rsc.Access, names: Mapping[str, Name]) -> None:
+        first = names.get("component", names["item"])
+        if _around(access, rsc.EnumDataType) is not None:
+            self._enum_value(access, first)
+        elif "component" in names and first.text in self._scope.components:
+            self._qualified(access, self._scope.components[first.text], names["item"])
+            return
+        else:
+            self._bare(access, first, qualifies="component" in names)
+        if "component" in names:
+            self._read_as_property(access, names["item"])
+
+    def _qualified(self, access: rsc.Access, component: rsc.Component, name: Name) -> None:
+        access.component = component
+        members = self._scope.members(component)
+        if members is not None:
+            access.item = self._member(members, name, component, "variable or state")
+
+    def _bare(self, access: rsc.Access, name: Name, *, qualifies: bool) -> None:
+        """A component, a variable of the own component, a state of the own component, an enum value, in this order."""
+        own = _around(access, rsc.Component)
+        members = (self._scope.members(own) if own is not None else None) or {}
+        if name.text in self._scope.components:
+            access.item = self._scope.components[name.text]
+            return
+        if name.text in members:
+            access.component, access.item = own, members[name.text]
+            return
+        values = self._scope.find(rsc.EnumValue, name.text)
+        if len(values) > 1:
+            self._ambiguous("enum value", name, [file for file, _ in values])
+        elif values:
+            access.item = values[0][1]
+        elif self._file.may_declare(name.text, imported=not qualifies):
+            return
+        elif qualifies:
+            self._missing(name, "there is no component or variable", [*self._scope.components, *members])
+        else:
+            known = [*self._scope.components, *members, *self._scope.usable(rsc.EnumValue)]
+            self._missing(name, "there is no component, variable, state or enum value", known, self._elsewhere(name))
+
+    def _elsewhere(self, name: Name) -> str | None:
+        """What to write for a bare name that some component has as a variable or a state."""
+        having = [
+            f"`{each.name}.{name.text}`"
+            for each in self._scope.components.values()
+            if name.text in (self._scope.members(each) or {})
+        ]
+        return f"write {' or '.join(having)}" if having else None
+
+    def _enum_value(self, access: rsc.Access, name: Name) -> None:
+        values = self._scope.find(rsc.EnumValue, name.text)
+        if len(values) > 1:
+            self._ambiguous("enum value", name, [file for file, _ in values])
+        elif values:
+            access.item = values[0][1]
+        elif not self._file.may_declare(name.text, imported=True):
+            hint = "an enum's rules see only `value`, literals and enum values"
+            self._missing(name, "there is no enum value", self._scope.usable(rsc.EnumValue), hint)
+
+    def _read_as_property(self, access: rsc.Access, name: Name) -> None:
+        """`a.b`, where `a` turned out to be no component: then `b` is a property of it."""
+        start, end = name.start - 1, name.end
+        segment = rsc.PropertySegment(source=self._file.text.source(start, end))
+        access.segments.insert(0, segment)
+        self._segment(segment, name)
+
+    # Properties
+
+    def _segment(self, segment: rsc.PropertySegment, name: Name) -> None:
+        access = segment.eContainer()
+        before = access_types(access, value_type(access))[list(access.segments).index(segment)]
+        found = self._property(before, name)
+        if found is not None:
+            segment.property = found
+
+    def _property_value(self, element: rsc.ObjectPropertyValue, name: Name) -> None:
+        around = element.eContainer().eContainer()
+        if isinstance(around, rsc.ProvideStatement):
+            expected = provided_data_type(around.communicationType.communicationType)
+        else:
+            expected = declared_type(around.property.type) if around.property else UNKNOWN
+        # Whether an object fits here at all is a question of types, not of names.
+        found = self._property(expected, name) if isinstance(expected, ObjectType) else None
+        if found is not None:
+            element.property = found
+
+    def _property(self, of: Type, name: Name) -> rsc.ObjectProperty | None:
+        if of == UNKNOWN or self._file.may_declare(name.text, imported=True):
+            return None
+        if not isinstance(of, ObjectType):
+            what = (
+                "an enum" if isinstance(of, EnumType) else "an array" if isinstance(of, ArrayType) else f"of type {of}"
+            )
+            hint = f"write an index before it: `[0].{name.text}`" if isinstance(of, ArrayType) else None
+            self._report(name, f"there is no property `{name.text}`: what stands before it is {what}", hint)
+            return None
+        for each in of.definition.properties:
+            if each.name == name.text:
+                return each
+        known = [each.name for each in of.definition.properties]
+        self._missing(name, f"object `{of.definition.name}` has no property", known)
+        return None
+
+    # Findings
+
+    def _missing(self, name: Name, message: str, known: Iterable[str], hint: str | None = None) -> None:
+        close = get_close_matches(name.text, sorted(set(known)), n=1)
+        self._report(name, f"{message} `{name.text}`", f"did you mean `{close[0]}`?" if close and not hint else hint)
+
+    def _report(self, name: Name, message: str, hint: str | None = None) -> None:
+        self.findings.append(self._file.text.error(RULE, name.start, name.end, message, hint))
+
+
+def _around(element: ex.Located, kind: type[_Element]) -> _Element | None:
+    """The nearest element of a kind that contains the element."""
+    around = element.eContainer()
+    while around is not None and not isinstance(around, kind):
+        around = around.eContainer()
+    return around

@@ -1,0 +1,124 @@
+"""Reads a file with the libraries that it imports from."""
+
+from __future__ import annotations
+
+import codecs
+from dataclasses import dataclass, field
+from difflib import get_close_matches
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from robosc.language.libraries import LibraryPath
+from robosc.language.linking import RULE, link
+from robosc.language.recovery import parse_file
+from robosc.language.scopes import File
+from robosc.language.text import Text
+from robosc.metamodel import robosc as rsc
+from robosc.metamodel.files import set_path
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from robosc.diagnostics import Diagnostic
+    from robosc.language.building import Name
+
+
+@dataclass(frozen=True)
+class Reading:
+    """What came of reading a file.
+
+    `base` is its robot or library, as far as its text could be read; None where not even its first line could.
+    `findings` are the faults of the text and of its names, those of imported libraries included, file by file.
+    `texts` holds what was read, by the paths that the findings carry.
+    """
+
+    base: rsc.Base | None
+    findings: list[Diagnostic] = field(default_factory=list)
+    texts: dict[str, str] = field(default_factory=dict)
+
+
+def read(path: Path | str, library_paths: Iterable[Path | str] = ()) -> Reading:
+    """Reads a robot or a library and all that it imports, and links its names.
+
+    `library_paths` are searched after the file's own folder and before ROBOSC_PATH and the standard library. Raises
+    OSError where the file itself can't be read; all other faults are findings of the rules `syntax`,
+    `unresolved-reference` and `import-cycle`.
+    """
+    reader = _Reader(library_paths)
+    file = reader.read(Path(path), str(path))
+    return Reading(file.base, reader.findings, reader.texts)
+
+
+class _Reader:
+    """Reads each file once; `_reading` are those that are being read, each imported by the one before."""
+
+    def __init__(self, library_paths: Iterable[Path | str]) -> None:
+        self.findings: list[Diagnostic] = []
+        self.texts: dict[str, str] = {}
+        self._path = LibraryPath(library_paths)
+        self._files: dict[Path, File] = {}
+        self._reading: list[Path] = []
+
+    def read(self, path: Path, shown: str) -> File:
+        """The file at a path, linked; `shown` is what findings call it."""
+        identity = path.resolve()
+        content = self._decode(path.read_bytes(), shown)
+        text = Text(shown, content)
+        self.texts[shown] = content
+        parsed = parse_file(text)
+        self.findings += parsed.findings
+        file = File(text, parsed.base, parsed.references, parsed.unread)
+        self._files[identity] = file
+        self._reading.append(identity)
+        if file.base is not None:
+            set_path(file.base, shown)
+            self._libraries(file, path)
+            self.findings += link(file)
+        self._reading.pop()
+        return file
+
+    def _decode(self, content: bytes, shown: str) -> str:
+        content = content.removeprefix(codecs.BOM_UTF8)
+        try:
+            text = content.decode("utf-8")
+        except UnicodeDecodeError as fault:
+            before = Text(shown, content[: fault.start].decode("utf-8"))
+            message = f"the byte 0x{content[fault.start]:02x} is no UTF-8"
+            hint = "save the file in the encoding UTF-8"
+            self.findings.append(before.error("syntax", len(before.content), len(before.content), message, hint))
+            # The rest is checked with blanks in such places, so that one fault draws one finding.
+            text = content.decode("utf-8", errors="replace").replace("\N{REPLACEMENT CHARACTER}", " ")
+        return text.replace("\r\n", "\n").replace("\r", "\n")
+
+    def _libraries(self, file: File, path: Path) -> None:
+        """Reads the libraries that a file names, in the order of its text."""
+        for element, names in file.references.items():
+            if isinstance(element, rsc.ImportedComponent) and names["library"].text not in file.libraries:
+                name = names["library"]
+                file.libraries[name.text] = self._library(file, path, name)
+
+    def _library(self, file: File, path: Path, name: Name) -> File | None:
+        found = self._path.find(name.text, path)
+        if len(found) != 1:
+            self._report(file, name, *(self._several(name, found) if found else self._none(name, path)))
+            return None
+        identity = found[0].resolve()
+        if identity in self._reading:
+            cycle = [self._files[each] for each in self._reading[self._reading.index(identity) :]]
+            names = [each.base.name for each in cycle if each.base is not None]
+            message = f"libraries import each other in a circle: {' -> '.join([*names, name.text])}"
+            self._report(file, name, message, "move what both need to a library of its own", "import-cycle")
+            return None
+        return self._files[identity] if identity in self._files else self.read(found[0], str(found[0]))
+
+    def _several(self, name: Name, found: list[Path]) -> tuple[str, str]:
+        files = " and ".join(f"`{each}`" for each in found)
+        return f"library `{name.text}` is declared by several files of one folder: {files}", "keep one of them"
+
+    def _none(self, name: Name, path: Path) -> tuple[str, str]:
+        close = get_close_matches(name.text, sorted(set(self._path.known(path))), n=1)
+        where = "libraries are looked for beside this file, in the folders of -I and of ROBOSC_PATH"
+        return f"there is no library `{name.text}`", f"did you mean `{close[0]}`?" if close else where
+
+    def _report(self, file: File, name: Name, message: str, hint: str | None, rule: str = RULE) -> None:
+        self.findings.append(file.text.error(rule, name.start, name.end, message, hint))

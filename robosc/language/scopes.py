@@ -1,0 +1,119 @@
+"""Which names can be used where: the scoping rules of the language reference."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+from robosc.instances import Instance, Instances
+from robosc.metamodel import robosc as rsc
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from robosc.language.building import Name
+    from robosc.language.text import Text
+
+#: Elements by name; where a name is declared twice, the first one counts (the uniqueness rules report the second).
+Names: TypeAlias = "Mapping[str, Any]"
+
+
+def by_name(elements: Iterable[Any]) -> dict[str, Any]:
+    """The elements by their names."""
+    names: dict[str, Any] = {}
+    for each in elements:
+        names.setdefault(each.name, each)
+    return names
+
+
+@dataclass(eq=False)
+class File:
+    """One file that was read, and what the linker has to know of it."""
+
+    text: Text
+    base: rsc.Base | None
+    references: Mapping[Any, Mapping[str, Name]]
+    #: Names that text with a syntax error seems to declare: of these nothing is known, so nothing is said.
+    unread: frozenset[str] = frozenset()
+    #: The files of the libraries that it imports from, by the libraries' names; None: none that can be used.
+    libraries: dict[str, File | None] = field(default_factory=dict)
+
+    @cached_property
+    def declared(self) -> Mapping[type[Any], Names]:
+        """What other places can name, by its kind."""
+        definitions = self.base.definitions if self.base is not None else ()
+        kinds = (rsc.Component, rsc.ComplexDataType, rsc.Interface)
+        enums = [each for each in definitions if isinstance(each, rsc.EnumDataType)]
+        return {
+            **{kind: by_name(each for each in definitions if isinstance(each, kind)) for kind in kinds},
+            rsc.EnumValue: by_name(rule.value for each in enums for rule in each.rules if rule.value),
+        }
+
+    def may_declare(self, name: str, *, imported: bool) -> bool:
+        """Whether text that could not be read may declare a name, here or, if `imported`, in a library."""
+        if name in self.unread:
+            return True
+        libraries = self.libraries.values() if imported else ()
+        return any(each is None or each.may_declare(name, imported=True) for each in libraries)
+
+
+class Scope:
+    """The names of one robot or library, whose imports are linked already."""
+
+    def __init__(self, file: File, base: rsc.Base) -> None:
+        self.components: Names = file.declared[rsc.Component]
+        self._file = file
+        self._imports = [each for each in file.libraries.values() if each is not None]
+        self._instances = Instances(base)
+        self._members: dict[rsc.Component, Names] = {}
+        self._communications: dict[rsc.Component, Names] = {}
+
+    def find(self, kind: type[Any], name: str) -> list[tuple[File, Any]]:
+        """The definitions of a kind with a name: the own one, else those of directly imported libraries."""
+        own = self._file.declared[kind].get(name)
+        if own is not None:
+            return [(self._file, own)]
+        return [(each, each.declared[kind][name]) for each in self._imports if name in each.declared[kind]]
+
+    def usable(self, kind: type[Any]) -> list[str]:
+        """The names of all definitions of a kind that can be used, imported ones included."""
+        return [name for file in (self._file, *self._imports) for name in file.declared[kind]]
+
+    def members(self, component: rsc.Component) -> Names | None:
+        """The variables and states of a component; None where its import is broken."""
+        if component not in self._members:
+            instance = self._instances.instance(component, None)
+            if instance is None:
+                return None
+            self._members[component] = by_name(_members(instance))
+        return self._members[component]
+
+    def communications(self, component: rsc.Component) -> Names | None:
+        """The communications of a component; None where its import is broken."""
+        if component not in self._communications:
+            instance = self._instances.instance(component, None)
+            if instance is None:
+                return None
+            self._communications[component] = by_name(instance.communications)
+        return self._communications[component]
+
+    def communicating(self, name: str) -> list[tuple[rsc.Component, rsc.CommunicationType]]:
+        """Each component that has a communication of a name, and the communication."""
+        return [
+            (each.component, found)
+            for each in self._instances
+            if (found := (self.communications(each.component) or {}).get(name))
+        ]
+
+    def all_communications(self) -> list[str]:
+        """The names of the communications of all components."""
+        return [name for each in self._instances for name in self.communications(each.component) or ()]
+
+
+def _members(instance: Instance) -> Iterable[rsc.Variable | rsc.State]:
+    # A component with two behaviours is an error of another rule; its names are still names.
+    behaviours = [each for each in instance.local.definitions if isinstance(each, rsc.ComponentBehaviour)]
+    definitions = [each for behaviour in behaviours for each in behaviour.automaton.definitions]
+    yield from (each for each in definitions if isinstance(each, rsc.Variable))
+    yield from (each for each in definitions if isinstance(each, rsc.State))

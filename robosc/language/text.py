@@ -1,0 +1,43 @@
+"""The text of a file, and where in it a position is."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from dataclasses import dataclass
+from functools import cached_property
+
+from robosc.diagnostics import Diagnostic, Severity, Span
+
+
+@dataclass(frozen=True, eq=False)
+class Text:
+    """What a file holds, its line breaks all line feeds; `file` is its path as the user wrote it."""
+
+    file: str
+    content: str
+
+    @cached_property
+    def _line_starts(self) -> list[int]:
+        starts = [0]
+        position = self.content.find("\n")
+        while position >= 0:
+            starts.append(position + 1)
+            position = self.content.find("\n", position + 1)
+        return starts
+
+    def span(self, start: int, end: int) -> Span:
+        """The span between two offsets, counted from 0 in code points."""
+        return Span(*self._place(start), *self._place(end))
+
+    def _place(self, offset: int) -> tuple[int, int]:
+        line = bisect_right(self._line_starts, offset)
+        return line, offset - self._line_starts[line - 1] + 1
+
+    def source(self, start: int, end: int) -> str:
+        """The span between two offsets as a model element keeps it."""
+        span = self.span(start, end)
+        return f"{span.line}:{span.column}-{span.end_line}:{span.end_column}"
+
+    def error(self, rule: str, start: int, end: int, message: str, hint: str | None = None) -> Diagnostic:
+        """A finding between two offsets."""
+        return Diagnostic(self.file, self.span(start, end), Severity.ERROR, rule, message, hint)
