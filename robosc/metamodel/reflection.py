@@ -1,0 +1,42 @@
+"""What the metamodels declare and what models contain, always in the order of the .ecore text."""
+
+from collections.abc import Iterator, Mapping
+from functools import cache
+from typing import Any
+
+from pyecore.ecore import EAttribute, EClass
+
+
+@cache
+def features(metaclass: EClass) -> Mapping[str, Any]:
+    """The attributes and references of a class by name, inherited ones first."""
+    found: dict[str, Any] = {}
+    for parent in metaclass.eSuperTypes:
+        found |= features(parent)
+    return found | {each.name: each for each in metaclass.eStructuralFeatures}
+
+
+def is_attribute(feature: Any) -> bool:
+    """Whether the feature holds plain values; if not it is a reference."""
+    return isinstance(feature, EAttribute)
+
+
+def contents(element: Any) -> Iterator[tuple[str, Any]]:
+    """The elements directly inside an element, each with its step in a fragment path (`@plants.0`, `@guard`)."""
+    for name, feature in features(element.eClass).items():
+        if is_attribute(feature) or not feature.containment:
+            continue
+        value = getattr(element, name)
+        if feature.many:
+            yield from ((f"@{name}.{index}", child) for index, child in enumerate(value))
+        elif value is not None:
+            yield f"@{name}", value
+
+
+def tree(root: Any) -> Iterator[tuple[str, Any]]:
+    """An element and all below it, each before what it contains, with their fragment paths (`/`, `//@plants.0`)."""
+    pending = [("/", root)]
+    while pending:
+        path, element = pending.pop()
+        yield path, element
+        pending += [(f"{path}/{step}", child) for step, child in reversed(list(contents(element)))]

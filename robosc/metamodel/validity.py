@@ -1,0 +1,56 @@
+"""The rules that every model keeps beyond its metamodel's classes and multiplicities."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, Any
+
+from robosc.metamodel import expression as ex
+from robosc.metamodel import robosc, rosgraph, sct
+from robosc.metamodel.reflection import tree
+from robosc.metamodel.rosgraph_validity import rosgraph_faults
+from robosc.metamodel.sct_validity import sct_faults
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+_IDENTIFIER = re.compile("[A-Za-z_][A-Za-z0-9_]*")
+_PACKAGE = re.compile("[A-Za-z][A-Za-z0-9_-]*")
+
+
+def faults(root: Any) -> Iterator[tuple[Any, str]]:
+    """What is wrong with a model whose required features are all set: the element, and the reason.
+
+    Names are identifiers and literals have no sign in every model. An sct model has one initial location per plant,
+    one edge per location and event, updates of own variables, and expressions of the right type; a rosgraph model's
+    references and types agree with each other. What the language asks of a robosc model is not looked at here.
+    """
+    elements = [element for _, element in tree(root)]
+    for element in elements:
+        yield from _own_faults(element)
+    if isinstance(root, sct.SupervisoryControlModel):
+        yield from sct_faults(root, elements)
+    elif isinstance(root, rosgraph.RosGraph):
+        yield from rosgraph_faults(root, elements)
+
+
+def _own_faults(element: Any) -> Iterator[tuple[Any, str]]:
+    texts = [("name", element.name)] if isinstance(element, ex.NamedElement) else []
+    match element:
+        case robosc.Interface() | rosgraph.Interface():
+            if not _PACKAGE.fullmatch(element.package):
+                yield element, f"'{element.package}' is no name of a ROS package"
+            texts.append(("type", element.type))
+        case rosgraph.FieldStep():
+            texts.append(("name", element.name))
+        case rosgraph.FieldAssignment():
+            texts += [("path", each) for each in element.path]
+        case ex.IntegerLiteral() | ex.DoubleLiteral() if element.value < 0:
+            yield element, "a literal has no sign; the sign is a UnaryMinus around it"
+        case robosc.IndexSegment() | rosgraph.IndexStep() if element.index < 0:
+            yield element, "an index counts from 0"
+        case robosc.Access() if element.value == (element.item is not None):
+            yield element, "an access reads either an item or the value of the event"
+    for feature, text in texts:
+        if not _IDENTIFIER.fullmatch(text):
+            yield element, f"'{feature}' is to be an identifier, which '{text}' is not"

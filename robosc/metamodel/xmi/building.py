@@ -1,0 +1,179 @@
+"""The elements of one XMI file, before its references are resolved."""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from pyecore.ecore import EEnum
+
+from robosc.diagnostics import Diagnostic, Severity, Span
+from robosc.metamodel._ecore import packages
+from robosc.metamodel.reflection import features, is_attribute
+from robosc.metamodel.xmi.format import XMI, XSI
+from robosc.metamodel.xmi.markup import Element
+from robosc.metamodel.xmi.values import from_text
+
+#: What a file may hold: a class of each metamodel that describes something whole.
+ROOTS = {"robosc": ("Robot", "Library"), "sct": ("SupervisoryControlModel",), "rosgraph": ("RosGraph",)}
+_ECORE = "http://www.eclipse.org/emf/2002/Ecore"
+
+
+@dataclass(frozen=True)
+class Reference:
+    """A reference to be resolved: `target` is a fragment path, with a file's relative path before the `#`."""
+
+    element: Any
+    feature: Any
+    target: str
+    span: Span
+
+
+@dataclass(eq=False)
+class Document:
+    """A file: its name as the user would write it, its root (None where it has no usable one) and what was found."""
+
+    name: str
+    path: Path
+    root: Any = None
+    markup: dict[Any, Element] = field(default_factory=dict)
+    references: list[Reference] = field(default_factory=list)
+    findings: list[Diagnostic] = field(default_factory=list)
+
+    def report(self, span: Span, message: str, hint: str | None = None) -> None:
+        """Adds a finding of the rule `xmi`."""
+        self.findings.append(Diagnostic(self.name, span, Severity.ERROR, "xmi", message, hint))
+
+
+def build(document: Document, top: Element) -> None:
+    """Makes the elements of the file whose outermost XML element is `top`."""
+    metaclass = _root_class(document, top)
+    if metaclass is None:
+        return
+    document.root = metaclass.python_class()
+    pending = [(top, document.root)]
+    while pending:
+        markup, element = pending.pop()
+        document.markup[element] = markup
+        filling = _Filling(document, markup, element)
+        filling.run()
+        pending += reversed(filling.children)
+
+
+def _root_class(document: Document, top: Element) -> Any:
+    package = _package(top.namespace)
+    if top.namespace == _ECORE:
+        document.report(top.span, "this is a metamodel (Ecore), not a model")
+    elif (top.namespace, top.name) == (XMI, "XMI"):
+        document.report(top.span, "this file has several models; one is wanted")
+    elif package is None:
+        known = ", ".join(packages()[each].nsURI for each in ROOTS)
+        document.report(top.span, f"no model of RoboSC has the namespace '{top.namespace}'", f"known are {known}")
+    elif top.name not in ROOTS.get(package.name, ()):
+        wanted = ", ".join(name for names in ROOTS.values() for name in names)
+        document.report(top.span, f"a file can't hold a {top.name} by itself", f"it may hold {wanted}")
+    else:
+        return package.getEClassifier(top.name)
+    return None
+
+
+def _package(uri: str | None) -> Any:
+    return next((each for each in packages().values() if each.nsURI == uri), None)
+
+
+class _Filling:
+    """Sets the features of one element; its children are made, but not filled."""
+
+    def __init__(self, document: Document, markup: Element, element: Any) -> None:
+        self.document = document
+        self.markup = markup
+        self.element = element
+        self.features = features(element.eClass)
+        self.class_name = element.eClass.name
+        self.given: dict[str, int] = {}
+        self.children: list[tuple[Element, Any]] = []
+
+    def run(self) -> None:
+        for (namespace, name), text in self.markup.attributes.items():
+            if namespace not in (XMI, XSI) or name not in ("version", "type", "schemaLocation"):
+                self.attribute(namespace, name, text)
+        for child in self.markup.children:
+            self.child(child)
+        if self.markup.text.strip():
+            self.document.report(self.markup.span, f"a {self.class_name} holds no text")
+        for name, feature in self.features.items():
+            # What EMF leaves out has a default: a boolean, a number, the first literal of an enumeration.
+            if feature.lowerBound and name not in self.given and (feature.many or getattr(self.element, name) is None):
+                self.document.report(self.markup.span, f"a {self.class_name} needs '{name}'")
+
+    def attribute(self, namespace: str, name: str, text: str) -> None:
+        span = self.markup.attribute_span(name)
+        feature = None if namespace else self.features.get(name)
+        if feature is None or (not is_attribute(feature) and feature.containment):
+            self.document.report(span, f"a {self.class_name} has no attribute '{name}'")
+            return
+        self.given[name] = 1
+        if is_attribute(feature):
+            self.set(span, feature, text)
+            return
+        targets = text.split()
+        if len(targets) != 1 and not feature.many:
+            self.document.report(span, f"'{name}' refers to one element")
+            return
+        self.document.references += [Reference(self.element, feature, f"#{each}", span) for each in targets]
+
+    def child(self, child: Element) -> None:
+        feature = None if child.namespace else self.features.get(child.name)
+        if feature is None:
+            self.document.report(child.span, f"a {self.class_name} has no '{child.name}'")
+            return
+        self.given[child.name] = self.given.get(child.name, 0) + 1
+        if self.given[child.name] > 1 and not feature.many:
+            self.document.report(child.span, f"a {self.class_name} has only one '{child.name}'")
+        elif is_attribute(feature):
+            self.set(child.span, feature, child.text)
+        elif feature.containment:
+            self.contain(child, feature)
+        else:
+            target = child.attributes.get(("", "href"), "")
+            self.document.references.append(Reference(self.element, feature, target, child.span))
+
+    def contain(self, child: Element, feature: Any) -> None:
+        metaclass = self.child_class(child, feature)
+        if metaclass is None:
+            return
+        made = metaclass.python_class()
+        self.children.append((child, made))
+        if feature.many:
+            getattr(self.element, feature.name).append(made)
+        else:
+            setattr(self.element, feature.name, made)
+
+    def child_class(self, child: Element, feature: Any) -> Any:
+        """The class of a child: the one that it names, else its feature's; None with a finding where it can't be."""
+        found = feature.eType
+        written = child.attributes.get((XSI, "type"))
+        if written is not None:
+            prefix, _, name = written.rpartition(":")
+            package = _package(child.prefixes.get(prefix))
+            found = None if package is None else package.getEClassifier(name)
+        if found is None or isinstance(found, EEnum):
+            self.document.report(child.attribute_span("xsi:type"), f"there is no class '{written}'")
+        elif not issubclass(found.python_class, feature.eType.python_class):
+            message = f"'{feature.name}' wants a {feature.eType.name}, which a {found.name} is not"
+            self.document.report(child.span, message)
+        elif found.abstract:
+            self.document.report(child.span, f"{found.name} is abstract", "say what it is with xsi:type")
+        else:
+            return found
+        return None
+
+    def set(self, span: Span, feature: Any, text: str) -> None:
+        value = from_text(feature.eType, text)
+        if value is None:
+            kind = feature.eType
+            hint = f"one of {', '.join(each.name for each in kind.eLiterals)}" if isinstance(kind, EEnum) else None
+            self.document.report(span, f"'{feature.name}' can't be '{text[:80]}'", hint)
+        elif feature.many:
+            getattr(self.element, feature.name).append(value)
+        else:
+            setattr(self.element, feature.name, value)

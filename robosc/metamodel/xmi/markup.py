@@ -1,0 +1,121 @@
+"""XML text to elements that know their place, refusing what a model has no use for and an attacker has."""
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+from xml.parsers import expat
+
+from robosc.diagnostics import Diagnostic, ModelError, Severity, Span
+from robosc.metamodel.xmi.format import DEEPEST
+
+_NAME = re.compile(r"<[^\s/>]*")
+_ATTRIBUTE_OR_END = re.compile(r"""([^\s=<>"'/]+)\s*=\s*(?:"[^"]*"|'[^']*')|>""")
+_LINE_END = re.compile("\r\n|\r|\n")
+
+
+@dataclass(eq=False)
+class Element:
+    """An XML element: its namespace and name, attributes by (namespace, name), prefixes in scope, place."""
+
+    namespace: str
+    name: str
+    attributes: dict[tuple[str, str], str]
+    prefixes: Mapping[str, str]
+    lines: Sequence[str] = field(repr=False)
+    line: int
+    column: int
+    children: list["Element"] = field(default_factory=list)
+    text: str = ""
+
+    @property
+    def span(self) -> Span:
+        """Where the start tag's name is."""
+        name = _NAME.match(self.lines[self.line - 1], self.column - 1)
+        return Span(self.line, self.column, self.line, name.end() + 1 if name else self.column + 1)
+
+    def attribute_span(self, written: str) -> Span:
+        """Where an attribute is, by its name as it is written; where the element is, if it is on no one line."""
+        line, start = self.line, self.span.end_column - 1
+        for text in self.lines[self.line - 1 :]:
+            for match in _ATTRIBUTE_OR_END.finditer(text, start):
+                if match.group(1) is None:
+                    return self.span
+                if match.group(1) == written:
+                    return Span(line, match.start() + 1, line, match.end() + 1)
+            line, start = line + 1, 0
+        return self.span
+
+
+def parse(data: bytes, file: str) -> Element:
+    """The root element of a UTF-8 document.
+
+    Raises ModelError with a located `syntax` finding where it is not well-formed, not UTF-8, has a document type (and
+    with it, entities) or elements too deep inside each other.
+    """
+    return _Parser(data, file).root()
+
+
+class _Parser:
+    def __init__(self, data: bytes, file: str) -> None:
+        self._data = data
+        self._file = file
+        self._lines: list[str] = []
+        self._open: list[Element] = []
+        self._prefixes: list[dict[str, str]] = [{}]
+        self._root: Element | None = None
+        self._expat: Any = expat.ParserCreate("utf-8", " ")
+        self._expat.buffer_text = True
+        self._expat.StartNamespaceDeclHandler = self._declare
+        self._expat.EndNamespaceDeclHandler = lambda _prefix: self._prefixes.pop()
+        self._expat.StartElementHandler = self._start
+        self._expat.EndElementHandler = lambda _name: self._open.pop()
+        self._expat.CharacterDataHandler = self._characters
+        self._expat.StartDoctypeDeclHandler = self._doctype
+
+    def root(self) -> Element:
+        try:
+            self._lines = _LINE_END.split(self._data.decode("utf-8-sig"))
+        except UnicodeDecodeError as error:
+            before = _LINE_END.split(self._data[: error.start].decode("utf-8", "replace"))
+            raise self._error(len(before), len(before[-1]) + 1, "this is no text in UTF-8") from None
+        try:
+            self._expat.Parse(self._data, True)
+        except expat.ExpatError as error:
+            message = f"this is no well-formed XML: {expat.ErrorString(error.code)}"
+            raise self._error(error.lineno, error.offset + 1, message) from None
+        assert self._root is not None
+        return self._root
+
+    def _declare(self, prefix: str | None, uri: str | None) -> None:
+        self._prefixes.append({**self._prefixes[-1], prefix or "": uri or ""})
+
+    def _start(self, name: str, attributes: dict[str, str]) -> None:
+        line, column = self._here()
+        if len(self._open) > DEEPEST:
+            raise self._error(line, column, f"more than {DEEPEST} elements are inside each other")
+        qualified = {_split(key): value for key, value in attributes.items()}
+        element = Element(*_split(name), qualified, self._prefixes[-1], self._lines, line, column)
+        if self._open:
+            self._open[-1].children.append(element)
+        else:
+            self._root = element
+        self._open.append(element)
+
+    def _characters(self, text: str) -> None:
+        self._open[-1].text += text
+
+    def _doctype(self, *_: object) -> None:
+        raise self._error(*self._here(), "a document type declaration is not allowed in a model")
+
+    def _here(self) -> tuple[int, int]:
+        return self._expat.CurrentLineNumber, self._expat.CurrentColumnNumber + 1
+
+    def _error(self, line: int, column: int, message: str) -> ModelError:
+        span = Span(line, column, line, column + 1)
+        return ModelError([Diagnostic(self._file, span, Severity.ERROR, "syntax", message)])
+
+
+def _split(name: str) -> tuple[str, str]:
+    namespace, _, local = name.rpartition(" ")
+    return namespace, local

@@ -1,0 +1,54 @@
+"""Attribute values to text and back; a text that stands for no value of its type gives None."""
+
+import math
+import re
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from pyecore.ecore import EEnum
+
+_LONG = range(-(2**63), 2**63)
+_DOUBLE = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]{1,4})?")
+
+
+def to_text(value: object) -> str:
+    """The text of a value, as EMF reads it."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    return repr(value) if isinstance(value, float) else str(value)
+
+
+def from_text(kind: Any, text: str) -> object | None:
+    """The value of a data type or an enumeration that a text stands for."""
+    if isinstance(kind, EEnum):
+        literal: object | None = kind.getEEnumLiteral(name=text)
+        return literal
+    return _READERS[kind.name](text)
+
+
+def _integer(text: str) -> int | None:
+    return int(text) if re.fullmatch("[+-]?[0-9]{1,4000}", text) else None
+
+
+def _long(text: str) -> int | None:
+    value = _integer(text)
+    return value if value in _LONG else None
+
+
+def _double(text: str) -> float | None:
+    value = float(text) if _DOUBLE.fullmatch(text) else math.inf
+    return value if math.isfinite(value) else None
+
+
+def _boolean(text: str) -> bool | None:
+    return {"true": True, "false": False}.get(text)
+
+
+_READERS: Mapping[str, Callable[[str], object | None]] = {
+    "EString": str,
+    "EBoolean": _boolean,
+    "ELong": _long,
+    "ELongObject": _long,
+    "EBigInteger": _integer,
+    "EDouble": _double,
+}
