@@ -2,9 +2,13 @@
 
 from collections.abc import Iterable, Mapping
 from functools import reduce
-from typing import ClassVar
+from typing import Any, ClassVar, TypeVar
 
 from robosc.metamodel import expression as ex
+from robosc.metamodel import sct
+from robosc.metamodel.reflection import features, is_attribute
+
+_Kind = TypeVar("_Kind", bound=ex.Expression)
 
 #: Loosest to tightest, for RoboSC and for every target: none binds differently, and where one has finer levels
 #: (or a compiler that warns), `_LOOSE_PAIRS` adds parentheses.
@@ -61,12 +65,12 @@ class ExpressionPrinter:
     def unary(self, expression: ex.UnaryExpression) -> str:
         """An operator before its operand; two in a row are kept apart, so that `--x` is never printed."""
         text = self(expression.operand)
-        bare = precedence(expression.operand) == ATOM
+        bare = self.precedence(expression.operand) == ATOM
         return f"{self.symbols[type(expression)]}{text if bare else f'({text})'}"
 
     def operand(self, parent: ex.BinaryExpression, child: ex.Expression, *, chain: bool) -> str:
         """A child of a binary operator, in parentheses where the tree or a reader needs them."""
-        outer, inner = precedence(parent), precedence(child)
+        outer, inner = self.precedence(parent), self.precedence(child)
         same = (
             outer == inner
             and chain
@@ -78,9 +82,68 @@ class ExpressionPrinter:
         bare = (inner > outer and (outer, inner) not in _LOOSE_PAIRS) or same
         return self(child) if bare else f"({self(child)})"
 
+    def precedence(self, expression: ex.Expression) -> int:
+        """How tightly the text of the expression binds; a target that writes an atom with an operator says so here."""
+        return precedence(expression)
+
     def atom(self, expression: ex.Expression) -> str:
         """Everything that is not an operator: literals, references, conversions."""
         raise TypeError(f"{type(self).__name__} has no text for {type(expression).__name__}")
+
+
+class SctPrinter(ExpressionPrinter):
+    """Prints an expression of an sct model for a person, in RoboSC's operators, each name with its plant before it."""
+
+    symbols: ClassVar[Mapping[type[ex.Expression], str]] = {
+        ex.Implication: "=>",
+        ex.Disjunction: "or",
+        ex.Conjunction: "and",
+        ex.Equation: "=",
+        ex.Inequation: "!=",
+        ex.LessThan: "<",
+        ex.LessOrEqual: "<=",
+        ex.GreaterThan: ">",
+        ex.GreaterOrEqual: ">=",
+        ex.Addition: "+",
+        ex.Subtraction: "-",
+        ex.Multiplication: "*",
+        ex.Negation: "!",
+        ex.UnaryMinus: "-",
+    }
+
+    def atom(self, expression: ex.Expression) -> str:
+        """A reference as `plant.name`, a literal, a choice as `(if a then b else c)`."""
+        match expression:
+            case sct.LocationReference():
+                return _with_plant(expression.location)
+            case sct.VariableReference():
+                return _with_plant(expression.variable)
+            case sct.InputReference():
+                return _with_plant(expression.input)
+            case ex.EnumerationLiteralReference():
+                return expression.literal.name
+            case ex.IntegerLiteral():
+                return str(expression.value)
+            case ex.BooleanLiteral():
+                return "true" if expression.value else "false"
+            case ex.Conditional():
+                condition, then, otherwise = map(self, (expression.condition, expression.then, expression.otherwise))
+                return f"(if {condition} then {then} else {otherwise})"
+        return super().atom(expression)
+
+
+def _with_plant(element: Any) -> str:
+    return f"{element.eContainer().name}.{element.name}"
+
+
+def copied(expression: _Kind) -> _Kind:
+    """A tree of its own that means the same: whoever contains the expression keeps it."""
+    made = type(expression)()
+    for name, feature in features(expression.eClass).items():
+        value = getattr(expression, name)
+        if value is not None:
+            setattr(made, name, value if is_attribute(feature) or not feature.containment else copied(value))
+    return made
 
 
 def conjunction(parts: Iterable[ex.Expression]) -> ex.Expression | None:
