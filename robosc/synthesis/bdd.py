@@ -1,0 +1,84 @@
+"""The one place that knows the library of decision diagrams: `oxidd.bcdd`, on one thread."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, TypeAlias
+
+from oxidd.bcdd import BCDDFunction, BCDDManager, BCDDSubstitution
+from oxidd.util import BooleanOperator, DDMemoryError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Mapping
+    from typing import TypeVar
+
+    T = TypeVar("T")
+
+#: A boolean function over the variables of its `Diagrams`; equal functions are equal and hash alike. It offers
+#: `& | ^ ~`, `equiv`, `imp`, `ite`, `exists(cube)`, `substitute`, `satisfiable`, `valid`, `sat_count`, `node_count`.
+Diagram: TypeAlias = BCDDFunction
+Substitution: TypeAlias = BCDDSubstitution
+
+#: What a node and its share of the operation cache take, measured.
+_BYTES_PER_NODE = 40
+_FIRST_CAPACITY = 1 << 18
+_GROWTH = 4
+
+
+class Diagrams:
+    """Decision diagrams over a fixed number of variables; a variable's number is its level, 0 at the top."""
+
+    def __init__(self, levels: int, capacity: int) -> None:
+        """Room for `capacity` nodes; an operation that needs more raises DDMemoryError."""
+        self._manager = BCDDManager(capacity, capacity, 1)
+        self._manager.add_vars(levels)
+        self.levels = levels
+        self.true = self._manager.true()
+        self.false = self._manager.false()
+
+    def variable(self, level: int) -> Diagram:
+        """True where the variable is."""
+        return self._manager.var(level)
+
+    def cube(self, levels: Iterable[int]) -> Diagram:
+        """The conjunction of the variables: how quantification is told what to quantify."""
+        result = self.true
+        for level in sorted(levels, reverse=True):
+            result = self.variable(level) & result
+        return result
+
+    def renaming(self, levels: Mapping[int, int]) -> Substitution:
+        """Puts one variable in the place of another."""
+        return BCDDFunction.make_substitution((old, self.variable(new)) for old, new in levels.items())
+
+    def node(self, level: int, high: Diagram, low: Diagram) -> Diagram:
+        """`high` where the variable is true, else `low`."""
+        return self.variable(level).ite(high, low)
+
+
+def and_exists(left: Diagram, right: Diagram, cube: Diagram) -> Diagram:
+    """The conjunction, its variables in `cube` quantified existentially, in one pass."""
+    return left.apply_exists(BooleanOperator.AND, right, cube)
+
+
+def split(diagram: Diagram, level: int) -> tuple[Diagram, Diagram]:
+    """The function where the variable is true and where it is false; no variable above it may occur."""
+    if diagram.node_level() != level:
+        return diagram, diagram
+    cofactors = diagram.cofactors()
+    assert cofactors is not None
+    return cofactors
+
+
+def with_enough_memory(run: Callable[[int], T], memory: int) -> T:
+    """`run` with room for a number of nodes, again from the start with more room each time that it did not suffice.
+
+    `memory` bounds the bytes that the nodes may take; raises MemoryError beyond it.
+    """
+    capacity = _FIRST_CAPACITY
+    while True:
+        try:
+            return run(capacity)
+        except DDMemoryError:
+            capacity *= _GROWTH
+            if capacity * _BYTES_PER_NODE > memory:
+                raise MemoryError(f"synthesis needs more than {memory >> 20} MiB for its decision diagrams") from None

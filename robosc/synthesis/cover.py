@@ -1,0 +1,169 @@
+"""From a set of states to a short expression that tells it from another set.
+
+A cover is a sum of products over finite domains: each product says of some elements which values they have. Products
+are grown from single states as far as the other set allows, as in espresso (Rudell, Sangiovanni-Vincentelli:
+Multiple-valued minimization for PLA optimization, TCAD 1987), but over decision diagrams.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, TypeAlias
+
+from robosc.expressions import conjunction, disjunction
+from robosc.metamodel import expression as ex
+from robosc.metamodel import sct
+from robosc.synthesis.decoding import Ranges, codes, complement, cost, is_one_of, pick
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from robosc.synthesis.bdd import Diagram
+    from robosc.synthesis.encoding import Domain, Encoding
+
+#: For each element that a product speaks of, the codes it may have.
+Product: TypeAlias = "dict[Domain, Ranges]"
+
+
+def separating_expression(encoding: Encoding, inside: Diagram, outside: Diagram) -> ex.Expression:
+    """An expression that is true in all states of `inside` and false in all of `outside`; both have states.
+
+    Either the products of `inside`, or those of `outside` negated, whichever is shorter.
+    """
+    positive, negative = _shorter_covers(_Cover(encoding, inside, outside), _Cover(encoding, outside, inside))
+    if positive is not None and (negative is None or _length(positive) <= _length(negative)):
+        result = disjunction(_product(each) for each in positive)
+    else:
+        result = conjunction(_denied(each) for each in negative or ())
+    assert result is not None
+    return result
+
+
+class _Cover:
+    """The products that cover `wanted` and spare `spared`, found one by one."""
+
+    def __init__(self, encoding: Encoding, wanted: Diagram, spared: Diagram) -> None:
+        self._encoding = encoding
+        self._wanted = wanted
+        self._spared = spared
+        self._domains = sorted(encoding.layout.state, key=_telling)
+
+    def products(self) -> Iterator[Product]:
+        """Every product covers some state that those before it do not; after the last all are covered."""
+        left = self._wanted
+        while left.satisfiable():
+            product = self._widened(self._grown(pick(left, self._domains)))
+            yield product
+            left &= ~self._states(product)
+
+    def tidied(self, products: list[Product]) -> list[Product]:
+        """The products without those whose states the others cover too, each no wider than it reads well."""
+        kept = list(products)
+        for product in products:
+            index = next(index for index, each in enumerate(kept) if each is product)
+            left = self._wanted
+            for other in kept[:index] + kept[index + 1 :]:
+                left &= ~self._states(other)
+            kept[index : index + 1] = [self._narrowed(product, left)] if left.satisfiable() else []
+        return kept
+
+    def _narrowed(self, product: Product, states: Diagram) -> Product:
+        """The product with values for each element that read best, between those of `states` and those it has."""
+        return {
+            domain: _readable(domain, self._values_in(states, domain), free)
+            for domain, free in sorted(product.items(), key=lambda each: each[0].rank)
+        }
+
+    def _grown(self, state: dict) -> Product:  # type: ignore[type-arg]
+        """The state's product without the elements that need not be spoken of."""
+        literals = [(each, [(state[each.element],) * 2]) for each in self._domains]
+        rest = [self._encoding.diagrams.true]
+        for domain, ranges in reversed(literals):
+            rest.append(rest[-1] & self._values(domain, ranges))
+        hit, kept = self._spared, {}
+        for (domain, ranges), following in zip(literals, reversed(rest[:-1]), strict=True):
+            if (hit & following).satisfiable():
+                hit &= self._values(domain, ranges)
+                kept[domain] = ranges
+        return kept
+
+    def _widened(self, product: Product) -> Product:
+        """The product with all values for each element that the other elements leave free."""
+        for domain in list(product):
+            others = {each: ranges for each, ranges in product.items() if each is not domain}
+            taken = self._values_in(self._states(others) & self._spared, domain)
+            product[domain] = complement(taken, domain.size)
+        return product
+
+    def _values_in(self, states: Diagram, domain: Domain) -> Ranges:
+        """The codes that an element has in the states."""
+        others = [level for each in self._encoding.layout.state if each is not domain for level in each.levels]
+        return codes(states.exists(self._encoding.diagrams.cube(others)), domain)
+
+    def _states(self, product: Product) -> Diagram:
+        result = self._encoding.diagrams.true
+        for domain, ranges in product.items():
+            result &= self._values(domain, ranges)
+        return result
+
+    def _values(self, domain: Domain, ranges: Ranges) -> Diagram:
+        result = self._encoding.diagrams.false
+        for first, last in ranges:
+            result |= self._encoding.between(domain.element, first, last)
+        return result
+
+
+def _telling(domain: Domain) -> int:
+    """What says least about the robot is dropped first: data, communication, variables, then states of components."""
+    match domain.element:
+        case sct.Plant(kind=sct.PlantKind.data):
+            return 0
+        case sct.Plant(kind=sct.PlantKind.behaviour):
+            return 3
+        case sct.Plant():
+            return 1
+    return 2
+
+
+def _readable(domain: Domain, needed: Ranges, free: Ranges) -> Ranges:
+    """Of all codes that hold the needed ones and are free those that are shortest to write; of equals the fewest."""
+    candidates = [needed, free]
+    for first, last in free:
+        within = [each for each in needed if first <= each[0] and each[1] <= last]
+        if within == needed:
+            candidates += [[(first, needed[-1][1])], [(needed[0][0], last)], [(needed[0][0], needed[-1][1])]]
+    return min(candidates, key=lambda each: (cost(domain, each), sum(last - first for first, last in each)))
+
+
+def _shorter_covers(positive: _Cover, negative: _Cover) -> tuple[list[Product] | None, list[Product] | None]:
+    """Both covers, found in turns: None for one that has more products than the other altogether."""
+    found: tuple[list[Product], list[Product]] = ([], [])
+    sources = positive.products(), negative.products()
+    done = [False, False]
+    while not any(done):
+        for index, source in enumerate(sources):
+            product = next(source, None)
+            if product is None:
+                done[index] = True
+            else:
+                found[index].append(product)
+    return (
+        positive.tidied(found[0]) if done[0] else None,
+        negative.tidied(found[1]) if done[1] else None,
+    )
+
+
+def _length(products: list[Product]) -> int:
+    return sum(cost(domain, ranges) for product in products for domain, ranges in product.items())
+
+
+def _product(product: Product) -> ex.Expression:
+    result = conjunction(is_one_of(domain, ranges) for domain, ranges in product.items())
+    assert result is not None
+    return result
+
+
+def _denied(product: Product) -> ex.Expression:
+    if len(product) > 1:
+        return ex.Negation(operand=_product(product))
+    [(domain, ranges)] = product.items()
+    return is_one_of(domain, complement(ranges, domain.size))

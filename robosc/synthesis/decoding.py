@@ -1,0 +1,163 @@
+"""From decision diagrams back to values and to expressions that a person reads."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, TypeAlias, TypeGuard
+
+from robosc.expressions import conjunction, disjunction
+from robosc.metamodel import expression as ex
+from robosc.metamodel import sct
+from robosc.synthesis.bdd import split
+from robosc.synthesis.encoding import smallest
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from robosc.synthesis.bdd import Diagram
+    from robosc.synthesis.encoding import Domain, Element
+
+#: Codes of a domain as ranges, both ends included, ascending, with gaps between them.
+Ranges: TypeAlias = "list[tuple[int, int]]"
+#: A value outside of the model: a location or a literal by its name.
+Value: TypeAlias = bool | int | str
+
+
+def pick(diagram: Diagram, domains: Iterable[Domain]) -> dict[Element, int]:
+    """The codes in one of the diagram's satisfying assignments, always the same: small codes first, from the top."""
+    true = set()
+    while (cofactors := diagram.cofactors()) is not None:
+        high, low = cofactors
+        if not low.satisfiable():
+            true.add(diagram.node_level())
+        diagram = low if low.satisfiable() else high
+    return {
+        each.element: sum(1 << place for place, level in enumerate(reversed(each.levels)) if level in true)
+        for each in domains
+    }
+
+
+def codes(diagram: Diagram, domain: Domain) -> Ranges:
+    """The codes for which a function of one domain is true."""
+    found: Ranges = []
+    _collect(diagram, domain.levels, 0, found)
+    return [(first, min(last, domain.size - 1)) for first, last in found if first < domain.size]
+
+
+def _collect(diagram: Diagram, levels: Sequence[int], first: int, found: Ranges) -> None:
+    if not diagram.satisfiable():
+        return
+    if diagram.valid():
+        last = first + (1 << len(levels)) - 1
+        if found and found[-1][1] == first - 1:
+            first = found.pop()[0]
+        found.append((first, last))
+        return
+    high, low = split(diagram, levels[0])
+    _collect(low, levels[1:], first, found)
+    _collect(high, levels[1:], first + (1 << len(levels) - 1), found)
+
+
+def complement(ranges: Ranges, size: int) -> Ranges:
+    """The codes 0 … size-1 that are in none of the ranges."""
+    edges = [-1, *(end for each in ranges for end in each), size]
+    gaps = zip(edges[::2], edges[1::2], strict=True)
+    return [(before + 1, after - 1) for before, after in gaps if before + 1 < after]
+
+
+def value(element: Element, code: int) -> Value:
+    """What a code stands for: a location's or literal's name, a boolean, an integer."""
+    if isinstance(element, sct.Plant):
+        return element.locations[code].name
+    match element.type:
+        case ex.EnumerationType(enumeration=enumeration):
+            return enumeration.literals[code].name
+        case ex.IntegerType():
+            return code + smallest(element)
+    return bool(code)
+
+
+def text(each: Value) -> str:
+    """A value as expressions write it."""
+    return str(each).lower() if isinstance(each, bool) else str(each)
+
+
+def is_one_of(domain: Domain, ranges: Ranges) -> ex.Expression:
+    """An expression for: the element's code is in the ranges, which are neither empty nor all."""
+    rest = complement(ranges, domain.size)
+    if _is_integer(domain.element):
+        if _size(rest) == 1:
+            return _compared(ex.Inequation, domain.element, rest[0][0])
+        return _either(_in_range(domain.element, domain.size, *each) for each in ranges)
+    inside, outside = ([code for first, last in each for code in range(first, last + 1)] for each in (ranges, rest))
+    if len(inside) <= len(outside):
+        return _either(_is(domain.element, code) for code in inside)
+    return _all(_is_not(domain.element, code) for code in outside)
+
+
+def cost(domain: Domain, ranges: Ranges) -> int:
+    """How many comparisons that expression has."""
+    rest = complement(ranges, domain.size)
+    if not _is_integer(domain.element):
+        return min(_size(ranges), _size(rest))
+    if _size(rest) == 1:
+        return 1
+    return sum(1 if first in (last, 0) or last == domain.size - 1 else 2 for first, last in ranges)
+
+
+def _size(ranges: Ranges) -> int:
+    return sum(last - first + 1 for first, last in ranges)
+
+
+def _is_integer(element: Element) -> TypeGuard[sct.DiscreteVariable]:
+    return isinstance(element, sct.DiscreteVariable) and isinstance(element.type, ex.IntegerType)
+
+
+def _is(element: Element, code: int) -> ex.Expression:
+    if isinstance(element, sct.Plant):
+        return sct.LocationReference(location=element.locations[code])
+    assert isinstance(element, sct.DiscreteVariable)
+    if isinstance(element.type, ex.BooleanType):
+        reference = sct.VariableReference(variable=element)
+        return reference if code else ex.Negation(operand=reference)
+    return _compared(ex.Equation, element, code)
+
+
+def _is_not(element: Element, code: int) -> ex.Expression:
+    if isinstance(element, sct.DiscreteVariable) and isinstance(element.type, ex.EnumerationType):
+        return _compared(ex.Inequation, element, code)
+    return ex.Negation(operand=_is(element, code))
+
+
+def _in_range(element: sct.DiscreteVariable, size: int, first: int, last: int) -> ex.Expression:
+    if first == last:
+        return _compared(ex.Equation, element, first)
+    bounds = []
+    if first > 0:
+        bounds.append(_compared(ex.GreaterOrEqual, element, first))
+    if last < size - 1:
+        bounds.append(_compared(ex.LessOrEqual, element, last))
+    return _all(bounds)
+
+
+def _compared(operator: type[ex.BinaryExpression], element: sct.DiscreteVariable, code: int) -> ex.Expression:
+    return operator(left=sct.VariableReference(variable=element), right=_literal(element, code))
+
+
+def _literal(element: sct.DiscreteVariable, code: int) -> ex.Expression:
+    if isinstance(element.type, ex.EnumerationType):
+        return ex.EnumerationLiteralReference(literal=element.type.enumeration.literals[code])
+    number = code + smallest(element)
+    literal = ex.IntegerLiteral(value=abs(number))
+    return literal if number >= 0 else ex.UnaryMinus(operand=literal)
+
+
+def _all(parts: Iterable[ex.Expression]) -> ex.Expression:
+    result = conjunction(parts)
+    assert result is not None
+    return result
+
+
+def _either(parts: Iterable[ex.Expression]) -> ex.Expression:
+    result = disjunction(parts)
+    assert result is not None
+    return result

@@ -1,0 +1,313 @@
+"""Locations, variables, inputs and expressions of an SCT model as decision diagrams.
+
+Everything that has a state is a finite domain: the location of a plant, a discrete variable, an input. A value's code
+is its index in the domain, in binary, the most significant bit on top. Each bit of the state has a copy for the next
+state right below it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, TypeAlias
+
+from robosc.diagnostics import Diagnostic, ModelError, Severity
+from robosc.metamodel import expression as ex
+from robosc.metamodel import sct
+from robosc.metamodel.places import place
+from robosc.metamodel.reflection import tree
+from robosc.synthesis import arithmetic
+from robosc.synthesis.order import variable_order
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+    from robosc.synthesis.arithmetic import Vector
+    from robosc.synthesis.bdd import Diagram, Diagrams
+
+#: What a domain is of. A plant stands for its location.
+Element: TypeAlias = "sct.Plant | sct.DiscreteVariable | sct.Input"
+
+
+@dataclass(frozen=True)
+class Domain:
+    """A finite set of values, coded 0 … size-1, and the levels of its bits, most significant first.
+
+    `rank` is its place in the model's text.
+    """
+
+    element: Element
+    rank: int
+    size: int
+    levels: tuple[int, ...]
+    next_levels: tuple[int, ...]
+
+
+class Layout:
+    """Which element takes which levels: the static order of a model's domains."""
+
+    def __init__(self, model: sct.SupervisoryControlModel) -> None:
+        elements = [each for plant in model.plants for each in _elements(plant)]
+        index = {element: vertex for vertex, element in enumerate(elements)}
+        order = variable_order(len(elements), [[index[each] for each in edge] for edge in _couplings(model, index)])
+        self.plants = list(model.plants)
+        self.domains: dict[Element, Domain] = {}
+        self.levels = 0
+        for vertex in order:
+            self._add(elements[vertex], vertex)
+        #: The domains that make up the state, from the top.
+        self.state = [each for each in self.domains.values() if not isinstance(each.element, sct.Input)]
+
+    def _add(self, element: Element, rank: int) -> None:
+        size = domain_size(element)
+        copies = 1 if isinstance(element, sct.Input) else 2
+        bits = (size - 1).bit_length()
+        levels = tuple(self.levels + copies * bit for bit in range(bits))
+        self.domains[element] = Domain(element, rank, size, levels, tuple(level + copies - 1 for level in levels))
+        self.levels += copies * bits
+
+
+def foreign(expression: ex.Expression) -> ModelError:
+    """What is raised at an expression that no sct model holds."""
+    message = f"a {type(expression).__name__} has no place in an sct model"
+    return ModelError([Diagnostic(*place(expression), Severity.ERROR, "type", message)])
+
+
+def domain_size(element: Element) -> int:
+    """The number of an element's values."""
+    if isinstance(element, sct.Plant):
+        return len(element.locations)
+    kind = element.type
+    if isinstance(kind, ex.IntegerType):
+        return kind.maximum - kind.minimum + 1  # type: ignore[operator]  # both bounds are given in an sct model
+    return len(kind.enumeration.literals) if isinstance(kind, ex.EnumerationType) else 2
+
+
+def smallest(element: Element) -> int:
+    """The integer that code 0 stands for; 0 for what has no integers."""
+    kind = None if isinstance(element, sct.Plant) else element.type
+    return (kind.minimum or 0) if isinstance(kind, ex.IntegerType) else 0
+
+
+def referenced(expression: ex.Expression | None) -> Iterator[Element]:
+    """The elements whose values the expression reads, once per reference."""
+    for _, each in tree(expression) if expression is not None else ():
+        match each:
+            case sct.LocationReference():
+                yield each.location.eContainer()
+            case sct.VariableReference():
+                yield each.variable
+            case sct.InputReference():
+                yield each.input
+
+
+class Encoding:
+    """The decision diagrams of a model's elements and expressions."""
+
+    def __init__(self, layout: Layout, diagrams: Diagrams) -> None:
+        self.layout = layout
+        self.diagrams = diagrams
+
+    def bits(self, element: Element) -> tuple[Diagram, ...]:
+        """The bits of an element's code, least significant first."""
+        return tuple(self.diagrams.variable(level) for level in reversed(self.layout.domains[element].levels))
+
+    def next_bits(self, element: Element) -> tuple[Diagram, ...]:
+        """The same of the next state."""
+        return tuple(self.diagrams.variable(level) for level in reversed(self.layout.domains[element].next_levels))
+
+    def has_code(self, element: Element, code: int) -> Diagram:
+        """Where the element has the value with that code."""
+        return self._same(self.bits(element), arithmetic.constant(self.diagrams, code))
+
+    def in_domain(self, element: Element) -> Diagram:
+        """Where the element's bits are a code at all."""
+        size = self.layout.domains[element].size
+        code = (*self.bits(element), self.diagrams.false)
+        return arithmetic.less(code, arithmetic.constant(self.diagrams, size))
+
+    def between(self, element: Element, first: int, last: int) -> Diagram:
+        """Where the element's code is one of first … last."""
+        code = (*self.bits(element), self.diagrams.false)
+        return ~arithmetic.less(code, arithmetic.constant(self.diagrams, first)) & ~arithmetic.less(
+            arithmetic.constant(self.diagrams, last), code
+        )
+
+    def becomes(self, element: Element, code: Vector) -> Diagram:
+        """Where the element's next code is the given one."""
+        return self._same(self.next_bits(element), code)
+
+    def keeps(self, element: Element) -> Diagram:
+        """Where the element's next value is its present one."""
+        return self.becomes(element, self.bits(element))
+
+    def _same(self, bits: Sequence[Diagram], code: Vector) -> Diagram:
+        result = self.diagrams.true
+        padded = (*code, *(code[-1] for _ in bits))
+        for bit, wanted in zip(bits, padded, strict=False):
+            result = bit.equiv(wanted) & result
+        return result
+
+    def location(self, location: sct.Location) -> Diagram:
+        """Where the location's plant is in it."""
+        return self.has_code(location.eContainer(), self._location_code(location))
+
+    def next_location(self, location: sct.Location) -> Diagram:
+        """Where the location's plant will be in it."""
+        return self.becomes(location.eContainer(), arithmetic.constant(self.diagrams, self._location_code(location)))
+
+    def marked(self, plant: sct.Plant) -> Diagram:
+        """Where the plant is in a marked location."""
+        result = self.diagrams.false
+        for code, location in enumerate(plant.locations):
+            if location.marked:
+                result |= self.has_code(plant, code)
+        return result
+
+    def state(self, codes: Mapping[Element, int]) -> Diagram:
+        """The one state in which every element has the given code."""
+        result = self.diagrams.true
+        for domain in reversed(self.layout.state):
+            result = self.has_code(domain.element, codes[domain.element]) & result
+        return result
+
+    def count(self, states: Diagram) -> int:
+        """How many states there are in a set of them."""
+        return states.sat_count(sum(len(each.levels) for each in self.layout.state))
+
+    @cached_property
+    def initial(self) -> Diagram:
+        """The initial state."""
+        return self.state(self.initial_codes)
+
+    @cached_property
+    def all_marked(self) -> Diagram:
+        """The states in which every plant is in a marked location."""
+        result = self.diagrams.true
+        for plant in self.layout.plants:
+            result &= self.marked(plant)
+        return result
+
+    @cached_property
+    def initial_codes(self) -> dict[Element, int]:
+        """The code of every element of the state in the initial state."""
+        return {each.element: self._initial_code(each.element) for each in self.layout.state}
+
+    def _initial_code(self, element: Element) -> int:
+        if isinstance(element, sct.Plant):
+            return next(code for code, each in enumerate(element.locations) if each.initial)
+        assert isinstance(element, sct.DiscreteVariable)
+        code = arithmetic.value_of(self.code(element.initial, element))
+        assert code is not None
+        return code
+
+    def code(self, value: ex.Expression, element: sct.DiscreteVariable) -> Vector:
+        """The code that the variable has after it was given the value: an integer saturates at its range."""
+        vector = self.vector(value)
+        if not isinstance(element.type, ex.IntegerType):
+            return vector
+        last = arithmetic.constant(self.diagrams, domain_size(element) - 1)
+        none = arithmetic.constant(self.diagrams, 0)
+        code = arithmetic.subtract(vector, arithmetic.constant(self.diagrams, smallest(element)))
+        code = arithmetic.choose(arithmetic.less(code, none), none, code)
+        return arithmetic.choose(arithmetic.less(last, code), last, code)
+
+    def holds(self, expression: ex.Expression | None) -> Diagram:
+        """Where a boolean expression is true; an absent one is true everywhere."""
+        match expression:
+            case None:
+                return self.diagrams.true
+            case ex.BooleanLiteral():
+                return self.diagrams.true if expression.value else self.diagrams.false
+            case sct.LocationReference():
+                return self.location(expression.location)
+            case ex.Negation():
+                return ~self.holds(expression.operand)
+            case ex.Conjunction():
+                return self.holds(expression.left) & self.holds(expression.right)
+            case ex.Disjunction():
+                return self.holds(expression.left) | self.holds(expression.right)
+            case ex.Implication():
+                return self.holds(expression.left).imp(self.holds(expression.right))
+            case ex.BinaryExpression():
+                return self._compared(expression)
+            case sct.VariableReference() | sct.InputReference() | ex.Conditional():
+                return self.vector(expression)[0]
+        raise foreign(expression)
+
+    def _compared(self, expression: ex.BinaryExpression) -> Diagram:
+        left, right = self.vector(expression.left), self.vector(expression.right)
+        match expression:
+            case ex.Equation():
+                return arithmetic.equal(left, right)
+            case ex.Inequation():
+                return ~arithmetic.equal(left, right)
+            case ex.LessThan():
+                return arithmetic.less(left, right)
+            case ex.GreaterOrEqual():
+                return ~arithmetic.less(left, right)
+            case ex.GreaterThan():
+                return arithmetic.less(right, left)
+            case ex.LessOrEqual():
+                return ~arithmetic.less(right, left)
+        raise foreign(expression)
+
+    def vector(self, expression: ex.Expression) -> Vector:
+        """The value of an expression: an integer's own, else its code; a boolean's is 0 or 1."""
+        match expression:
+            case ex.IntegerLiteral():
+                return arithmetic.constant(self.diagrams, expression.value)
+            case ex.EnumerationLiteralReference():
+                return arithmetic.constant(self.diagrams, self._code_of(expression.literal))
+            case sct.VariableReference():
+                return self._read(expression.variable)
+            case sct.InputReference():
+                return self._read(expression.input)
+            case ex.UnaryMinus():
+                return arithmetic.negate(self.vector(expression.operand))
+            case ex.Addition():
+                return arithmetic.add(self.vector(expression.left), self.vector(expression.right))
+            case ex.Subtraction():
+                return arithmetic.subtract(self.vector(expression.left), self.vector(expression.right))
+            case ex.Multiplication():
+                return arithmetic.multiply(self.vector(expression.left), self.vector(expression.right))
+            case ex.Conditional():
+                return arithmetic.choose(
+                    self.holds(expression.condition), self.vector(expression.then), self.vector(expression.otherwise)
+                )
+        return (self.holds(expression), self.diagrams.false)
+
+    def _read(self, element: sct.DiscreteVariable | sct.Input) -> Vector:
+        code = (*self.bits(element), self.diagrams.false)
+        return arithmetic.add(code, arithmetic.constant(self.diagrams, smallest(element)))
+
+    def _location_code(self, location: sct.Location) -> int:
+        plant: sct.Plant = location.eContainer()
+        return next(code for code, each in enumerate(plant.locations) if each is location)
+
+    def _code_of(self, literal: ex.EnumerationLiteral) -> int:
+        enumeration: ex.Enumeration = literal.eContainer()
+        return next(code for code, each in enumerate(enumeration.literals) if each is literal)
+
+
+def _elements(plant: sct.Plant) -> Iterator[Element]:
+    yield plant
+    yield from plant.variables
+    yield from plant.inputs
+
+
+def _couplings(model: sct.SupervisoryControlModel, index: Mapping[Element, int]) -> Iterable[list[Element]]:
+    """Which elements meet in one relation: for each event, all that its edges and requirements touch."""
+    touched: dict[sct.Event, dict[Element, None]] = {}
+    for plant in model.plants:
+        for location in plant.locations:
+            for edge in location.edges:
+                own = touched.setdefault(edge.event, {})
+                own[plant] = None
+                own.update(dict.fromkeys(referenced(edge.guard)))
+                for update in edge.updates:
+                    own[update.variable] = None
+                    own.update(dict.fromkeys(referenced(update.value)))
+    for requirement in model.requirements:
+        touched.setdefault(requirement.event, {}).update(dict.fromkeys(referenced(requirement.condition)))
+    return [sorted(each, key=index.__getitem__) for each in touched.values()]

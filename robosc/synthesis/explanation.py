@@ -1,0 +1,150 @@
+"""Why there is no supervisor."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from robosc.roles import event_name
+from robosc.synthesis.decoding import Value, value
+from robosc.synthesis.fixpoint import reachable
+from robosc.synthesis.paths import TraceStep, shortest_path, trace
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from robosc.metamodel import sct
+    from robosc.synthesis.bdd import Diagram
+    from robosc.synthesis.encoding import Element, Encoding
+    from robosc.synthesis.fixpoint import SupervisedStates
+    from robosc.synthesis.paths import Move, Path
+
+
+@dataclass(frozen=True)
+class Reason:
+    """Why a supervisor is empty.
+
+    `message` says it in a sentence. `event` is at fault: an uncontrollable event that no supervisor can prevent, or a
+    controllable one whose requirement stands between the robot and its marked states; None where the plants alone reach
+    no marked state. `unmarked` are the plants that can't be in a marked location any more once the event happened, or
+    at all; none if each can be but never all at once. `trace` is a shortest one from the initial state, the event
+    last; `state` is where it ends: every plant's location, every variable's value.
+    """
+
+    message: str
+    event: sct.Event | None
+    unmarked: tuple[sct.Plant, ...]
+    trace: tuple[TraceStep, ...]
+    state: Mapping[str, Value]
+
+
+class EmptySupervisor:
+    """Finds the reason in what the fixpoint left behind."""
+
+    def __init__(
+        self, encoding: Encoding, moves: Sequence[Move], plant_moves: Sequence[Move], found: SupervisedStates
+    ) -> None:
+        """`moves` are all events under the requirements, `plant_moves` without them."""
+        self._encoding = encoding
+        self._moves = moves
+        self._plant_moves = plant_moves
+        self._found = found
+
+    def reason(self) -> Reason:
+        """What keeps the initial state from being controlled."""
+        blocked = not (self._encoding.initial & self._found.alive[0]).satisfiable()
+        return self._blocked_from_the_start() if blocked else self._uncontrollable()
+
+    def _uncontrollable(self) -> Reason:
+        before = self._unavoidable()
+        uncontrollable = [each for each in self._moves if not each[0].event.controllable]
+        everything = self._encoding.diagrams.true
+        blocked = self._found.rounds[0] & ~self._found.alive[0]
+        first = self._path(self._moves, self._encoding.initial, before, everything)
+        last = self._path(uncontrollable, before, blocked, everything)
+        event = last.moves[0][0].event
+        unmarked = self._never_marked(last.states[-1])
+        return self._described(
+            f"{event_name(event)} can't be prevented, and after it no marked state can be reached",
+            event,
+            unmarked,
+            trace(self._encoding, first) + trace(self._encoding, last),
+            last.states[-1],
+        )
+
+    def _unavoidable(self) -> Diagram:
+        """The state before the uncontrollable event that is the root of it all.
+
+        Round by round, backwards: uncontrollable events lead from the state to one that, without the states given up in
+        earlier rounds, reaches no marked state; its nearest way there leads through one of those.
+        """
+        uncontrollable = [each for each in self._moves if not each[0].event.controllable]
+        rounds, alive = self._found.rounds, self._found.alive
+        state = self._encoding.initial
+        for index in range(len(rounds) - 2, -1, -1):
+            path = self._path(uncontrollable, state, rounds[index] & ~alive[index], rounds[index])
+            if index == 0:
+                return self._encoding.state(path.states[-2])
+            given_up = alive[index - 1] & ~rounds[index]
+            end = self._encoding.state(path.states[-1])
+            state = self._encoding.state(self._path(self._moves, end, given_up, alive[index - 1]).states[-1])
+        raise AssertionError("the initial state was never given up")
+
+    def _blocked_from_the_start(self) -> Reason:
+        path = shortest_path(
+            self._encoding,
+            self._plant_moves,
+            self._encoding.initial,
+            self._encoding.all_marked,
+            self._encoding.diagrams.true,
+        )
+        unmarked = self._never_marked(self._encoding.initial_codes)
+        problem = "no marked state can be reached"
+        if path is None:
+            return self._described(f"{problem} at all", None, unmarked, [], self._encoding.initial_codes)
+        steps = trace(self._encoding, path)
+        for index, ((relation, _), state) in enumerate(zip(path.moves, path.states, strict=False)):
+            if not (self._encoding.state(state) & relation.requirement).satisfiable():
+                return self._described(
+                    f"{problem}: the shortest way to one needs {event_name(relation.event)} where its requirement"
+                    " forbids it",
+                    relation.event,
+                    unmarked,
+                    steps[: index + 1],
+                    path.states[index],
+                )
+        raise AssertionError("the requirements forbid nothing on the way")
+
+    def _path(self, moves: Sequence[Move], start: Diagram, goal: Diagram, within: Diagram) -> Path:
+        path = shortest_path(self._encoding, moves, start, goal, within)
+        assert path is not None
+        return path
+
+    def _never_marked(self, codes: Mapping[Element, int]) -> list[sct.Plant]:
+        """The plants that are in no marked location in any state that can follow the given one."""
+        encoding = self._encoding
+        steps = [step for _, step in self._moves]
+        states = reachable(encoding.diagrams, steps, encoding.state(codes), encoding.diagrams.true)
+        return [each for each in encoding.layout.plants if not (states & encoding.marked(each)).satisfiable()]
+
+    def _described(
+        self,
+        problem: str,
+        event: sct.Event | None,
+        unmarked: Sequence[sct.Plant],
+        steps: Sequence[TraceStep],
+        codes: Mapping[Element, int],
+    ) -> Reason:
+        """The reason with its sentence completed by who is in the way, and the state by name."""
+        where = ", ".join(
+            f"{plant.name} (in {plant.locations[codes[plant]].name})" if len(plant.locations) > 1 else plant.name
+            for plant in unmarked
+        )
+        who = f"never in a marked location: {where}" if unmarked else "each plant can be marked, but never all at once"
+        state: dict[str, Value] = {}
+        for plant in self._encoding.layout.plants:
+            if len(plant.locations) > 1:
+                state[plant.name] = value(plant, codes[plant])
+            for variable in plant.variables:
+                state[f"{plant.name}.{variable.name}"] = value(variable, codes[variable])
+        return Reason(f"{problem}; {who}", event, tuple(unmarked), tuple(steps), state)

@@ -1,0 +1,129 @@
+"""Reachability and the synthesis fixpoint, by saturation.
+
+Saturation (Ciardo, Lüttgen, Siminiceanu: Saturation: an efficient iteration strategy for symbolic state-space
+generation, TACAS 2001; on decision diagrams of relations: van Dijk, van de Pol: Sylvan, STTT 2017) closes every node
+of the state set under the events that touch nothing above it before it goes on upwards, so that an event costs as much
+as what it touches, not as much as the whole set.
+
+The synthesis is that of Ouedraogo, Kumar, Malik, Åkesson: Nonblocking and safe control of discrete-event systems
+modeled as extended finite automata, T-ASE 2011, on reachable states only.
+"""
+
+from __future__ import annotations
+
+import sys
+from contextlib import contextmanager
+from dataclasses import dataclass
+from itertools import groupby
+from typing import TYPE_CHECKING
+
+from robosc.synthesis.bdd import Diagram, Diagrams, split
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Sequence
+
+    from robosc.synthesis.relation import Step
+
+
+@dataclass(frozen=True)
+class SupervisedStates:
+    """What the fixpoint found.
+
+    `rounds` are the states still held to be good, from all that are reachable under the requirements to the final ones;
+    `alive` of the same round those from which a marked state can be reached within them. `controlled` are the states
+    that are reachable under the supervisor: none if the supervisor is empty.
+    """
+
+    rounds: list[Diagram]
+    alive: list[Diagram]
+    controlled: Diagram
+
+
+class _Saturation:
+    """The closure of a state set under steps, forwards or backwards, within a bounding set."""
+
+    def __init__(self, diagrams: Diagrams, steps: Sequence[Step], fire: Callable[[Step, Diagram], Diagram]) -> None:
+        self._diagrams = diagrams
+        by_level = sorted(steps, key=lambda step: step.level)
+        self._groups = [(level, list(group)) for level, group in groupby(by_level, key=lambda step: step.level)]
+        self._fire = fire
+        self._known: dict[tuple[Diagram, Diagram, int], Diagram] = {}
+
+    def closure(self, states: Diagram, within: Diagram) -> Diagram:
+        """The least set that holds `states` and whatever the steps add within the bound."""
+        with _recursion(self._diagrams.levels + len(self._groups)):
+            return self._close(states, within, 0)
+
+    def _close(self, states: Diagram, within: Diagram, group: int) -> Diagram:
+        if group == len(self._groups) or states == within or not states.satisfiable():
+            return states
+        key = (states, within, group)
+        known = self._known.get(key)
+        if known is not None:
+            return known
+        level = min(_level(states), _level(within))
+        if level < self._groups[group][0]:
+            high, low = split(states, level)
+            high_within, low_within = split(within, level)
+            result = self._diagrams.node(
+                level, self._close(high, high_within, group), self._close(low, low_within, group)
+            )
+        else:
+            result = self._fire_all(states, within, group)
+        self._known[key] = result
+        return result
+
+    def _fire_all(self, states: Diagram, within: Diagram, group: int) -> Diagram:
+        while True:
+            closed = states = self._close(states, within, group + 1)
+            for step in self._groups[group][1]:
+                states |= self._fire(step, states) & within
+            if states == closed:
+                return closed
+
+
+def reachable(diagrams: Diagrams, steps: Sequence[Step], states: Diagram, within: Diagram) -> Diagram:
+    """All states that the steps reach from `states` without leaving `within`."""
+    return _Saturation(diagrams, steps, lambda step, each: step.image(each)).closure(states, within)
+
+
+def coreachable(diagrams: Diagrams, steps: Sequence[Step], states: Diagram, within: Diagram) -> Diagram:
+    """All states from which the steps reach `states` without leaving `within`."""
+    return _Saturation(diagrams, steps, lambda step, each: step.preimage(each)).closure(states, within)
+
+
+def supervise(
+    diagrams: Diagrams, steps: Sequence[Step], uncontrollable: Sequence[Step], initial: Diagram, marked: Diagram
+) -> SupervisedStates:
+    """The states of the maximally permissive, controllable, non-blocking supervisor.
+
+    `steps` are all events under the requirements, `uncontrollable` those of them that no supervisor can forbid.
+    """
+    good = reachable(diagrams, steps, initial, diagrams.true)
+    rounds, alive = [good], []
+    while True:
+        alive.append(coreachable(diagrams, steps, marked & good, good))
+        blocked = good & ~alive[-1]
+        if not blocked.satisfiable():
+            break
+        good &= ~coreachable(diagrams, uncontrollable, blocked, good)
+        rounds.append(good)
+        if not (initial & good).satisfiable():
+            return SupervisedStates(rounds, alive, diagrams.false)
+    return SupervisedStates(rounds, alive, reachable(diagrams, steps, initial, good))
+
+
+def _level(diagram: Diagram) -> int:
+    level = diagram.node_level()
+    return sys.maxsize if level is None else level
+
+
+@contextmanager
+def _recursion(depth: int) -> Iterator[None]:
+    """Room for a recursion over all levels."""
+    limit = sys.getrecursionlimit()
+    sys.setrecursionlimit(max(limit, 2 * depth + 1000))
+    try:
+        yield
+    finally:
+        sys.setrecursionlimit(limit)

@@ -1,0 +1,56 @@
+"""What the supervisor says of each controllable event, as expressions that a person reads."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from robosc.expressions import conjunction, copied
+from robosc.metamodel import expression as ex
+from robosc.metamodel import sct
+from robosc.synthesis.cover import separating_expression
+from robosc.synthesis.simplification import simplified
+
+if TYPE_CHECKING:
+    from robosc.synthesis.bdd import Diagram
+    from robosc.synthesis.encoding import Encoding
+    from robosc.synthesis.relation import EventRelation
+
+
+@dataclass(frozen=True)
+class Permission:
+    """In which of the controlled states a controllable event may happen, and how the supervisor says so."""
+
+    guard: sct.EventGuard
+    allowed: Diagram
+
+
+def permission(relation: EventRelation, controlled: Diagram, encoding: Encoding) -> Permission:
+    """The guard of a controllable event, over the states that are reachable under the supervisor.
+
+    In each of these states: the plants enable the event and both parts of the guard hold exactly where the event leads
+    to such a state again and its requirements hold.
+    """
+    enabled = controlled & relation.enabled
+    required = enabled & relation.requirement
+    allowed = required if relation.step is None else required & relation.step.preimage(controlled)
+    guard = sct.EventGuard(event=relation.event, everEnabled=allowed.satisfiable())
+    if enabled != required:
+        asked = conjunction(_condition(each) for each in relation.requirements)
+        assert asked is not None
+        guard.requirement = simplified(asked, enabled, encoding)
+    if allowed != required:
+        guard.synthesis = (
+            separating_expression(encoding, allowed, required & ~allowed)
+            if guard.everEnabled
+            else ex.BooleanLiteral(value=False)
+        )
+    return Permission(guard, allowed)
+
+
+def _condition(requirement: sct.Requirement) -> ex.Expression:
+    """A copy of what must hold for the event."""
+    condition = copied(requirement.condition)
+    if requirement.kind == sct.RequirementKind.needs:
+        return condition
+    return condition.operand if isinstance(condition, ex.Negation) else ex.Negation(operand=condition)

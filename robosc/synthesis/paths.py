@@ -1,0 +1,98 @@
+"""Shortest ways through the state space, event by event."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from robosc.roles import event_name
+from robosc.synthesis.decoding import Value, pick, text, value
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from robosc.synthesis.bdd import Diagram
+    from robosc.synthesis.encoding import Element, Encoding
+    from robosc.synthesis.relation import EventRelation, Step
+
+    Move = tuple[EventRelation, Step]
+
+
+@dataclass(frozen=True)
+class TraceStep:
+    """One event of a trace: its name, with its plant, and the values of those inputs on which its effect depends."""
+
+    event: str
+    inputs: Mapping[str, Value] = field(default_factory=dict)
+
+    def __str__(self) -> str:
+        """The event as a person writes it: `message_level.u_response(i_response = 3)`."""
+        values = ", ".join(f"{name} = {text(each)}" for name, each in self.inputs.items())
+        return f"{self.event}({values})" if values else self.event
+
+
+@dataclass(frozen=True)
+class Path:
+    """A way from one state to another: the states on it, both ends included, and the events between them."""
+
+    states: list[dict[Element, int]]
+    moves: list[Move]
+
+
+def shortest_path(
+    encoding: Encoding, moves: Sequence[Move], start: Diagram, goal: Diagram, within: Diagram
+) -> Path | None:
+    """A shortest path from a state of `start` to one of `goal` that stays `within` until it is there.
+
+    None where there is none. Of several the same one every time: by the order of the moves, then by the states' codes.
+    """
+    layers = [start]
+    seen = start
+    while not (layers[-1] & goal).satisfiable():
+        reached = encoding.diagrams.false
+        for _, step in moves:
+            reached |= step.image(layers[-1] & within)
+        reached &= ~seen
+        if not reached.satisfiable():
+            return None
+        layers.append(reached)
+        seen |= reached
+    return _back(encoding, moves, layers, goal, within)
+
+
+def _back(encoding: Encoding, moves: Sequence[Move], layers: Sequence[Diagram], goal: Diagram, within: Diagram) -> Path:
+    state = pick(layers[-1] & goal, encoding.layout.state)
+    states, taken = [state], []
+    for layer in reversed(layers[:-1]):
+        here = encoding.state(state)
+        move, before = next(
+            (move, before) for move in moves if (before := move[1].preimage(here) & layer & within).satisfiable()
+        )
+        state = pick(before, encoding.layout.state)
+        states.append(state)
+        taken.append(move)
+    return Path(states[::-1], taken[::-1])
+
+
+def trace(encoding: Encoding, path: Path) -> list[TraceStep]:
+    """The events of a path with the input values that take it."""
+    return [
+        TraceStep(event_name(relation.event), _inputs(encoding, relation, before, after))
+        for (relation, _), before, after in zip(path.moves, path.states[:-1], path.states[1:], strict=True)
+    ]
+
+
+def _inputs(
+    encoding: Encoding, relation: EventRelation, before: Mapping[Element, int], after: Mapping[Element, int]
+) -> dict[str, Value]:
+    """Values of the event's inputs that lead from one state to the next; none for those that do not matter."""
+    fitting = relation.between(before, after)
+    chosen = {}
+    for each in relation.event.inputs:
+        domain = encoding.layout.domains[each]
+        anything = fitting.exists(encoding.diagrams.cube(domain.levels)) & encoding.in_domain(each)
+        if anything != fitting:
+            code = pick(fitting, [domain])[each]
+            chosen[each.name] = value(each, code)
+            fitting &= encoding.has_code(each, code)
+    return chosen

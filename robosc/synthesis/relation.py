@@ -1,0 +1,153 @@
+"""What each event does to the state: one relation per event, over no more than the event touches."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from robosc.metamodel import sct
+from robosc.synthesis import arithmetic
+from robosc.synthesis.bdd import Diagram, Substitution, and_exists
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from robosc.synthesis.encoding import Element, Encoding
+
+
+@dataclass(frozen=True)
+class Step:
+    """All that an event can do under some condition, its inputs quantified: each value of theirs may come.
+
+    `relation` speaks of present and next values; what it does not mention in `changed` stays as it is.
+    """
+
+    level: int
+    relation: Diagram
+    present: Diagram
+    following: Diagram
+    to_following: Substitution
+    to_present: Substitution
+
+    def image(self, states: Diagram) -> Diagram:
+        """The states after the event in one of `states`."""
+        return and_exists(states, self.relation, self.present).substitute(self.to_present)
+
+    def preimage(self, states: Diagram) -> Diagram:
+        """The states in which the event can lead to one of `states`."""
+        return and_exists(states.substitute(self.to_following), self.relation, self.following)
+
+
+class EventRelation:
+    """One event: where the plants enable it, what the requirements ask, what it changes."""
+
+    def __init__(self, event: sct.Event, model: sct.SupervisoryControlModel, encoding: Encoding) -> None:
+        self.event = event
+        self._encoding = encoding
+        self._edges = [edges for edges in (_edges(plant, event) for plant in model.plants) if edges]
+        self.changed: tuple[Element, ...] = tuple(each for edges in self._edges for each in _changed(edges))
+        self.enabled = self._conjunction(self._enabled(edges) for edges in self._edges)
+        self.requirements = [each for each in model.requirements if each.event is event]
+        self.requirement = self._conjunction(
+            ~encoding.holds(each.condition)
+            if each.kind == sct.RequirementKind.disables
+            else encoding.holds(each.condition)
+            for each in self.requirements
+        )
+
+    def with_inputs(self) -> Diagram:
+        """The relation of present, inputs and next values, without the requirements."""
+        return self._conjunction(
+            [
+                *(self._encoding.in_domain(each) for each in self.event.inputs),
+                *(self._moves(edges) for edges in self._edges),
+            ]
+        )
+
+    def between(self, before: Mapping[Element, int], after: Mapping[Element, int]) -> Diagram:
+        """The values of the event's inputs with which it leads from one state to another, given by their codes."""
+        encoding = self._encoding
+        result = self.with_inputs() & encoding.state(before)
+        for each in self.changed:
+            result &= encoding.becomes(each, arithmetic.constant(encoding.diagrams, after[each]))
+        domains = encoding.layout.state
+        levels = [level for each in domains for level in (*each.levels, *each.next_levels)]
+        return result.exists(encoding.diagrams.cube(levels))
+
+    @cached_property
+    def plant_step(self) -> Step | None:
+        """What the event does where the plants enable it; None where it changes nothing at all."""
+        return self._step(self._encoding.diagrams.true) if self.changed else None
+
+    @cached_property
+    def step(self) -> Step | None:
+        """What the event does where the requirements allow it too."""
+        return self._step(self.requirement) if self.changed and not self.requirement.valid() else self.plant_step
+
+    def _step(self, condition: Diagram) -> Step:
+        domains = self._encoding.layout.domains
+        diagrams = self._encoding.diagrams
+        inputs = diagrams.cube(level for each in self.event.inputs for level in domains[each].levels)
+        relation = and_exists(self.with_inputs(), condition, inputs)
+        present = [level for each in self.changed for level in domains[each].levels]
+        following = [level for each in self.changed for level in domains[each].next_levels]
+        return Step(
+            level=min([*present, *_support_top(relation)]),
+            relation=relation,
+            present=diagrams.cube(present),
+            following=diagrams.cube(following),
+            to_following=diagrams.renaming(dict(zip(present, following, strict=True))),
+            to_present=diagrams.renaming(dict(zip(following, present, strict=True))),
+        )
+
+    def _conjunction(self, parts: Iterable[Diagram]) -> Diagram:
+        result = self._encoding.diagrams.true
+        for part in parts:
+            result &= part
+        return result
+
+    def _enabled(self, edges: Sequence[sct.Edge]) -> Diagram:
+        result = self._encoding.diagrams.false
+        for edge in edges:
+            result |= self._encoding.location(edge.eContainer()) & self._encoding.holds(edge.guard)
+        return result
+
+    def _moves(self, edges: Sequence[sct.Edge]) -> Diagram:
+        """One plant's part in the event."""
+        encoding = self._encoding
+        result = encoding.diagrams.false
+        changed = _changed(edges)
+        for edge in edges:
+            values = {update.variable: update.value for update in edge.updates}
+            move = encoding.location(edge.eContainer()) & encoding.holds(edge.guard)
+            for element in changed:
+                if element in values:
+                    assert isinstance(element, sct.DiscreteVariable)
+                    move &= encoding.becomes(element, encoding.code(values[element], element))
+                elif isinstance(element, sct.Plant):
+                    move &= encoding.next_location(edge.target)
+                else:
+                    move &= encoding.keeps(element)
+            result |= move
+        return result
+
+
+def _edges(plant: sct.Plant, event: sct.Event) -> list[sct.Edge]:
+    return [edge for location in plant.locations for edge in location.edges if edge.event is event]
+
+
+def _changed(edges: Sequence[sct.Edge]) -> list[Element]:
+    """The plant, where some edge leaves its location, and the variables that some edge updates."""
+    changed: dict[Element, None] = {}
+    for edge in edges:
+        if edge.target is not edge.eContainer():
+            changed[edge.target.eContainer()] = None
+    for edge in edges:
+        changed.update((update.variable, None) for update in edge.updates)
+    return list(changed)
+
+
+def _support_top(diagram: Diagram) -> list[int]:
+    level = diagram.node_level()
+    return [] if level is None else [level]
