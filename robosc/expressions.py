@@ -1,11 +1,12 @@
 """How expression trees become text: one table of precedence, one printer that every target refines."""
 
+import json
 from collections.abc import Iterable, Mapping
 from functools import reduce
 from typing import Any, ClassVar, TypeVar
 
 from robosc.metamodel import expression as ex
-from robosc.metamodel import sct
+from robosc.metamodel import robosc, sct
 from robosc.metamodel.reflection import features, is_attribute
 
 _Kind = TypeVar("_Kind", bound=ex.Expression)
@@ -91,8 +92,8 @@ class ExpressionPrinter:
         raise TypeError(f"{type(self).__name__} has no text for {type(expression).__name__}")
 
 
-class SctPrinter(ExpressionPrinter):
-    """Prints an expression of an sct model for a person, in RoboSC's operators, each name with its plant before it."""
+class RoboscPrinter(ExpressionPrinter):
+    """Prints a linked expression of a robot model as its author would write it, states and variables qualified."""
 
     symbols: ClassVar[Mapping[type[ex.Expression], str]] = {
         ex.Implication: "=>",
@@ -107,9 +108,38 @@ class SctPrinter(ExpressionPrinter):
         ex.Addition: "+",
         ex.Subtraction: "-",
         ex.Multiplication: "*",
+        ex.Division: "/",
         ex.Negation: "!",
         ex.UnaryMinus: "-",
     }
+
+    def atom(self, expression: ex.Expression) -> str:
+        """A name with the steps into its data, or a literal."""
+        match expression:
+            case robosc.Access():
+                name = "value" if expression.item is None else expression.item.name
+                owner = f"{expression.component.name}." if expression.component else ""
+                return owner + name + "".join(map(_step, expression.segments))
+            case ex.BooleanLiteral():
+                return "true" if expression.value else "false"
+            case ex.IntegerLiteral() | ex.DoubleLiteral():
+                return str(expression.value)
+            case ex.StringLiteral():
+                return json.dumps(expression.value, ensure_ascii=False)
+        return super().atom(expression)
+
+
+def _step(segment: robosc.AccessSegment) -> str:
+    if isinstance(segment, robosc.PropertySegment):
+        return f".{segment.property.name}"
+    assert isinstance(segment, robosc.IndexSegment)
+    return f"[{segment.index}]"
+
+
+class SctPrinter(ExpressionPrinter):
+    """Prints an expression of an sct model for a person, in RoboSC's operators, each name with its plant before it."""
+
+    symbols = RoboscPrinter.symbols
 
     def atom(self, expression: ex.Expression) -> str:
         """A reference as `plant.name`, a literal, a choice as `(if a then b else c)`."""
