@@ -1,0 +1,202 @@
+"""What a robot model means on the ROS side."""
+
+from collections.abc import Callable
+
+import pytest
+
+from robosc.m2m import robosc_to_rosgraph, robosc_to_sct
+from robosc.metamodel import expression as ex
+from robosc.metamodel import rosgraph, sct
+
+SCANNER = """
+robot R {
+  interface laser use LaserScan from sensor_msgs
+  interface twist use Twist from geometry_msgs
+  datatype object Vector { x: double z: double }
+  datatype object Twist { linear: Vector angular: Vector }
+  datatype object Scan { ranges: array(double) count: integer }
+  datatype enum Front from Scan to { value.ranges[0] < 1.0 and value.count / 2 > 1 -> near default -> open }
+  datatype enum Side from Scan to { value.ranges[90] < 1.0 -> wall default -> gap }
+  datatype enum Level from double to { value > 1.0 -> high default -> low }
+  component Lidar {
+    outgoing message front with identifier: "/scan", type: Front links laser
+    outgoing message side with identifier: "/scan", type: Side links laser
+    outgoing message battery with type: Level
+    outgoing message offset with type: double
+    behaviour {
+      variable f: Front variable s: Side variable battery_level: Level
+      variable last: double = -0.5
+      variable scaled: double
+      on response from front do f := value
+      on response from battery do battery_level := value
+      initial marked state a {
+        on response from side do s := value
+        on response from offset do last := value, scaled := last goto b
+      }
+      state b { on response from offset do last := value / 2 goto a }
+    }
+  }
+  component Base {
+    incoming message go with identifier: "cmd_vel", type: Twist links twist
+    incoming message stop with identifier: "cmd_vel", type: Twist links twist
+    incoming message blink with type: integer
+  }
+  requirement go needs Lidar.f = open and Lidar.a
+  provide go with { linear: { x: 0.5 }, angular: { z: -Lidar.last / 100 } } if Lidar.a
+  provide go with { linear: { x: 0.1 } }
+  provide blink with 3
+}
+"""
+
+
+@pytest.fixture
+def graph(robot: Callable) -> rosgraph.RosGraph:
+    _, trace = robosc_to_sct.transform(robot(SCANNER))
+    return robosc_to_rosgraph.transform(trace)
+
+
+def test_one_topic_of_one_type_is_one_subscription(graph):
+    shown = [(each.topic, each.interface.type, [part.name for part in each.receptions]) for each in graph.subscriptions]
+    assert shown == [
+        ("/scan", "LaserScan", ["front", "side"]),
+        ("battery", "Float32", ["battery"]),
+        ("offset", "Float32", ["offset"]),
+    ]
+
+
+def test_messages_to_one_topic_share_a_publisher(graph):
+    shown = [(each.topic, each.interface.type, [part.name for part in each.sendings]) for each in graph.publishers]
+    assert shown == [("cmd_vel", "Twist", ["go", "stop"]), ("blink", "Int16", ["blink"])]
+
+
+def test_an_interface_stands_once(graph):
+    assert [(each.package, each.type) for each in graph.interfaces] == [
+        ("sensor_msgs", "LaserScan"),
+        ("std_msgs", "Float32"),
+        ("geometry_msgs", "Twist"),
+        ("std_msgs", "Int16"),
+    ]
+
+
+def test_what_the_supervisor_does_not_need_lives_in_the_node(graph):
+    assert [(each.component, each.name) for each in graph.variables] == [
+        ("Lidar", "s"),
+        ("Lidar", "battery_level"),
+        ("Lidar", "last"),
+        ("Lidar", "scaled"),
+    ]
+    assert [each.name for each in graph.enumerations] == ["Side", "Level"]
+
+
+def test_only_needed_data_becomes_an_input(graph):
+    inputs = {part.name: list(part.inputs) for each in graph.subscriptions for part in each.receptions}
+    assert {name: len(each) for name, each in inputs.items()} == {"front": 1, "side": 0, "battery": 0, "offset": 0}
+    call = inputs["front"][0].value
+    assert isinstance(call, rosgraph.ConversionCall)
+    assert call.conversion.name == "Front"
+    assert call.argument.type is None
+    assert not call.argument.steps
+    assert call.conversion.enumeration.eContainer() is graph.model
+
+
+def test_a_conversion_reads_the_message_and_divides_doubles(graph):
+    rule = next(each for each in graph.conversions if each.name == "Front").rules[0]
+    near, many = rule.condition.left, rule.condition.right
+    field, index = near.left.steps
+    assert (field.name, index.index) == ("ranges", 0)
+    assert isinstance(many.left, ex.Division)
+    assert isinstance(many.left.left, ex.DoubleConversion)
+    assert many.left.right.value == 2.0
+    assert many.right.value == 1.0
+    assert rule.literal.name == "near"
+
+
+def test_a_basic_value_is_in_the_field_data(graph):
+    level = next(each for each in graph.reactions if each.assignments[0].variable.name == "battery_level")
+    argument = level.assignments[0].value.argument
+    assert [each.name for each in argument.steps] == ["data"]
+    assert isinstance(argument.type, ex.DoubleType)
+
+
+def test_reactions_stand_where_their_transitions_do(graph):
+    shown = [
+        (each.event.eContainer().name, [at.name for at in each.locations], [a.variable.name for a in each.assignments])
+        for each in graph.reactions
+    ]
+    assert shown == [
+        ("message_battery", ["a", "b"], ["battery_level"]),
+        ("message_side", ["a"], ["s"]),
+        ("message_offset", ["a"], ["last", "scaled"]),
+        ("message_offset", ["b"], ["last"]),
+    ]
+
+
+def test_provided_data_is_flattened_to_fields(graph):
+    go = graph.publishers[0].sendings[0]
+    assert [each.location.name for each in go.alternatives] == ["d1", "d2"]
+    assert [list(each.path) for each in go.alternatives[0].fields] == [["linear", "x"], ["angular", "z"]]
+    assert isinstance(go.alternatives[0].fields[1].value, ex.Division)
+    assert not graph.publishers[0].sendings[1].alternatives
+    (blink,) = graph.publishers[1].sendings[0].alternatives
+    assert [list(each.path) for each in blink.fields] == [["data"]]
+
+
+def test_node_expressions_may_read_the_state(robot):
+    _, trace = robosc_to_sct.transform(
+        robot(
+            """robot R {
+              component C {
+                incoming message lamp with type: boolean
+                outgoing message m with type: integer(0..3)
+                behaviour {
+                  variable n: integer(0..3)
+                  variable copy: integer
+                  on response from m do n := value, copy := n + 1
+                  initial marked state off { transition if n > 1 goto lit }
+                  state lit { }
+                }
+              }
+              provide lamp with C.lit
+            }""".replace("state lit { }", "marked state lit { }")
+        )
+    )
+    graph = robosc_to_rosgraph.transform(trace)
+    (field,) = graph.publishers[0].sendings[0].alternatives[0].fields
+    assert isinstance(field.value, sct.LocationReference)
+    (assignment,) = graph.reactions[0].assignments
+    assert isinstance(assignment.value.left, sct.VariableReference)
+
+
+def test_services_and_actions_have_their_events(robot):
+    _, trace = robosc_to_sct.transform(
+        robot(
+            """robot R {
+              interface b use SetBool from std_srvs
+              interface n use Move from nav
+              datatype object Ask { data: boolean }
+              datatype object Answer { success: boolean }
+              component C {
+                service s with identifier: "/s", request: Ask, response: Answer links b
+                service e with request: none, response: none
+                action a with request: none, response: none, feedback: none links n
+                behaviour { variable ok: boolean initial marked state x { on response from s do ok := value.success } }
+              }
+              provide s with { data: C.x }
+            }"""
+        )
+    )
+    graph = robosc_to_rosgraph.transform(trace)
+    assert [(each.identifier, each.interface.type) for each in graph.serviceClients] == [
+        ("/s", "SetBool"),
+        ("e", "Empty"),
+    ]
+    service, (action,) = graph.serviceClients[0], graph.actionClients
+    assert [service.request.event.name, service.response.event.name, service.error.name, service.reset.name] == [
+        "c_trigger",
+        "u_response",
+        "u_error",
+        "c_reset",
+    ]
+    assert [action.feedback.event.name, action.cancel.name] == ["u_feedback", "c_cancel"]
+    (reaction,) = graph.reactions
+    assert [each.name for each in reaction.assignments[0].value.steps] == ["success"]

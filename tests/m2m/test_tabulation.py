@@ -1,0 +1,58 @@
+"""A tabulated comparison holds exactly where the comparison of doubles does."""
+
+from itertools import product
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from robosc.evaluation import evaluate
+from robosc.m2m.tabulation import LIMIT, TooLargeError, tabulate
+from robosc.metamodel import expression as ex
+from robosc.metamodel import sct
+
+VARIABLES = [sct.DiscreteVariable(name=name) for name in ("x", "y")]
+COMPARISONS = [ex.Equation, ex.Inequation, ex.LessThan, ex.LessOrEqual, ex.GreaterThan, ex.GreaterOrEqual]
+
+
+def reference(index):
+    return sct.VariableReference(variable=VARIABLES[index])
+
+
+def copy(expression):
+    return sct.VariableReference(variable=expression.variable)
+
+
+def operands():
+    leaves = st.one_of(
+        st.sampled_from([0, 1]).map(reference),
+        st.integers(0, 4).map(lambda value: ex.IntegerLiteral(value=value)),
+        st.sampled_from([0.0, 0.5, 2.5]).map(lambda value: ex.DoubleLiteral(value=value)),
+    )
+    return st.recursive(
+        leaves,
+        lambda inner: st.one_of(
+            inner.map(lambda each: ex.UnaryMinus(operand=each)),
+            st.tuples(st.sampled_from([ex.Addition, ex.Subtraction, ex.Multiplication, ex.Division]), inner, inner).map(
+                lambda parts: parts[0](left=parts[1], right=parts[2])
+            ),
+        ),
+        max_leaves=6,
+    )
+
+
+@given(st.sampled_from(COMPARISONS), operands(), operands(), st.integers(-3, 0), st.integers(0, 3))
+def test_equal_for_every_value(kind, left, right, low, high):
+    comparison = kind(left=left, right=right)
+    whole = range(low, high + 1)
+    table = tabulate(comparison, [reference(0), reference(1)], [whole, whole], copy)
+    for values in product(whole, whole):
+        valuation = dict(zip(VARIABLES, values, strict=True))
+        read = lambda each: valuation[each.variable]  # noqa: B023, E731 - used at once
+        assert evaluate(table, read) == evaluate(comparison, read)
+
+
+def test_too_many_valuations_are_refused():
+    comparison = ex.GreaterThan(left=reference(0), right=ex.DoubleLiteral(value=0.5))
+    with pytest.raises(TooLargeError):
+        tabulate(comparison, [reference(0)], [range(LIMIT + 1)], copy)
