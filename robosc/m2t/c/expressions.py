@@ -1,0 +1,268 @@
+"""Expressions of an sct model as C: nothing in them overflows, and none is always true or always false."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robosc.expressions import ATOM, PRECEDENCE, ExpressionPrinter
+from robosc.m2t.c.ranges import All, Some, children_of, parts_of
+from robosc.m2t.c.types import Interval, number, signed, type_name
+from robosc.metamodel import expression as ex
+from robosc.metamodel import sct
+
+if TYPE_CHECKING:
+    from collections.abc import Collection
+
+    from robosc.m2t.c.names import CNames
+    from robosc.m2t.c.ranges import Node, Ranges
+
+_LOGICAL = (ex.Implication, ex.Disjunction, ex.Conjunction, ex.Negation, ex.BooleanLiteral, sct.LocationReference)
+_COMPARISONS = (
+    ex.Equation,
+    ex.Inequation,
+    ex.LessThan,
+    ex.LessOrEqual,
+    ex.GreaterThan,
+    ex.GreaterOrEqual,
+)
+_ARITHMETIC = (ex.Addition, ex.Subtraction, ex.Multiplication, ex.UnaryMinus)
+_CONDITIONAL = 0
+_UNARY = PRECEDENCE[ex.Negation]
+
+
+def is_condition(node: Node) -> bool:
+    """Whether the value is a boolean."""
+    match node:
+        case All() | Some():
+            return True
+        case sct.VariableReference():
+            return isinstance(node.variable.type, ex.BooleanType)
+        case sct.InputReference():
+            return isinstance(node.input.type, ex.BooleanType)
+        case ex.Conditional():
+            return is_condition(node.then)
+    return isinstance(node, (*_LOGICAL, *_COMPARISONS))
+
+
+def enumeration_of(node: Node) -> ex.Enumeration | None:
+    """The enumeration that the value is of; None for booleans and integers."""
+    match node:
+        case ex.EnumerationLiteralReference():
+            enumeration = node.literal.eContainer()
+            assert isinstance(enumeration, ex.Enumeration)
+            return enumeration
+        case sct.VariableReference(variable=declaration) | sct.InputReference(input=declaration):
+            return declaration.type.enumeration if isinstance(declaration.type, ex.EnumerationType) else None
+        case ex.Conditional():
+            return enumeration_of(node.then)
+    return None
+
+
+def working_type(node: ex.Expression, ranges: Ranges) -> str:
+    """The type in which an operator on integers computes: `int` where 16 bits do, else `int32_t` or `int64_t`.
+
+    Raises OverflowError where its value or an operand may not even fit into int64_t.
+    """
+    values = Interval(0, 0) if is_condition(node) else ranges(node)
+    for child in children_of(node):
+        if not is_condition(child):
+            values = values.union(ranges(child))
+    for bits, name in ((16, "int"), (32, "int32_t"), (64, "int64_t")):
+        if signed(bits).holds(values):
+            return name
+    raise OverflowError(f"a value between {values.low} and {values.high} does not fit into 64 bits")
+
+
+class CPrinter(ExpressionPrinter):
+    """Prints expressions over `state->…` and `inputs->…`; variables in `old` are read from `old.…` instead."""
+
+    symbols = {  # noqa: RUF012  # ClassVar in the parent
+        ex.Disjunction: "||",
+        ex.Conjunction: "&&",
+        ex.Equation: "==",
+        ex.Inequation: "!=",
+        ex.LessThan: "<",
+        ex.LessOrEqual: "<=",
+        ex.GreaterThan: ">",
+        ex.GreaterOrEqual: ">=",
+        ex.Addition: "+",
+        ex.Subtraction: "-",
+        ex.Multiplication: "*",
+        ex.Negation: "!",
+        ex.UnaryMinus: "-",
+    }
+
+    def __init__(self, names: CNames, ranges: Ranges, old: Collection[sct.DiscreteVariable] = ()) -> None:
+        self.names = names
+        self.ranges = ranges
+        self._old = old
+
+    def __call__(self, node: Node) -> str:
+        """The text, without parentheses around it."""
+        node = self.reduced(node)
+        constant = self.constant(node)
+        if constant is not None:
+            return constant
+        parts = self.parts(node)
+        if parts is not None:
+            return f" {'&&' if isinstance(node, (All, ex.Conjunction)) else '||'} ".join(self.terms(node))
+        assert isinstance(node, ex.Expression)
+        return super().__call__(node)
+
+    def terms(self, node: Node) -> list[str]:
+        """The conditions of a conjunction or disjunction, each once, in the parentheses that they need in it."""
+        outer = self.precedence(node)
+        parts = self.parts(node)
+        assert parts is not None
+        texts = [self(part) if self.precedence(part) > max(outer, 3) else f"({self(part)})" for part in parts]
+        return list(dict.fromkeys(texts))
+
+    def parts(self, node: Node) -> list[Node] | None:
+        """What a conjunction or disjunction is made of, without what is always true or false."""
+        parts = parts_of(node)
+        return None if parts is None else [part for part in parts if self.ranges(part).single is None]
+
+    def reduced(self, node: Node) -> Node:
+        """The part of an expression that decides it, where the rest is constant."""
+        while self.ranges(node).single is None:
+            parts = self.parts(node)
+            match node:
+                case _ if parts is not None and len(parts) == 1:
+                    node = parts[0]
+                case ex.Implication() if self.ranges(node.left).single is not None:
+                    node = node.right
+                case ex.Conditional() if self.ranges(node.condition).single is not None:
+                    node = node.then if self.ranges(node.condition).single else node.otherwise
+                case _:
+                    break
+        return node
+
+    def constant(self, node: Node) -> str | None:
+        """The text of an expression that has one value only; None of others."""
+        value = self.ranges(node).single
+        if value is None:
+            return None
+        if is_condition(node):
+            return "true" if value else "false"
+        enumeration = enumeration_of(node)
+        return number(value) if enumeration is None else self.names.enumerator(enumeration.literals[value])
+
+    def precedence(self, expression: Node) -> int:
+        """How tightly the text binds."""
+        node = self.reduced(expression)
+        if self.ranges(node).single is not None:
+            return _UNARY if not is_condition(node) and self.ranges(node).low < 0 else ATOM
+        match node:
+            case All():
+                return PRECEDENCE[ex.Conjunction]
+            case Some():
+                return PRECEDENCE[ex.Disjunction]
+            case ex.Implication() if self.ranges(node.right).single is not None:
+                return _UNARY
+            case ex.Implication():
+                return PRECEDENCE[ex.Disjunction]
+            case sct.LocationReference():
+                return PRECEDENCE[ex.Equation]
+            case ex.Negation() if isinstance(self.reduced(node.operand), sct.LocationReference):
+                return PRECEDENCE[ex.Equation]
+            case ex.Conditional():
+                return _CONDITIONAL
+        assert isinstance(node, ex.Expression)
+        return super().precedence(node)
+
+    def binary(self, expression: ex.BinaryExpression) -> str:
+        """An implication by `!` and `||`, all else as it is."""
+        if not isinstance(expression, ex.Implication):
+            return super().binary(expression)
+        left = self(expression.left)
+        premise = f"!{left}" if self.precedence(expression.left) == ATOM else f"!({left})"
+        if self.ranges(expression.right).single is not None:
+            return premise
+        right = self(expression.right)
+        return f"{premise} || {right if self.precedence(expression.right) > 3 else f'({right})'}"
+
+    def unary(self, expression: ex.UnaryExpression) -> str:
+        """`!=` for a location that is not the current one; a minus in a type that holds the result."""
+        operand = self.reduced(expression.operand)
+        if isinstance(expression, ex.Negation) and isinstance(operand, sct.LocationReference):
+            return self.location(operand, "!=")
+        if isinstance(expression, ex.UnaryMinus):
+            return f"-{self.converted(expression, expression.operand)}"
+        return super().unary(expression)
+
+    def operand(self, parent: ex.BinaryExpression, child: ex.Expression, *, chain: bool) -> str:
+        """An operand: integers in the type in which the parent computes, conditions in parentheses."""
+        if isinstance(parent, (*_ARITHMETIC, *_COMPARISONS)) and enumeration_of(child) is None:
+            if is_condition(child):
+                text = self(child)
+                return text if self.precedence(child) == ATOM else f"({text})"
+            if working_type(parent, self.ranges) != "int":
+                return self.converted(parent, child)
+        return super().operand(parent, child, chain=chain)
+
+    def converted(self, parent: ex.Expression, child: ex.Expression) -> str:
+        """An operand of arithmetic as a unary expression."""
+        wanted = working_type(parent, self.ranges)
+        text = self(child)
+        constant = self.ranges(child).single is not None
+        kept = constant or wanted == "int" or self.type(child) == wanted
+        bare = self.precedence(child) == ATOM
+        text = text if bare else f"({text})"
+        return text if kept else f"({wanted}){text}"
+
+    def type(self, node: ex.Expression) -> str:
+        """The C type of the text; `int` for all that C makes one."""
+        node = self.reduced(node)  # type: ignore[assignment]
+        match node:
+            case _ if self.ranges(node).single is not None or is_condition(node):
+                return "int"
+            case sct.VariableReference(variable=declaration) | sct.InputReference(input=declaration):
+                return type_name(declaration.type)
+            case ex.Conditional():
+                return "int32_t" if working_type(node, self.ranges) == "int" else working_type(node, self.ranges)
+        return working_type(node, self.ranges)
+
+    def atom(self, expression: ex.Expression) -> str:
+        """References, literals and choices."""
+        match expression:
+            case sct.VariableReference():
+                where = "old." if expression.variable in self._old else "state->"
+                return where + self.names.member(expression.variable)
+            case sct.InputReference():
+                return f"inputs->{self.names.member(expression.input)}"
+            case sct.LocationReference():
+                return self.location(expression, "==")
+            case ex.Conditional():
+                return self.choice(expression)
+        return super().atom(expression)
+
+    def location(self, reference: sct.LocationReference, operator: str) -> str:
+        """Whether a plant is in a location."""
+        plant = reference.location.eContainer()
+        assert isinstance(plant, sct.Plant)
+        return f"state->{self.names.member(plant)} {operator} {self.names.enumerator(reference.location)}"
+
+    def choice(self, expression: ex.Conditional) -> str:
+        """A conditional expression, both of its values of one type."""
+        condition = self(expression.condition)
+        if self.precedence(expression.condition) <= _CONDITIONAL:
+            condition = f"({condition})"
+        enumeration = enumeration_of(expression)
+        if is_condition(expression):
+            values = [
+                self(each) if self.precedence(each) > _CONDITIONAL else f"({self(each)})"
+                for each in (expression.then, expression.otherwise)
+            ]
+        elif enumeration is not None:
+            kind = type_name(ex.EnumerationType(enumeration=enumeration))
+            values = [self.cast(kind, each) for each in (expression.then, expression.otherwise)]
+        else:
+            working = working_type(expression, self.ranges)
+            kind = "int32_t" if working == "int" else working
+            values = [self.cast(kind, each) for each in (expression.then, expression.otherwise)]
+        return f"{condition} ? {values[0]} : {values[1]}"
+
+    def cast(self, kind: str, node: ex.Expression) -> str:
+        """The value converted to a type."""
+        text = self(node)
+        return f"({kind}){text if self.precedence(node) == ATOM else f'({text})'}"

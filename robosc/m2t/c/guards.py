@@ -1,0 +1,72 @@
+"""When an event can happen: where its plants have an edge for it, and the supervisor allows it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robosc.m2t.c.ranges import All, Node, Some
+from robosc.metamodel import expression as ex
+from robosc.metamodel import sct
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Sequence
+
+    from robosc.m2t.c.expressions import CPrinter
+
+#: The edges of one event in one plant, by the location they start from.
+Edges = dict[sct.Location, sct.Edge]
+
+
+class EventTable:
+    """The edges of each event, plant by plant in the order of the model, and what the supervisor asks."""
+
+    def __init__(self, model: sct.SupervisoryControlModel) -> None:
+        self.edges: dict[sct.Event, dict[sct.Plant, Edges]] = {
+            event: {} for plant in model.plants for event in plant.events
+        }
+        for plant in model.plants:
+            for location in plant.locations:
+                for edge in location.edges:
+                    self.edges[edge.event].setdefault(plant, {})[location] = edge
+        assert model.supervisor is not None
+        self.guards = {guard.event: guard for guard in model.supervisor.guards}
+        self.requirements: dict[sct.Event, list[sct.Requirement]] = {}
+        for requirement in model.requirements:
+            self.requirements.setdefault(requirement.event, []).append(requirement)
+
+    def possible(self, event: sct.Event, printer: CPrinter) -> All:
+        """Where all plants of the event can take part in it."""
+        return All([_possible(plant, edges, printer) for plant, edges in self.edges[event].items()])
+
+    def required(self, event: sct.Event) -> All:
+        """What the requirements ask."""
+        return All(_given(self.guards[event].requirement) if event in self.guards else [])
+
+    def added(self, event: sct.Event) -> All:
+        """What synthesis added."""
+        return All(_given(self.guards[event].synthesis) if event in self.guards else [])
+
+    def stays(self, event: sct.Event, plant: sct.Plant) -> Node:
+        """Where the event would leave a plant, which takes part in it, in its location."""
+        loops = [location for location, edge in self.edges[event].get(plant, {}).items() if edge.target is location]
+        return within(plant, loops, plant.locations)
+
+
+def within(plant: sct.Plant, locations: Collection[sct.Location], possible: Sequence[sct.Location]) -> Node:
+    """That a plant is in one of the locations given that it is in a possible one, said the shorter way."""
+    others = [each for each in possible if each not in locations]
+    if len(locations) <= len(others):
+        return Some([sct.LocationReference(location=each) for each in plant.locations if each in locations])
+    return All([ex.Negation(operand=sct.LocationReference(location=each)) for each in others])
+
+
+def _possible(plant: sct.Plant, edges: Edges, printer: CPrinter) -> Node:
+    by_guard: dict[str, tuple[list[Node], list[sct.Location]]] = {}
+    for location, edge in edges.items():
+        guard = All(_given(edge.guard))
+        by_guard.setdefault(printer(guard), ([guard], []))[1].append(location)
+    return Some([All([within(plant, locations, plant.locations), *guard]) for guard, locations in by_guard.values()])
+
+
+def _given(expression: ex.Expression | None) -> list[Node]:
+    return [] if expression is None else [expression]

@@ -1,0 +1,92 @@
+"""What the elements of an sct model are called in C. ROS nodes, in C++, call them the same."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from robosc.naming import Names, snake_case
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Sequence
+
+    from robosc.metamodel import expression as ex
+    from robosc.metamodel import sct
+
+#: Keywords of C99, C11, C23 and C++20, and names that headers and compilers define.
+_KEYWORDS = """
+alignas alignof and and_eq asm atomic_cancel atomic_commit atomic_noexcept auto bitand bitor bool break case catch char
+char8_t char16_t char32_t class co_await co_return co_yield compl concept const const_cast consteval constexpr constinit
+continue decltype default delete do double dynamic_cast else enum explicit export extern false float for friend goto if
+inline int long mutable namespace new noexcept not not_eq nullptr operator or or_eq private protected public reflexpr
+register reinterpret_cast requires restrict return short signed sizeof static static_assert static_cast struct switch
+synchronized template this thread_local throw true try typedef typeid typename typeof typeof_unqual union unsigned using
+virtual void volatile wchar_t while xor xor_eq NULL offsetof int8_t int16_t int32_t int64_t uint8_t uint16_t uint32_t
+uint64_t size_t ptrdiff_t linux unix i386
+"""
+KEYWORDS = frozenset(_KEYWORDS.split())
+_API = """
+event state inputs settings hooks supervisor default_settings init enabled perform begin end tick event_name
+"""
+
+
+class CNames:
+    """The C names of the elements of one model. No two elements of one scope share one, none is a keyword.
+
+    `prefix` begins every name at file level (`line_follower`), `macro` every macro (`LINE_FOLLOWER`). A member of the
+    state is named as its plant or `plant_variable`, an enumerator `prefix_plant_event`; of names that clash, the
+    second gets an underscore.
+    """
+
+    def __init__(self, model: sct.SupervisoryControlModel) -> None:
+        self.prefix = _identifier(snake_case(model.name)).strip("_") or "robot"
+        if self.prefix[0].isdigit():
+            self.prefix = f"robot_{self.prefix}"
+        self.macro = self.prefix.upper()
+        self._global: dict[ex.NamedElement, str] = {}
+        self._lookups: dict[ex.NamedElement, str] = {}
+        self._name_globals(model)
+        self._members = self._named(model, lambda plant: [plant, *plant.variables])
+        self._members |= self._named(model, lambda plant: plant.inputs)
+
+    def _name_globals(self, model: sct.SupervisoryControlModel) -> None:
+        names = Names(f"{self.prefix}_{each}" for each in _API.split())
+        owners: list[tuple[str, ex.NamedElement, Sequence[ex.NamedElement]]] = [
+            *(("location_name", plant, [*plant.events, *plant.locations]) for plant in model.plants),
+            *(("literal_name", each, [*each.literals]) for each in model.enumerations),
+        ]
+        for _, owner, elements in owners:
+            for element in elements:
+                self._global[element] = names.fresh(self._prefixed(owner.name, element.name))
+        for lookup, owner, _ in owners:
+            self._lookups[owner] = names.fresh(self._prefixed(lookup, owner.name))
+
+    def _named(
+        self, model: sct.SupervisoryControlModel, elements_of: Callable[[sct.Plant], Iterable[ex.NamedElement]]
+    ) -> dict[ex.NamedElement, str]:
+        """The members of one struct."""
+        names = Names(KEYWORDS)
+        return {
+            element: names.fresh(_identifier(plant.name if element is plant else f"{plant.name}_{element.name}"))
+            for plant in model.plants
+            for element in elements_of(plant)
+        }
+
+    def enumerator(self, element: sct.Event | sct.Location | ex.EnumerationLiteral) -> str:
+        """The enumerator of an event, location or literal: `line_follower_message_move_c_trigger`."""
+        return self._global[element]
+
+    def member(self, element: sct.Plant | sct.DiscreteVariable | sct.Input) -> str:
+        """The member of the state (a plant's location, a variable) or of the inputs: `component_LidarSensor`."""
+        return self._members[element]
+
+    def lookup(self, owner: sct.Plant | ex.Enumeration) -> str:
+        """The function that gives the name of a plant's location or of an enumeration's literal."""
+        return self._lookups[owner]
+
+    def _prefixed(self, *parts: str) -> str:
+        return _identifier("_".join([self.prefix, *parts]))
+
+
+def _identifier(name: str) -> str:
+    return re.sub(r"[^A-Za-z0-9_]", lambda found: f"_u{ord(found[0]):04x}", name)

@@ -1,0 +1,61 @@
+"""What the engine in C asks of a model beyond what every sct model keeps."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robosc.diagnostics import START, Diagnostic, Severity, Span
+from robosc.m2t.c.expressions import is_condition, working_type
+from robosc.m2t.c.ranges import Ranges, children_of
+from robosc.metamodel import expression as ex
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from robosc.metamodel import sct
+
+RULE = "c-overflow"
+
+
+def preconditions(model: sct.SupervisoryControlModel) -> list[Diagnostic]:
+    """An error for each computation whose intermediate values may not fit into 64 bits."""
+    ranges = Ranges()
+    return [
+        Diagnostic(
+            file=(element.source or model.name).partition(":")[0],
+            span=Span.parse(element.source) or START,
+            severity=Severity.ERROR,
+            rule=RULE,
+            message=f"this computation can overflow in C: {fault}",
+            hint="give its variables smaller ranges",
+        )
+        for element, expression in _expressions(model)
+        for fault in _overflows(expression, ranges)
+    ]
+
+
+def _expressions(model: sct.SupervisoryControlModel) -> Iterator[tuple[ex.Located, ex.Expression]]:
+    """Every expression that the engine computes, with what it stands in."""
+    for plant in model.plants:
+        for location in plant.locations:
+            for edge in location.edges:
+                if edge.guard is not None:
+                    yield edge, edge.guard
+                for update in edge.updates:
+                    yield update, update.value
+    for guard in model.supervisor.guards if model.supervisor else ():
+        for part in (guard.requirement, guard.synthesis):
+            if part is not None:
+                yield guard.event, part
+
+
+def _overflows(expression: ex.Expression, ranges: Ranges) -> Iterator[str]:
+    for child in children_of(expression):
+        assert isinstance(child, ex.Expression)
+        yield from _overflows(child, ranges)
+    computes = isinstance(expression, (ex.BinaryExpression, ex.UnaryExpression, ex.Conditional))
+    if computes and not all(is_condition(child) for child in children_of(expression)):
+        try:
+            working_type(expression, ranges)
+        except OverflowError as fault:
+            yield str(fault)

@@ -1,0 +1,30 @@
+"""The target `supervisor`: the engine in C99 as a static library, for robots with and without ROS."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robosc.m2t.c import engine
+from robosc.m2t.c import preconditions as c_preconditions
+from robosc.m2t.c.names import CNames
+from robosc.m2t.templates import environment
+
+if TYPE_CHECKING:
+    from robosc.config import Configuration
+    from robosc.diagnostics import Diagnostic
+    from robosc.models import Models
+
+
+def preconditions(models: Models, configuration: Configuration) -> list[Diagnostic]:  # noqa: ARG001
+    """What keeps the model from being generated: a computation that needs more than 64 bits."""
+    return c_preconditions.preconditions(models.sct)
+
+
+def generate(models: Models, configuration: Configuration) -> dict[str, str]:
+    """Header, source and `CMakeLists.txt` of a model with its supervisor: relative path to text."""
+    names = CNames(models.sct)
+    build = environment("robosc.m2t.supervisor").get_template("CMakeLists.txt.j2")
+    return {
+        **engine.generate(models.sct, configuration.control_loop),
+        "CMakeLists.txt": build.render(p=names.prefix, u=names.macro, version=configuration.package.version),
+    }
