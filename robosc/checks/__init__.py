@@ -26,12 +26,15 @@ for _module in iter_modules(__path__):
     import_module(f"{__name__}.{_module.name}")
 
 
-def check(base: rsc.Base, known: Iterable[Diagnostic] = ()) -> list[Diagnostic]:
+def check(base: rsc.Base | None, known: Iterable[Diagnostic] = ()) -> list[Diagnostic]:
     """All breaches of rules in a robot or library and in every library that its imports reach, in order.
 
     `known` are the findings from reading the text: a rule that concludes something from what is absent keeps silent
-    where text could not be read or a name not be resolved. They are not repeated in the answer.
+    where text could not be read or a name not be resolved. They are not repeated in the answer. Nothing is wrong with a
+    base that is None: reading has said why there is none.
     """
+    if base is None:
+        return []
     unread: dict[str, list[Span]] = {}
     for each in known:
         unread.setdefault(each.file, []).append(each.span)

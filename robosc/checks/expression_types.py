@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from robosc.checks.rule import Finding
 from robosc.checks.type_repairs import equality_repair, repair
+from robosc.instances import Instances
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
 from robosc.typing import (
@@ -221,16 +222,6 @@ def _describe(access: rsc.Access) -> str:
 
 
 def _members(component: rsc.Component) -> list[str]:
-    local, seen = component, {component}
-    while isinstance(local.type, rsc.ImportedComponent) and local.type.definition not in seen:
-        local = local.type.definition
-        seen.add(local)
-        if local is None:
-            return []
-    if not isinstance(local.type, rsc.LocalComponent):
-        return []
-    behaviours = (each for each in local.type.definitions if isinstance(each, rsc.ComponentBehaviour))
-    automata = [each.automaton for each in behaviours if each.automaton]
-    return [
-        each.name for automaton in automata for each in automaton.definitions if isinstance(each, rsc.AccessibleItem)
-    ]
+    instance = Instances(component.eContainer()).instance(component, None)
+    automaton = instance.automaton if instance else None
+    return [each.name for each in (automaton.definitions if automaton else ()) if isinstance(each, rsc.AccessibleItem)]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from robosc.metamodel import expression as ex
 from robosc.typing import (
     BOOLEAN,
@@ -17,18 +19,31 @@ from robosc.typing import (
     declared_type,
 )
 
-_COMPARISON = {
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+_COMPARISON: Mapping[Type, str] = {
     INTEGER: "compare it, such as `… > 0`",
     DOUBLE: "compare it, such as `… > 0.0`",
     STRING: 'compare it, such as `… = "…"`',
 }
-_LITERALS = {BOOLEAN: "`true` or `false`", INTEGER: "a whole number such as `0`", DOUBLE: "a number such as `0.0`"}
+_LITERALS: Mapping[Type, str] = {
+    BOOLEAN: "`true` or `false`",
+    INTEGER: "a whole number such as `0`",
+    DOUBLE: "a number such as `0.0`",
+}
 
 
 def repair(expression: ex.Expression, found: Type, wanted: Type) -> str:
-    """How an expression of one type becomes one of the wanted type; UNKNOWN wants any that can be compared."""
+    """How an expression of one type becomes one of the wanted type.
+
+    An object value is found as UNKNOWN; where UNKNOWN is wanted, any type will do that can be compared.
+    """
     if isinstance(found, (ObjectType, ArrayType)) or found == NONE:
         return _part(found, wanted)
+    literal = literal_repair(expression, found, wanted)
+    if literal:
+        return literal
     match wanted:
         case EnumType():
             return f"write one of its values: {_alternatives(wanted)}"
@@ -39,7 +54,7 @@ def repair(expression: ex.Expression, found: Type, wanted: Type) -> str:
             return "leave it out: there is no way to write an array"
         case BasicType.NONE:
             return "leave the provide statement out: there is no data to send along"
-    return literal_repair(expression, found, wanted) or _conversion(expression, found, wanted)
+    return _conversion(expression, found, wanted)
 
 
 def literal_repair(expression: ex.Expression, found: Type, wanted: Type) -> str | None:
@@ -59,6 +74,8 @@ def literal_repair(expression: ex.Expression, found: Type, wanted: Type) -> str 
         case ex.IntegerLiteral(), BasicType.BOOLEAN if inner.value in {0, 1}:
             text = str(bool(inner.value)).lower()
         case ex.StringLiteral(), BasicType.BOOLEAN if inner.value in {"true", "false"}:
+            text = inner.value
+        case ex.StringLiteral(), EnumType() if inner.value in _values(wanted):
             text = inner.value
     return f"write `{text}`" if text is not None and found != wanted else None
 
@@ -89,10 +106,10 @@ def _part(found: Type, wanted: Type) -> str:
 
 
 def _conversion(expression: ex.Expression, found: Type, wanted: Type) -> str:
-    if wanted == BOOLEAN:
-        if isinstance(found, EnumType):
-            return f"compare it with one of its values: {_alternatives(found)}"
-        return _COMPARISON[found] if isinstance(found, BasicType) else "compare it"
+    if wanted == BOOLEAN and isinstance(found, EnumType):
+        return f"compare it with one of its values: {_alternatives(found)}"
+    if wanted == BOOLEAN and found in _COMPARISON:
+        return _COMPARISON[found]
     if (found, wanted) == (INTEGER, DOUBLE):
         return "multiply it by `1.0`"
     if (found, wanted) == (DOUBLE, INTEGER):
@@ -104,5 +121,8 @@ def _conversion(expression: ex.Expression, found: Type, wanted: Type) -> str:
 
 
 def _alternatives(enum: EnumType) -> str:
-    values = dict.fromkeys(each.value.name for each in enum.definition.rules if each.value)
-    return ", ".join(f"`{each}`" for each in values)
+    return ", ".join(f"`{each}`" for each in _values(enum))
+
+
+def _values(enum: EnumType) -> list[str]:
+    return list(dict.fromkeys(each.value.name for each in enum.definition.rules if each.value))

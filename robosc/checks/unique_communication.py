@@ -38,7 +38,7 @@ def _repair(first: Occurrence, second: Occurrence, base: rsc.Base) -> str:
     if not own:
         return "import only one of these components: names that come from libraries can't be changed here"
     name = own[0].communication.name
-    new = f"{name}_{own[0].instance.name.lower()}"
+    new = f"{name}_2" if first.instance is second.instance else f"{name}_{own[0].instance.name.lower()}"
     topic = own[0].communication.identifier
-    keep = "" if topic else f' and add `identifier: "{name}"` to keep its topic'
+    keep = "" if topic else f', and add `identifier: "{name}"` to keep its topic'
     return f"rename it in `{own[0].instance.name}`, such as `{new}`{keep}"

@@ -4,7 +4,6 @@ from collections.abc import Iterator
 
 from robosc.checks.libraries import imports, reachable
 from robosc.checks.rule import Finding, rule
-from robosc.checks.unique_names import on_line
 from robosc.metamodel import robosc as rsc
 
 
@@ -19,7 +18,7 @@ def unique_enum_value(base: rsc.Base) -> Iterator[Finding]:
         if first is not value:
             yield Finding(
                 value,
-                f"{_describe(value)} has the name of {_describe(first)}{on_line(first)}, expected a name of its own",
+                f"{_describe(value, base)} has the name of {_describe(first, base)}, expected a name of its own",
                 _repair(value, first),
             )
     yield from _between_imports(base)
@@ -37,16 +36,18 @@ def enum_values(base: rsc.Base) -> Iterator[rsc.EnumValue]:
 def _between_imports(base: rsc.Base) -> Iterator[Finding]:
     """Values of two libraries that only this base brings together; of one library's own imports it has the finding."""
     firsts: dict[str, rsc.EnumValue] = {}
-    together = [{id(each) for each in _with_imports(library)} for library in reachable(base)]
-    once = {library: component for component, library in reversed(list(imports(base)))}
-    for library, component in reversed(once.items()):
+    together = [set(_with_imports(library)) for library in reachable(base)]
+    importing: dict[rsc.Library, rsc.Component] = {}
+    for component, library in imports(base):
+        importing.setdefault(library, component)
+    for library, component in importing.items():
         for value in _with_imports(library):
             first = firsts.setdefault(value.name, value)
-            if first is not value and not any({id(first), id(value)} <= each for each in together):
+            if first is not value and not any({first, value} <= each for each in together):
                 yield Finding(
                     component,
-                    f"the import of `{library.name}` brings {_describe(value)}, which has the name of"
-                    f" {_describe(first)}, expected a name of its own",
+                    f"the import of `{library.name}` brings {_describe(value, base)}, which has the name of"
+                    f" {_describe(first, base)}, expected a name of its own",
                     "import only one of these libraries: names that come from libraries can't be changed here",
                 )
 
@@ -61,14 +62,15 @@ def _enum(value: rsc.EnumValue) -> rsc.EnumDataType:
     return enum
 
 
-def _describe(value: rsc.EnumValue) -> str:
+def _describe(value: rsc.EnumValue, seen_from: rsc.Base) -> str:
     enum = _enum(value)
     home = enum.eContainer()
-    library = f" in library `{home.name}`" if isinstance(home, rsc.Library) else ""
-    return f"value `{value.name}` of enum `{enum.name}`{library}"
+    where = "" if home is seen_from else f" in library `{home.name}`"
+    return f"value `{value.name}` of enum `{enum.name}`{where}"
 
 
 def _repair(value: rsc.EnumValue, first: rsc.EnumValue) -> str:
-    if _enum(value) is _enum(first):
-        return f"join the two rules by `or`, so that `{value.name}` stands once"
+    rules = [each.eContainer() for each in (value, first)]
+    if _enum(value) is _enum(first) and all(isinstance(each, rsc.EnumTransformationRule) for each in rules):
+        return f"join the two conditions by `or`, so that `{value.name}` stands once"
     return f"rename it, such as `{value.name}_{_enum(value).name.lower()}`"

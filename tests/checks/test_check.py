@@ -1,0 +1,215 @@
+"""What the frame around the rules does, whatever the rules say."""
+
+from pathlib import Path
+from textwrap import dedent
+
+import pytest
+
+from robosc.checks import check
+from robosc.diagnostics import Diagnostic, as_text
+from robosc.language import read
+from robosc.metamodel import robosc as rsc
+
+BROKEN_LIBRARY = """
+    library Doors {
+      component Door {
+        outgoing message opened with type: none
+        behaviour {
+          initial marked state closed { on response from opened goto open }
+          state open { }
+        }
+      }
+      component Lock {
+        behaviour { initial state locked { } }
+      }
+    }
+"""
+
+
+def found(folder: Path, robot: str, **libraries: str) -> list[Diagnostic]:
+    """The findings of a robot and of the libraries beside it, those of reading included."""
+    for name, text in {"robot": robot, **libraries}.items():
+        (folder / f"{name}.rscd").write_text(dedent(text).lstrip())
+    reading = read(folder / "robot.rscd")
+    return [*reading.findings, *check(reading.base, reading.findings)]
+
+
+def places(findings: list[Diagnostic]) -> list[tuple[str, int, str]]:
+    return [(Path(each.file).name, each.span.line, each.rule) for each in findings]
+
+
+def test_library_is_checked_once_as_itself(tmp_path: Path) -> None:
+    robot = """
+        robot House {
+          component Front from Doors import Door
+          component Rear from Doors import Door with { opened: "/rear" }
+          component Lock from Doors import Lock
+        }
+    """
+    assert places(found(tmp_path, robot, doors=BROKEN_LIBRARY)) == [
+        ("doors.rscd", 6, "marked-state"),
+        ("doors.rscd", 10, "marked-state"),
+    ]
+
+
+def test_library_of_a_library_is_checked(tmp_path: Path) -> None:
+    robot = """
+        robot House {
+          component Front from Porch import Front
+        }
+    """
+    porch = """
+        library Porch {
+          component Front from Doors import Door
+        }
+    """
+    assert places(found(tmp_path, robot, porch=porch, doors=BROKEN_LIBRARY)) == [
+        ("doors.rscd", 6, "marked-state"),
+        ("doors.rscd", 10, "marked-state"),
+    ]
+
+
+def test_what_a_library_repeats_is_its_own_matter(tmp_path: Path) -> None:
+    robot = """
+        robot House {
+          component Front from Doors import Front
+          component Rear from Doors import Rear
+        }
+    """
+    doors = """
+        library Doors {
+          component Front {
+            incoming message open with identifier: "/front", type: none
+          }
+          component Rear {
+            incoming message open with identifier: "/rear", type: none
+          }
+          datatype enum A from double to { default -> same }
+          datatype enum B from double to { default -> same }
+        }
+    """
+    assert places(found(tmp_path, robot, doors=doors)) == [
+        ("doors.rscd", 6, "unique-communication"),
+        ("doors.rscd", 9, "unique-enum-value"),
+    ]
+
+
+def test_nothing_is_concluded_from_an_unresolved_target(tmp_path: Path) -> None:
+    robot = """
+        robot House {
+          component Door {
+            outgoing message opened with type: none
+            behaviour {
+              initial state closed { on response from opened goto opne }
+              marked state open { }
+            }
+          }
+          component Lock {
+            behaviour { initial state locked { } }
+          }
+        }
+    """
+    assert places(found(tmp_path, robot)) == [
+        ("robot.rscd", 5, "unresolved-reference"),
+        ("robot.rscd", 10, "marked-state"),
+    ]
+
+
+def test_unresolved_names_draw_nothing_further(tmp_path: Path) -> None:
+    robot = """
+        robot House {
+          component Door {
+            outgoing message width with type: Widht
+            incoming message open with type: none
+            behaviour {
+              variable last: double = nothing
+              initial marked state closed {
+                on response from width do last := value
+                on response from widht do last := value
+                transition if lats > 1.0 and wide goto closed
+              }
+            }
+          }
+          component Rear from Nowhere import Door
+          requirement open needs Rear.closed and 1.0 = Door.lats
+          provide opne with 3 if Rear
+        }
+    """
+    assert {each.rule for each in found(tmp_path, robot)} == {"unresolved-reference", "type"}
+    # `Rear` is a component whatever its import means.
+    types = [each for each in found(tmp_path, robot) if each.rule == "type"]
+    assert places(types) == [("robot.rscd", 16, "type")]
+
+
+@pytest.mark.parametrize(
+    "damaged",
+    [
+        "component Door { behaviour { state closed { on response } initial marked state open { } } }",
+        "datatype enum Width from double to { value > 1.0 - > wide default -> narrow }",
+        "datatype enum Width from double to { value > 1.0 -> wide default - narrow }",
+        "component Door { behaviour { initial marked state closed { goto } } }",
+        "component Door { behaviour { initiall marked state closed { } } }",
+    ],
+)
+def test_damaged_text_draws_no_rule(tmp_path: Path, damaged: str) -> None:
+    assert {each.rule for each in found(tmp_path, f"robot House {{\n  {damaged}\n}}\n")} == {"syntax"}
+
+
+def test_ten_faults_are_ten_findings(tmp_path: Path) -> None:
+    robot = """
+        robot House {
+          datatype enum Width from double to { value > 1 -> wide }
+          datatype enum Width from double to { value -> wide default -> narrow }
+          component Door {
+            outgoing message width with type: Width
+            outgoing message width with type: none
+            behaviour {
+              variable last: Width = 1
+              variable last: Width
+              state closed { }
+              state closed { transition if last goto closed }
+            }
+          }
+          component Door { }
+        }
+    """
+    assert places(found(tmp_path, robot)) == [
+        ("robot.rscd", 2, "enum-default"),
+        ("robot.rscd", 3, "unique-datatype"),
+        ("robot.rscd", 3, "type"),
+        ("robot.rscd", 3, "unique-enum-value"),
+        ("robot.rscd", 6, "unique-communication"),
+        ("robot.rscd", 7, "initial-state"),
+        ("robot.rscd", 8, "type"),
+        ("robot.rscd", 9, "unique-variable"),
+        ("robot.rscd", 11, "unique-state"),
+        ("robot.rscd", 11, "type"),
+        ("robot.rscd", 14, "unique-component"),
+    ]
+
+
+def test_a_model_without_text_is_checked_too() -> None:
+    automaton = rsc.Automaton(definitions=[rsc.State(name="on", initial=True)])
+    behaviour = rsc.ComponentBehaviour(automaton=automaton)
+    lamp = rsc.Component(name="Lamp", type=rsc.LocalComponent(definitions=[behaviour]))
+    (finding,) = check(rsc.Robot(name="House", file="house.rscd", definitions=[lamp]))
+    assert finding.rule == "marked-state"
+    assert as_text.render([finding], {}).startswith("house.rscd:1:1: error: no marked state")
+
+
+def test_an_empty_model_draws_nothing() -> None:
+    assert check(rsc.Robot()) == []
+    bare = [rsc.Component(), rsc.ObjectDataType(), rsc.Interface(), rsc.ProvideStatement(), rsc.NeedsRequirement()]
+    assert check(rsc.Library(definitions=bare)) == []
+
+
+def test_libraries_that_import_each_other_are_all_checked() -> None:
+    one, other = rsc.Library(name="One"), rsc.Library(name="Other")
+    for base, imported in ((one, other), (other, one)):
+        component = rsc.Component(name="Both")
+        base.definitions.append(component)
+        component.type = rsc.ImportedComponent(library=imported)
+    one.definitions[0].type.definition = other.definitions[0]
+    other.definitions[0].type.definition = one.definitions[0]
+    other.definitions.append(rsc.EnumDataType(name="Empty"))
+    assert [each.rule for each in check(one)] == ["enum-default"]

@@ -1,0 +1,63 @@
+"""A model in `rejected` draws the findings that its first line names and no others, one in `accepted` none."""
+
+import re
+from collections import Counter
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from robosc.checks import check
+from robosc.checks.rule import RULES
+from robosc.diagnostics import Diagnostic, as_text
+from robosc.language import read
+
+HERE = Path(__file__).parent
+REJECTED = sorted((HERE / "rejected").glob("*/*.rscd"))
+ACCEPTED = sorted((HERE / "accepted").glob("*/*.rscd"))
+_EXPECTED = re.compile(r"// expect: (\S+)((?: \d+)+)\n")
+
+
+def name(model: Path) -> str:
+    return f"{model.parent.name}/{model.stem}"
+
+
+def findings(model: Path) -> tuple[list[Diagnostic], dict[str, str]]:
+    reading = read(model, [HERE / "libraries"])
+    return [*reading.findings, *check(reading.base, reading.findings)], reading.texts
+
+
+@pytest.mark.parametrize("model", REJECTED, ids=name)
+def test_rejected_model_draws_exactly_the_expected_findings(model: Path) -> None:
+    expected = _EXPECTED.match(model.read_text())
+    assert expected, "the first line says `// expect: <rule> <line>...`"
+    rule, lines = expected[1], expected[2].split()
+    assert rule == model.parent.name
+    found = findings(model)[0]
+    assert [(each.file, each.rule, each.span.line) for each in found] == [
+        (str(model), rule, int(line)) for line in lines
+    ]
+    assert {each.severity for each in found} == {RULES[rule].severity}
+    assert all(each.hint for each in found)
+
+
+@pytest.mark.parametrize("model", ACCEPTED, ids=name)
+def test_accepted_model_draws_nothing(model: Path) -> None:
+    assert findings(model)[0] == []
+
+
+@pytest.mark.parametrize("rule", sorted(RULES))
+def test_every_rule_has_enough_models(rule: str) -> None:
+    rejected, accepted = (Counter(each.parent.name for each in models) for models in (REJECTED, ACCEPTED))
+    assert rejected[rule] >= 3
+    assert accepted[rule] >= 2
+
+
+@pytest.mark.parametrize("rule", sorted(RULES))
+def test_wording(rule: str, golden: Callable[[Path, str], None]) -> None:
+    folder = HERE / "rejected" / rule
+    shown = []
+    for model in sorted(folder.glob("*.rscd")):
+        found, texts = findings(model)
+        shown.append(as_text.render(found, texts).replace(f"{folder}/", ""))
+    golden(folder / "findings.txt", "\n".join(shown))

@@ -1,0 +1,153 @@
+"""Each cell of table 4.1: which operators accept which operands."""
+
+from itertools import product
+
+import pytest
+
+from robosc.checks.expression_types import ExpressionCheck, Place
+from robosc.metamodel import expression as ex
+from robosc.metamodel import robosc as rsc
+from robosc.typing import (
+    BOOLEAN,
+    DOUBLE,
+    INTEGER,
+    NONE,
+    STRING,
+    UNKNOWN,
+    ArrayType,
+    BasicType,
+    EnumType,
+    ObjectType,
+    Type,
+)
+
+ENUM, OTHER_ENUM = EnumType(rsc.EnumDataType(name="E")), EnumType(rsc.EnumDataType(name="F"))
+OBJECT = ObjectType(rsc.ObjectDataType(name="O"))
+TYPES: list[Type] = [BOOLEAN, INTEGER, DOUBLE, STRING, NONE, ArrayType(DOUBLE), OBJECT, ENUM, OTHER_ENUM]
+BOOLEANS = {(BOOLEAN, BOOLEAN)}
+NUMBERS = {(INTEGER, INTEGER), (INTEGER, DOUBLE), (DOUBLE, INTEGER), (DOUBLE, DOUBLE)}
+EQUALS = {(each, each) for each in (BOOLEAN, INTEGER, DOUBLE, STRING, ENUM, OTHER_ENUM)}
+ACCEPTED: dict[type[ex.BinaryExpression], set[tuple[Type, Type]]] = {
+    ex.Implication: BOOLEANS,
+    ex.Disjunction: BOOLEANS,
+    ex.Conjunction: BOOLEANS,
+    ex.Equation: EQUALS,
+    ex.Inequation: EQUALS,
+    ex.LessThan: NUMBERS,
+    ex.LessOrEqual: NUMBERS,
+    ex.GreaterThan: NUMBERS,
+    ex.GreaterOrEqual: NUMBERS,
+    ex.Addition: NUMBERS,
+    ex.Subtraction: NUMBERS,
+    ex.Multiplication: NUMBERS,
+    ex.Division: NUMBERS,
+}
+
+
+def operand(each: Type) -> rsc.Access:
+    match each:
+        case ArrayType():
+            declared: rsc.DataType = rsc.Array(type=rsc.DoubleDataType())
+        case BasicType():
+            basic = {
+                BOOLEAN: rsc.BooleanDataType,
+                INTEGER: rsc.IntegerDataType,
+                DOUBLE: rsc.DoubleDataType,
+                STRING: rsc.StringDataType,
+                NONE: rsc.NoneDataType,
+            }
+            if each not in basic:
+                return rsc.Access()
+            declared = basic[each]()
+        case _:
+            declared = rsc.ComplexDataTypeReference(type=each.definition)
+    return rsc.Access(item=rsc.Variable(name="v", type=declared))
+
+
+def faults(expression: ex.Expression) -> list[ex.Located]:
+    """Where the findings in an expression stand."""
+    check = ExpressionCheck(Place(None))
+    check.type(expression)
+    assert all(each.message and each.hint for each in check.findings)
+    return [each.element for each in check.findings]
+
+
+@pytest.mark.parametrize("operator", ACCEPTED)
+def test_operator_accepts_exactly_the_operands_of_the_table(operator: type[ex.BinaryExpression]) -> None:
+    for left, right in product(TYPES, TYPES):
+        expression = operator(left=operand(left), right=operand(right))
+        accepted = (left, right) in ACCEPTED[operator]
+        assert bool(faults(expression)) is not accepted, f"{left} {operator.__name__} {right}"
+
+
+@pytest.mark.parametrize("operator", ACCEPTED)
+def test_what_is_unknown_draws_nothing(operator: type[ex.BinaryExpression]) -> None:
+    fitting = {left for left, _ in ACCEPTED[operator]}
+    for each in [*TYPES, UNKNOWN]:
+        alone = each == UNKNOWN or each in fitting
+        for expression in (
+            operator(left=operand(each), right=operand(UNKNOWN)),
+            operator(left=operand(UNKNOWN), right=operand(each)),
+        ):
+            assert len(faults(expression)) == (0 if alone else 1)
+
+
+@pytest.mark.parametrize("each", [*TYPES, UNKNOWN], ids=str)
+def test_unary_operators(each: Type) -> None:
+    negation, minus = ex.Negation(operand=operand(each)), ex.UnaryMinus(operand=operand(each))
+    assert faults(negation) == ([] if each in {BOOLEAN, UNKNOWN} else [negation.operand])
+    assert faults(minus) == ([] if each in {INTEGER, DOUBLE, UNKNOWN} else [minus.operand])
+
+
+def test_each_wrong_operand_is_a_finding_of_its_own() -> None:
+    both = ex.Conjunction(left=operand(INTEGER), right=operand(STRING))
+    assert faults(both) == [both.left, both.right]
+
+
+def test_a_fault_does_not_spread() -> None:
+    inner = ex.Addition(left=operand(STRING), right=operand(INTEGER))
+    assert faults(ex.Equation(left=inner, right=operand(STRING))) == [inner.left]
+
+
+@pytest.mark.parametrize("wanted", TYPES, ids=str)
+@pytest.mark.parametrize("found", TYPES, ids=str)
+def test_a_place_accepts_exactly_its_type(wanted: Type, found: Type) -> None:
+    check = ExpressionCheck(Place(None))
+    check.expect(operand(found), wanted, "it")
+    assert bool(check.findings) == (wanted != found)
+    for each in check.findings:
+        assert each.message == f"it must be {wanted}, found {found}"
+        assert each.hint
+
+
+def test_types_of_one_name_are_told_apart() -> None:
+    ours, theirs = rsc.EnumDataType(name="Colour"), rsc.EnumDataType(name="Colour")
+    rsc.Robot(name="House", definitions=[ours])
+    rsc.Library(name="Paints", definitions=[theirs])
+    check = ExpressionCheck(Place(None))
+    check.expect(operand(EnumType(theirs)), EnumType(ours), "it")
+    assert [each.message for each in check.findings] == [
+        "it must be enum Colour of robot House, found enum Colour of library Paints"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("literal", "wanted", "repair"),
+    [
+        (ex.IntegerLiteral(value=0), DOUBLE, "write `0.0`"),
+        (ex.UnaryMinus(operand=ex.IntegerLiteral(value=3)), DOUBLE, "write `-3.0`"),
+        (ex.DoubleLiteral(value=4.0), INTEGER, "write `4`"),
+        (ex.UnaryMinus(operand=ex.DoubleLiteral(value=4.0)), INTEGER, "write `-4`"),
+        (ex.DoubleLiteral(value=4.5), INTEGER, "write a whole number or declare it double: a double is never rounded"),
+        (ex.IntegerLiteral(value=1), BOOLEAN, "write `true`"),
+        (ex.IntegerLiteral(value=0), BOOLEAN, "write `false`"),
+        (ex.IntegerLiteral(value=2), BOOLEAN, "compare it, such as `… > 0`"),
+        (ex.StringLiteral(value="false"), BOOLEAN, "write `false`"),
+        (ex.BooleanLiteral(value=True), STRING, 'write `"true"`'),
+        (ex.DoubleLiteral(value=0.5), STRING, 'write `"0.5"`'),
+    ],
+)
+def test_repair_of_a_literal(literal: ex.Expression, wanted: Type, repair: str) -> None:
+    check = ExpressionCheck(Place(None))
+    check.expect(literal, wanted, "it")
+    assert [each.hint for each in check.findings] == [repair]
