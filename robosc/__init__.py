@@ -1,3 +1,158 @@
-"""RoboSC: write what a robot may do; get a controller that provably does only that."""
+"""RoboSC: write what a robot may do; get a controller that provably does only that.
+
+From text to generated code, step by step, as the command line does it:
+
+    robot = robosc.load("line_follower.rscd")
+    findings = robosc.check(robot)
+    model = robosc.to_sct(robot)
+    robosc.synthesize(model)
+    models = robosc.Models(model, robosc.to_rosgraph(robot), robot)
+    files = robosc.generate("ros2", models)
+
+Each function loads what it needs when it is called, so that `import robosc` costs next to nothing.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from os import PathLike
+
+    from robosc.config import Configuration
+    from robosc.diagnostics import Diagnostic, ModelError
+    from robosc.m2m.trace import Trace
+    from robosc.metamodel.robosc import Base, Robot
+    from robosc.metamodel.rosgraph import RosGraph
+    from robosc.metamodel.sct import Supervisor, SupervisoryControlModel
+    from robosc.models import Models
+    from robosc.supervision import EmptySupervisorError
 
 __version__ = "0.1.0"
+
+__all__ = [
+    "Configuration",
+    "Diagnostic",
+    "EmptySupervisorError",
+    "ModelError",
+    "Models",
+    "check",
+    "generate",
+    "load",
+    "synthesize",
+    "to_rosgraph",
+    "to_sct",
+]
+
+_LOADED_WHEN_ASKED = {
+    "Configuration": "robosc.config",
+    "Diagnostic": "robosc.diagnostics",
+    "EmptySupervisorError": "robosc.supervision",
+    "ModelError": "robosc.diagnostics",
+    "Models": "robosc.models",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _LOADED_WHEN_ASKED:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(_LOADED_WHEN_ASKED[name]), name)
+
+
+def load(path: str | PathLike[str], library_paths: Sequence[str | PathLike[str]] = ()) -> Robot:
+    """The robot in a `.rscd` file, or in an `.xmi` file of the robosc metamodel, its names resolved.
+
+    Libraries are looked for beside the file, then in `library_paths`, in ROBOSC_PATH and in the standard library.
+    Raises ModelError with all findings where text or names have errors, ValueError where the file holds no robot, and
+    OSError where it can't be read. What the rules beyond syntax say, `check` tells.
+    """
+    from robosc.diagnostics import ModelError, has_errors
+    from robosc.metamodel import robosc
+
+    if str(path).endswith(".xmi"):
+        from robosc.metamodel import xmi
+
+        base = xmi.load(str(path))
+    else:
+        from robosc.language import read
+
+        reading = read(str(path), [str(each) for each in library_paths])
+        if reading.base is None or has_errors(reading.findings):
+            raise ModelError(reading.findings)
+        base = reading.base
+    if not isinstance(base, robosc.Robot):
+        raise ValueError(f"{path} holds a {type(base).__name__}, not a Robot")  # noqa: TRY004  # it is the file that is wrong
+    return base
+
+
+def check(robot: Base) -> list[Diagnostic]:
+    """All that the rules of the language say about a robot or library and what it imports, in order (thesis 4.5)."""
+    from robosc.checks import check as checked
+
+    return checked(robot)
+
+
+def to_sct(robot: Robot) -> SupervisoryControlModel:
+    """The plants and requirements of a robot in which `check` finds no error (thesis 5.2).
+
+    Asked again for the same robot, the same model comes back. Raises ModelError where a computation over doubles is too
+    large to be tabulated.
+    """
+    return _plants(robot)[0]
+
+
+def to_rosgraph(robot: Robot) -> RosGraph:
+    """The ROS side of a robot in which `check` finds no error (thesis 5.3); its `model` is what `to_sct` gives."""
+    from robosc.m2m import robosc_to_rosgraph
+
+    return robosc_to_rosgraph.transform(_plants(robot)[1])
+
+
+def _plants(robot: Robot) -> tuple[SupervisoryControlModel, Trace]:
+    # Kept with the robot itself: both models are about the same plants, and go when the robot goes.
+    memory = vars(robot)
+    if "_plants" not in memory:
+        from robosc.m2m import robosc_to_sct
+
+        memory["_plants"] = robosc_to_sct.transform(robot)
+    plants: tuple[SupervisoryControlModel, Trace] = memory["_plants"]
+    return plants
+
+
+def synthesize(model: SupervisoryControlModel) -> Supervisor:
+    """The maximally permissive, controllable, non-blocking supervisor of a model, which becomes its `supervisor`.
+
+    Raises EmptySupervisorError, a ModelError that says why, where there is none; MemoryError where the decision
+    diagrams would take more than 4 GB.
+    """
+    from robosc.supervision import supervise
+
+    supervisor = supervise(model).supervisor
+    assert supervisor is not None
+    return supervisor
+
+
+def generate(target: str, models: Models, configuration: Configuration | None = None) -> dict[str, str]:
+    """The files of a target (`cif`, `supervisor`, `ros1`, `ros2`, `xmi`): relative POSIX path to text.
+
+    Without a configuration all settings have their defaults. Raises ModelError where the models or the configuration
+    don't meet the target's preconditions, ValueError where the target is unknown or a model that it reads is missing.
+    """
+    from robosc.config import Configuration
+    from robosc.diagnostics import ModelError, has_errors
+    from robosc.targets import TARGETS
+
+    if target not in TARGETS:
+        raise ValueError(f"there is no target {target!r}, but {', '.join(TARGETS)}")
+    if models.sct.supervisor is None:
+        raise ValueError("the sct model has no supervisor yet: synthesize gives it one")
+    if TARGETS[target].needs_graph and models.rosgraph is None:
+        raise ValueError(f"{target} needs the ROS graph")
+    generator = TARGETS[target].generator()
+    configuration = configuration or Configuration()
+    findings = generator.preconditions(models, configuration)
+    if has_errors(findings):
+        raise ModelError(findings)
+    return generator.generate(models, configuration)

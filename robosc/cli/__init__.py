@@ -1,1 +1,89 @@
-"""The command line: one file a command."""
+"""The command line: one file a command, each loaded when it is called."""
+
+from __future__ import annotations
+
+import sys
+import traceback
+from importlib import import_module
+from typing import Any
+
+import click
+
+from robosc import __version__
+
+#: Exit statuses, beside 0.
+ERRORS_FOUND = 1
+WRONG_CALL = 2
+EMPTY_SUPERVISOR = 3
+INTERNAL_ERROR = 70
+
+_COMMANDS = {
+    "check": "Say what is wrong with models.",
+    "transform": "Generate code and models.",
+    "synthesize": "Show the supervisor.",
+    "rule": "Say what a rule means.",
+    "diagram": "Draw a metamodel.",
+}
+
+
+class CallError(click.ClickException):
+    """The call can't be answered: the wrong file, a folder that can't be written."""
+
+    exit_code = WRONG_CALL
+
+
+class _InternalError(click.ClickException):
+    exit_code = INTERNAL_ERROR
+
+
+class _Commands(click.Group):
+    """The commands, each in a module of this package with its name, and what holds for all of them."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return list(_COMMANDS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        if cmd_name not in _COMMANDS:
+            return None
+        command: click.Command = import_module(f"{__name__}.{cmd_name}").command
+        return command
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        # As click does it, but without loading the commands.
+        with formatter.section("Commands"):
+            formatter.write_dl(list(_COMMANDS.items()))
+
+    def invoke(self, ctx: click.Context) -> Any:
+        for stream in (sys.stdout, sys.stderr):
+            if hasattr(stream, "reconfigure"):
+                # A terminal that lacks a character, or a file name that is no text, shall not end in an error.
+                stream.reconfigure(errors="backslashreplace")
+        try:
+            return super().invoke(ctx)
+        except (click.ClickException, click.exceptions.Exit, click.Abort, BrokenPipeError):
+            raise
+        except OSError as error:
+            raise CallError(f"{error.filename}: {error.strerror}" if error.filename else str(error)) from error
+        except Exception as error:
+            if ctx.params["traceback"]:
+                traceback.print_exc()
+            hint = "" if ctx.params["traceback"] else "; `robosc --traceback ...` shows where"
+            message = f"a fault of robosc itself, please report it: {type(error).__name__}: {error}{hint}"
+            raise _InternalError(message) from error
+
+
+@click.command(cls=_Commands, context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(__version__, prog_name="robosc")
+@click.option("--traceback", is_flag=True, envvar="ROBOSC_TRACEBACK", help="Show where a fault of robosc itself is.")
+def main(**_: Any) -> None:
+    """Make a ROS controller that provably does only what a model of the robot allows.
+
+    \b
+    Examples:
+      robosc check line_follower.rscd
+      robosc transform line_follower.rscd --to ros2,cif
+      robosc synthesize line_follower.rscd
+      robosc rule marked-state
+
+    Exit status: 0 fine, 1 errors in the model, 2 a wrong call, 3 an empty supervisor.
+    """

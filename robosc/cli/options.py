@@ -1,0 +1,26 @@
+"""Options and arguments that several commands share."""
+
+import click
+
+#: A file that must be there.
+FILE = click.Path(exists=True, dir_okay=False, readable=True)
+
+model = click.argument("model", type=FILE)
+
+library_path = click.option(
+    "-I",
+    "--library-path",
+    "library_paths",
+    multiple=True,
+    type=click.Path(exists=True, file_okay=False),
+    help="A folder with libraries, searched after the model's own; may be repeated. Then come those in ROBOSC_PATH.",
+)
+
+findings_format = click.option(
+    "--format",
+    "form",
+    type=click.Choice(["text", "json", "sarif"]),
+    default="text",
+    show_default=True,
+    help="How findings are shown.",
+)

@@ -1,0 +1,113 @@
+"""Shows what was found, however a command ends, and turns it into the exit status."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import replace
+from functools import partial
+from pathlib import Path, PurePath
+from typing import TYPE_CHECKING, Literal
+
+import click
+
+from robosc.cli import EMPTY_SUPERVISOR, ERRORS_FOUND
+from robosc.diagnostics import ModelError, has_errors
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Mapping
+    from types import TracebackType
+    from typing import Self
+
+    from robosc.diagnostics import Diagnostic
+    from robosc.diagnostics.as_text import Part
+
+_PAINTS: Mapping[Part, Callable[[str], str]] = {
+    "place": partial(click.style, bold=True),
+    "error": partial(click.style, fg="red", bold=True),
+    "warning": partial(click.style, fg="magenta", bold=True),
+    "rule": partial(click.style, dim=True),
+    "caret": partial(click.style, fg="green", bold=True),
+    "hint": partial(click.style, fg="cyan"),
+}
+
+
+class Report:
+    """Collects findings and shows them when its `with` block ends, by whatever way.
+
+    Findings as text go to the standard error output where the command prints something else (`aside`), all other
+    forms to the standard output. Ends the program with the status that the errors call for.
+    """
+
+    def __init__(self, form: str = "text", *, aside: bool = False) -> None:
+        self.form = form
+        self.aside = aside
+        self.findings: list[Diagnostic] = []
+        self.texts: dict[str, str] = {}
+        self.status = 0
+
+    def add(self, findings: Iterable[Diagnostic], texts: Mapping[str, str] | None = None) -> None:
+        """Adds findings, and the source texts of their files.
+
+        A finding about a model made from text knows the file's bare name only; it gets the path from the texts.
+        """
+        self.texts |= texts or {}
+        paths = {PurePath(path).name: path for path in reversed(self.texts)}
+        for each in findings:
+            known = each.file in self.texts or each.file not in paths
+            self.findings.append(each if known else replace(each, file=paths[each.file]))
+
+    def stop_on_errors(self) -> None:
+        """Leaves the `with` block where there are errors: what comes next could not make sense of the model."""
+        if has_errors(self.findings):
+            raise click.exceptions.Exit(ERRORS_FOUND)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, _type: type[BaseException] | None, error: BaseException | None, _traceback: TracebackType | None
+    ) -> Literal[False]:
+        if isinstance(error, ModelError):
+            self.add(error.diagnostics)
+            self.status = EMPTY_SUPERVISOR if _is_empty(error) else ERRORS_FOUND
+        elif error is None:
+            self.status = ERRORS_FOUND if has_errors(self.findings) else 0
+        elif not isinstance(error, click.exceptions.Exit):
+            return False
+        self._show()
+        if self.status:
+            raise click.exceptions.Exit(self.status)
+        return False
+
+    def _show(self) -> None:
+        if self.form == "json":
+            from robosc.diagnostics import as_json
+
+            click.echo(as_json.render(self.findings), nl=False)
+        elif self.form == "sarif":
+            from robosc import __version__
+            from robosc.diagnostics import as_sarif
+
+            click.echo(as_sarif.render(self.findings, __version__), nl=False)
+        elif self.findings:
+            from robosc.diagnostics import as_text
+
+            paint = as_text.plain if os.environ.get("NO_COLOR") else _paint
+            texts = {each.file: self._text(each.file) for each in self.findings}
+            click.echo(as_text.render(self.findings, texts, paint), nl=False, err=self.aside)
+            click.echo(as_text.summary(self.findings), err=True)
+
+    def _text(self, file: str) -> str:
+        """The source of a file: as it was read, else (configurations, XMI) from the file, empty if there is none."""
+        path = Path(file)
+        if file not in self.texts and path.is_file():
+            self.texts[file] = path.read_text(encoding="utf-8", errors="replace")
+        return self.texts.get(file, "")
+
+
+def _paint(part: Part, text: str) -> str:
+    return _PAINTS[part](text)
+
+
+def _is_empty(error: ModelError) -> bool:
+    return any(each.rule == "empty-supervisor" for each in error.diagnostics)

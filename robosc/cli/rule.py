@@ -1,0 +1,36 @@
+"""`robosc rule`."""
+
+from __future__ import annotations
+
+import sys
+from difflib import get_close_matches
+
+import click
+from rich.console import Console
+from rich.markdown import Markdown
+
+from robosc.diagnostics.rules import page, rules
+
+
+@click.command("rule")
+@click.argument("rule", required=False)
+def command(rule: str | None) -> None:
+    """Print what a RULE means, with a wrong and a right model; without a RULE, the names of all.
+
+    \b
+    Examples:
+      robosc rule marked-state
+      robosc rule
+    """
+    if rule is None:
+        click.echo("\n".join(rules()))
+        return
+    text = page(rule)
+    if text is None:
+        close = get_close_matches(rule, rules(), n=1)
+        hint = f"did you mean {close[0]!r}?" if close else "`robosc rule` lists all."
+        raise click.BadParameter(f"there is no rule {rule!r}; {hint}", param_hint="RULE")
+    if sys.stdout.isatty():
+        Console().print(Markdown(text))
+    else:
+        click.echo(text, nl=False)

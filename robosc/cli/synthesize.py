@@ -1,0 +1,89 @@
+"""`robosc synthesize`."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from robosc.cli.options import library_path, model
+from robosc.cli.progress import progress
+from robosc.cli.reading import read_models
+from robosc.cli.report import Report
+from robosc.expressions import SctPrinter, conjunction, copied
+from robosc.roles import event_name
+from robosc.supervision import EmptySupervisorError, supervise
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from robosc.metamodel import sct
+    from robosc.synthesis import Synthesis
+
+
+@click.command("synthesize")
+@model
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
+@library_path
+def command(model: str, as_json: bool, library_paths: Sequence[str]) -> None:
+    """Synthesize the supervisor of a robot: its states, and when it allows what.
+
+    MODEL is a .rscd file with a robot, or an .xmi file that `transform --to xmi` wrote. A guard says where the
+    supervisor allows an event, beyond what the robot itself forbids; what no requirement asks for and synthesis had to
+    add is shown apart.
+
+    \b
+    Examples:
+      robosc synthesize line_follower.rscd
+      robosc synthesize line_follower.rscd --json | jq .controlled_states
+
+    Exit status: 0 done, 1 errors in the model, 2 a wrong call, 3 no supervisor exists.
+    """
+    with Report(aside=True) as report:
+        plants = read_models(model, library_paths, report).sct
+        try:
+            with progress("synthesizing the supervisor"):
+                synthesis = supervise(plants)
+        except EmptySupervisorError as error:
+            if as_json:
+                _show_json(plants, error.synthesis)
+            raise
+        show = _show_json if as_json else _show
+        show(plants, synthesis)
+
+
+def _show_json(model: sct.SupervisoryControlModel, synthesis: Synthesis) -> None:
+    answer = {
+        "robot": model.name,
+        "uncontrolled_states": synthesis.uncontrolled_states,
+        "controlled_states": synthesis.controlled_states,
+        "empty": synthesis.supervisor is None,
+        "events": [_event(each) for each in synthesis.supervisor.guards] if synthesis.supervisor else [],
+        "seconds": round(synthesis.seconds, 3),
+        "bdd_nodes": synthesis.bdd_nodes,
+    }
+    click.echo(json.dumps(answer, indent=2))
+
+
+def _event(guard: sct.EventGuard) -> dict[str, Any]:
+    shown = SctPrinter()
+    whole = conjunction(copied(part) for part in (guard.requirement, guard.synthesis) if part)
+    return {
+        "name": event_name(guard.event),
+        "controllable": guard.event.controllable,
+        "guard": shown(whole) if whole else "true",
+        "added_by_synthesis": shown(guard.synthesis) if guard.synthesis else None,
+        "ever_enabled": guard.everEnabled,
+    }
+
+
+def _show(model: sct.SupervisoryControlModel, synthesis: Synthesis) -> None:
+    assert synthesis.supervisor is not None
+    states = f"{synthesis.controlled_states} states, of {synthesis.uncontrolled_states} without requirements"
+    click.echo(f"{model.name}: {states}")
+    for event in map(_event, synthesis.supervisor.guards):
+        click.echo(f"\n{event['name']}{'' if event['ever_enabled'] else ' (never enabled)'}")
+        click.echo(f"    guard: {event['guard']}")
+        if event["added_by_synthesis"]:
+            click.echo(f"    added by synthesis: {event['added_by_synthesis']}")

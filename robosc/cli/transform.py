@@ -1,0 +1,107 @@
+"""`robosc transform`."""
+
+from __future__ import annotations
+
+from pathlib import Path, PurePosixPath
+from typing import TYPE_CHECKING
+
+import click
+
+from robosc import config
+from robosc.cli import CallError
+from robosc.cli.options import FILE, findings_format, library_path, model
+from robosc.cli.progress import progress
+from robosc.cli.reading import read_models
+from robosc.cli.report import Report
+from robosc.output import OutputError, write
+from robosc.supervision import supervise
+from robosc.targets import TARGETS, Target
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from robosc.models import Models
+
+
+def _targets(_context: click.Context, _parameter: click.Parameter, values: Sequence[str]) -> list[Target]:
+    names = [name.strip() for value in values for name in value.split(",")]
+    for name in names:
+        if name not in TARGETS:
+            raise click.BadParameter(f"{name!r} is none of {', '.join(TARGETS)}")
+    return [TARGETS[name] for name in dict.fromkeys(names)]
+
+
+_EPILOG = "\n".join(["\b", "Targets:", *(f"  {each.name:<11} {each.description}" for each in TARGETS.values())])
+
+
+@click.command("transform", epilog=_EPILOG)
+@model
+@click.option("--to", "targets", required=True, multiple=True, callback=_targets, metavar="TARGET[,TARGET]")
+@click.option("-o", "--output", type=click.Path(file_okay=False), help="The output folder.  [default: build/<robot>]")
+@click.option(
+    "--config", "chosen", type=FILE, help="The configuration, if not the controller-config.json near the model."
+)
+@findings_format
+@library_path
+def command(
+    model: str,
+    targets: Sequence[Target],
+    output: str | None,
+    chosen: str | None,
+    form: str,
+    library_paths: Sequence[str],
+) -> None:
+    """Check a robot, synthesize its supervisor and generate the TARGETs from it, all of them or none.
+
+    MODEL is a .rscd file with a robot, or an .xmi file that an earlier `--to xmi` wrote.
+
+    \b
+    Examples:
+      robosc transform line_follower.rscd --to ros2
+      robosc transform line_follower.rscd --to cif,supervisor,xmi -o out
+      robosc transform out/LineFollower.sct.xmi --to cif
+
+    Exit status: 0 done, 1 errors in the model, 2 a wrong call, 3 no supervisor exists.
+    """
+    with Report(form) as report:
+        models = read_models(model, library_paths, report)
+        for target in targets:
+            if target.needs_graph and models.rosgraph is None:
+                raise CallError(f"{model} has no ROS graph, which {target.name} needs: give its .rosgraph.xmi or .rscd")
+        configuration = _configuration(Path(model), chosen)
+        if models.sct.supervisor is None:
+            with progress("synthesizing the supervisor"):
+                supervise(models.sct)
+        for target in targets:
+            report.add(target.generator().preconditions(models, configuration))
+        report.stop_on_errors()
+        folder = Path(output or f"build/{models.sct.name}")
+        trees = _trees(folder, Path(model).parent, targets, models, configuration)
+        try:
+            changed = write(trees)
+        except OutputError as error:
+            raise CallError(str(error)) from error
+    click.echo(f"{folder}: {len(trees[folder])} files, {len(changed)} written", err=True)
+
+
+def _configuration(model: Path, chosen: str | None) -> config.Configuration:
+    file = Path(chosen) if chosen else config.find(model.parent)
+    return config.read(file) if file else config.Configuration()
+
+
+def _trees(
+    folder: Path, home: Path, targets: Sequence[Target], models: Models, configuration: config.Configuration
+) -> dict[Path, dict[str, str]]:
+    """What goes where: all targets below the output folder, and the copies that the configuration asks for."""
+    trees: dict[Path, dict[str, str]] = {folder: {}}
+    for target in targets:
+        files = target.generator().generate(models, configuration)
+        trees[folder] |= {(PurePosixPath(target.folder) / path).as_posix(): text for path, text in files.items()}
+        copy = getattr(configuration.output, target.location) if target.location else None
+        if copy:
+            trees.setdefault(home / copy, {}).update(_without_package_folder(files))
+    return trees
+
+
+def _without_package_folder(files: Mapping[str, str]) -> dict[str, str]:
+    return {"/".join(PurePosixPath(path).parts[1:]): text for path, text in files.items()}

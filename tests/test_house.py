@@ -1,0 +1,123 @@
+"""The rule of the house: which room may import from which, and which library belongs to which room."""
+
+import ast
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import robosc
+
+PACKAGE = Path(robosc.__file__).parent
+
+#: What every room stands on. What is not named in this file is on the ground, too, and may import nothing but ground.
+ROOMS = {"language", "checks", "m2m", "synthesis", "engine", "diagrams", "m2t", "targets", "cli", "__main__", ""}
+#: Rooms that see more than the ground, and what: the root is the public API, the command line is on top.
+ALLOWED = {
+    "": ROOMS - {"cli", "__main__"},
+    "__main__": {"cli"},
+    "cli": ROOMS - {"__main__"},
+}
+#: Pieces that generators share, each with what it may use of the others.
+SHARED = {"templates": set(), "c": {"templates"}, "cpp": {"c", "templates"}}
+
+LIBRARIES = {
+    "arpeggio": {"language"},
+    "click": {"cli"},
+    "jinja2": {"m2t"},
+    "oxidd": {"synthesis"},
+    "pydantic": {"config"},
+    "pyecore": {"metamodel"},
+    "rich": {"cli", "diagnostics"},
+    "textx": {"language"},
+}
+
+
+def modules() -> Iterator[tuple[tuple[str, ...], ast.Module]]:
+    """Every module, as the parts of its name below `robosc`, and its syntax tree."""
+    for path in sorted(PACKAGE.rglob("*.py")):
+        parts = path.relative_to(PACKAGE).with_suffix("").parts
+        yield tuple(each for each in parts if each != "__init__"), ast.parse(path.read_text(encoding="utf-8"))
+
+
+def imports(tree: ast.Module) -> Iterator[tuple[str, ...]]:
+    """The parts of the name of every module that a module imports, anywhere, for type checkers too."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            yield from (tuple(alias.name.split(".")) for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, "imports are absolute"
+            yield from (tuple(f"{node.module}.{alias.name}".split(".")) for alias in node.names)
+
+
+def room(parts: tuple[str, ...]) -> str:
+    """The room of a module; an attribute of the package itself belongs to the root."""
+    first = parts[0] if parts else ""
+    exists = (PACKAGE / first).is_dir() or (PACKAGE / f"{first}.py").exists()
+    return first if exists else ""
+
+
+def may(importer: tuple[str, ...], imported: tuple[str, ...]) -> bool:
+    """Whether one module of the house may import another."""
+    here, there = room(importer), room(imported)
+    if here == there == "m2t":
+        ours, theirs = ("".join(each[1:2]) for each in (importer, imported))
+        return ours == theirs or (theirs in SHARED and theirs in SHARED.get(ours, SHARED))
+    return here == there or there not in ROOMS or there in ALLOWED.get(here, set())
+
+
+def test_no_import_breaks_the_rule() -> None:
+    broken = [
+        f"{'.'.join(importer)} imports {'.'.join(imported)}"
+        for importer, tree in modules()
+        for root, *imported in imports(tree)
+        if root == "robosc" and not may(importer, tuple(imported))
+    ]
+    assert broken == []
+
+
+@pytest.mark.parametrize("library", LIBRARIES)
+def test_a_library_stays_in_its_room(library: str) -> None:
+    used = {room(importer) for importer, tree in modules() for name, *_ in imports(tree) if name == library}
+    assert used == LIBRARIES[library]
+
+
+def test_every_other_library_is_the_standard_one() -> None:
+    known = {*LIBRARIES, "robosc", *sys.stdlib_module_names}
+    assert {name for _, tree in modules() for name, *_ in imports(tree) if name not in known} == set()
+
+
+@pytest.mark.parametrize(
+    ("importer", "imported"),
+    [
+        ("language.reading", "checks"),
+        ("checks.rule", "language"),
+        ("synthesis.bdd", "engine"),
+        ("m2m.trace", "synthesis"),
+        ("m2t.ros1", "m2t.ros2"),
+        ("m2t.cpp", "m2t.ros1"),
+        ("m2t.c", "m2t.cpp"),
+        ("m2t.cif", "m2m"),
+        ("typing", "checks"),
+        ("metamodel.sct", "cli"),
+        ("m2t.cif", "cli"),
+        ("checks.rule", "__version__"),
+    ],
+)
+def test_the_rule_forbids(importer: str, imported: str) -> None:
+    assert not may(tuple(importer.split(".")), tuple(imported.split(".")))
+
+
+def test_the_rule_allows() -> None:
+    for importer, imported in [
+        ("m2t.ros1", "m2t.cpp"),
+        ("m2t.cpp", "m2t.c"),
+        ("m2t.cif", "m2t.templates"),
+        ("m2t.cif", "config"),
+        ("m2t.cif.edges", "m2t.cif.names"),
+        ("checks.rule", "metamodel"),
+        ("cli.transform", "language"),
+        ("cli", "__version__"),
+    ]:
+        assert may(tuple(importer.split(".")), tuple(imported.split("."))), f"{importer} -> {imported}"
