@@ -4,6 +4,7 @@ from itertools import product
 
 import pytest
 
+from robosc.checks import check
 from robosc.checks.expression_types import ExpressionCheck, Place
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
@@ -151,3 +152,19 @@ def test_repair_of_a_literal(literal: ex.Expression, wanted: Type, repair: str) 
     check = ExpressionCheck(Place(None))
     check.expect(literal, wanted, "it")
     assert [each.hint for each in check.findings] == [repair]
+
+
+@pytest.mark.parametrize(
+    "item", [rsc.State(name="on"), rsc.Variable(name="v", type=rsc.BooleanDataType()), rsc.Component(name="Lamp")]
+)
+def test_enum_rules_read_nothing_that_changes(item: rsc.AccessibleItem) -> None:
+    rules = [
+        rsc.EnumTransformationRule(condition=rsc.Access(item=item), value=rsc.EnumValue(name="a")),
+        rsc.EnumDefaultRule(value=rsc.EnumValue(name="b")),
+    ]
+    enum = rsc.EnumDataType(name="E", type=rsc.DoubleDataType(), rules=rules)
+    (finding,) = check(rsc.Robot(name="House", definitions=[enum]))
+    assert finding.rule == "type"
+    assert finding.message == (
+        f"an enum rule reads `value`, literals and enum values only, found {type(item).__name__.lower()} `{item.name}`"
+    )
