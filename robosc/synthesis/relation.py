@@ -46,7 +46,8 @@ class EventRelation:
         self.event = event
         self._encoding = encoding
         self._edges = [edges for edges in (_edges(plant, event) for plant in model.plants) if edges]
-        self.changed: tuple[Element, ...] = tuple(each for edges in self._edges for each in _changed(edges))
+        changed = [each for edges in self._edges for each in _changed(edges)]
+        self.changed = tuple(each for each in changed if encoding.layout.domains[each].size > 1)
         self.enabled = self._conjunction(self._enabled(edges) for edges in self._edges)
         self.requirements = [each for each in model.requirements if each.event is event]
         self.requirement = self._conjunction(

@@ -1,0 +1,204 @@
+"""Random valid SCT models, small enough to be explored state by state."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from hypothesis import strategies as st
+
+from robosc.metamodel import sct
+from tests.sct_models import disables, edge, model, needs, plant
+
+_ENUMERATIONS = {"E": ["e0", "e1", "e2"], "F": ["f0"]}
+_CONTROLLABLE = ("c_trigger", "c_cancel", "c_reset", "c_tau1")
+_UNCONTROLLABLE = ("u_response", "u_error", "u_feedback")
+_KINDS = ("message", "service", "action", "behaviour")
+
+
+@dataclass(frozen=True)
+class _Scope:
+    """What expressions may read, by type; a type is `bool`, `E`, `F` or a range."""
+
+    locations: tuple[str, ...]
+    values: tuple[tuple[str, str], ...]
+
+    def of(self, kind: str) -> list[str]:
+        return [name for name, each in self.values if (".." if ".." in each else each) == kind]
+
+
+@dataclass(frozen=True)
+class _Sketch:
+    """A plant before its edges."""
+
+    name: str
+    locations: tuple[str, ...]
+    controllable: tuple[str, ...]
+    uncontrollable: dict[str, tuple[str, ...]]
+    variables: dict[str, str]
+    inputs: dict[str, str]
+
+
+@st.composite
+def sct_models(draw: st.DrawFn, *, data: bool = True) -> sct.SupervisoryControlModel:
+    """Models without a supervisor: plants that share events, guards, saturating updates, inputs, requirements.
+
+    With `data`, some have plants as provide statements make them (semantics.md, point 4): nothing reads them.
+    """
+    sketches = [draw(_sketches(f"p{index}")) for index in range(draw(st.integers(1, 3)))]
+    scope = _Scope(
+        tuple(f"{each.name}.{location}" for each in sketches for location in each.locations),
+        tuple((f"{each.name}.{name}", kind) for each in sketches for name, kind in each.variables.items()),
+    )
+    plants = [_plant(draw, each, sketches, scope) for each in sketches]
+    if data:
+        plants += [_data_plant(draw, f"data_{index}", scope) for index in range(draw(st.integers(0, 1)))]
+    events = [f"{each.name}.{event}" for each in sketches for event in each.controllable]
+    requirements = [
+        draw(st.sampled_from((needs, disables)))(draw(st.sampled_from(events)), _boolean(draw, scope, 3))
+        for _ in range(draw(st.integers(0, 3)) if events else 0)
+    ]
+    return model(plants, requirements, _ENUMERATIONS)
+
+
+@st.composite
+def _sketches(draw: st.DrawFn, name: str) -> _Sketch:
+    inputs = {f"i{index}": draw(_types(3)) for index in range(draw(st.integers(0, 2)))}
+    return _Sketch(
+        name,
+        tuple(f"l{index}" for index in range(draw(st.sampled_from((1, 2, 2, 3))))),
+        tuple(draw(st.lists(st.sampled_from(_CONTROLLABLE), min_size=1, max_size=3, unique=True))),
+        {
+            event: tuple(each for each in inputs if draw(st.booleans()))
+            for event in draw(st.lists(st.sampled_from(_UNCONTROLLABLE), max_size=2, unique=True))
+        },
+        {f"v{index}": draw(_types(5)) for index in range(draw(st.integers(0, 2)))},
+        inputs,
+    )
+
+
+@st.composite
+def _types(draw: st.DrawFn, size: int) -> str:
+    minimum = draw(st.integers(-4, 3))
+    return draw(st.sampled_from(("bool", "E", "F", f"{minimum}..{minimum + draw(st.integers(0, size - 1))}")))
+
+
+def _plant(draw: st.DrawFn, sketch: _Sketch, sketches: Sequence[_Sketch], scope: _Scope):
+    own = [(sketch, event) for event in (*sketch.controllable, *sketch.uncontrollable)]
+    others = [
+        (each, event)
+        for each in sketches
+        if each is not sketch
+        for event in (*each.controllable, *each.uncontrollable)
+        if draw(st.integers(0, 4)) == 0
+    ]
+    initial, *rest = sketch.locations
+    dead = [each for each in rest if draw(st.integers(0, 4)) == 4]
+    edges = {
+        location: [
+            _edge(draw, sketch, declaring, event, scope)
+            for declaring, event in (() if location in dead else own + others)
+            if draw(st.integers(0, 4)) < 4
+        ]
+        for location in sketch.locations
+    }
+    used = {each.event for location in sketch.locations for each in edges[location]}
+    edges[initial] += [edge(f"{sketch.name}.{event}") for _, event in own if f"{sketch.name}.{event}" not in used]
+    return plant(
+        sketch.name,
+        edges,
+        controllable=sketch.controllable,
+        uncontrollable=sketch.uncontrollable,
+        variables={name: f"{kind} = {_constant(draw, kind)}" for name, kind in sketch.variables.items()},
+        inputs=sketch.inputs,
+        initial=initial,
+        marked=[each for each in sketch.locations if each not in dead and draw(st.integers(0, 3)) < 3],
+        kind=draw(st.sampled_from(_KINDS)),
+        topic=draw(st.sampled_from((sketch.name, "shared"))),
+    )
+
+
+def _edge(draw: st.DrawFn, sketch: _Sketch, declaring: _Sketch, event: str, scope: _Scope):
+    carried = declaring.uncontrollable.get(event, ())
+    inputs = tuple((f"{declaring.name}.{name}", declaring.inputs[name]) for name in carried)
+    with_inputs = replace(scope, values=scope.values + inputs)
+    return edge(
+        f"{declaring.name}.{event}",
+        to=draw(st.sampled_from(sketch.locations)),
+        when=_boolean(draw, scope, 2) if draw(st.integers(0, 2)) == 0 else None,
+        do={name: _value(draw, kind, with_inputs, 2) for name, kind in sketch.variables.items() if draw(st.booleans())},
+    )
+
+
+def _data_plant(draw: st.DrawFn, name: str, scope: _Scope):
+    conditions = [_boolean(draw, scope, 2) for _ in range(draw(st.integers(1, 2)))]
+    locations = ["none", *(f"d{index}" for index, _ in enumerate(conditions, 1))]
+    edges = [
+        edge("c_none", to="none", when=" and ".join(f"not ({each})" for each in conditions)),
+        *(edge(f"c_d{index}", to=f"d{index}", when=each) for index, each in enumerate(conditions, 1)),
+    ]
+    return plant(
+        name,
+        dict.fromkeys(locations, edges),
+        controllable=[each.event for each in edges],
+        marked=locations,
+        kind="data",
+    )
+
+
+def _constant(draw: st.DrawFn, kind: str) -> str:
+    if ".." in kind:
+        return str(draw(st.integers(*map(int, kind.split("..")))))
+    return draw(st.sampled_from(_ENUMERATIONS.get(kind, ("true", "false"))))
+
+
+def _value(draw: st.DrawFn, kind: str, scope: _Scope, depth: int) -> str:
+    if kind == "bool":
+        return _boolean(draw, scope, depth)
+    return _number(draw, scope, depth) if ".." in kind else _literal(draw, kind, scope, depth)
+
+
+def _boolean(draw: st.DrawFn, scope: _Scope, depth: int) -> str:
+    def again() -> str:
+        return _boolean(draw, scope, depth - 1)
+
+    leaves = [*scope.locations, *scope.of("bool")]
+    form = draw(st.integers(0, 9)) if depth else 0
+    match form:
+        case 1:
+            return f"not ({again()})"
+        case 2 | 3:
+            return f"({again()} {draw(st.sampled_from(('and', 'or')))} {again()})"
+        case 4:
+            return f"implies({again()}, {again()})"
+        case 5:
+            return f"({again()} if {again()} else {again()})"
+        case 6:
+            return f"(({again()}) {draw(st.sampled_from(('==', '!=')))} ({again()}))"
+        case 7 | 8:
+            operator = draw(st.sampled_from(("==", "!=", "<", "<=", ">", ">=")))
+            return f"({_number(draw, scope, depth - 1)} {operator} {_number(draw, scope, depth - 1)})"
+        case 9:
+            kind = draw(st.sampled_from(("E", "F")))
+            operator = draw(st.sampled_from(("==", "!=")))
+            return f"({_literal(draw, kind, scope, depth - 1)} {operator} {_literal(draw, kind, scope, depth - 1)})"
+    return draw(st.sampled_from([*leaves, "true", "false"]))
+
+
+def _number(draw: st.DrawFn, scope: _Scope, depth: int) -> str:
+    def again() -> str:
+        return _number(draw, scope, depth - 1)
+
+    match draw(st.integers(0, 5)) if depth else 0:
+        case 1 | 2 | 3:
+            return f"({again()} {draw(st.sampled_from(('+', '-', '*')))} {again()})"
+        case 4:
+            return f"(-{again()})"
+        case 5:
+            return f"({again()} if {_boolean(draw, scope, depth - 1)} else {again()})"
+    return draw(st.one_of(st.sampled_from([*scope.of(".."), "2"]), st.integers(-5, 5).map(str)))
+
+
+def _literal(draw: st.DrawFn, kind: str, scope: _Scope, depth: int) -> str:
+    if depth and draw(st.booleans()):
+        then, otherwise = (_literal(draw, kind, scope, depth - 1) for _ in range(2))
+        return f"({then} if {_boolean(draw, scope, depth - 1)} else {otherwise})"
+    return draw(st.sampled_from([*scope.of(kind), *_ENUMERATIONS[kind]]))

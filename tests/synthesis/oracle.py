@@ -1,0 +1,201 @@
+"""Synthesis by the definition: one state at a time, over sets. Slow on purpose, and of the same mind as nobody else."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import product
+from typing import Any
+
+from robosc.metamodel import expression as ex
+from robosc.metamodel import sct
+
+#: For each plant its location, for each variable its value, in the order of the model.
+State = tuple[Any, ...]
+
+
+@dataclass(frozen=True)
+class Oracle:
+    """What synthesis is to find out about a model."""
+
+    model: sct.SupervisoryControlModel
+
+    @cached_property
+    def events(self) -> list[sct.Event]:
+        return [event for plant in self.model.plants for event in plant.events]
+
+    @cached_property
+    def places(self) -> dict[Any, int]:
+        """Where in a state an element's value is."""
+        return {each: index for index, each in enumerate(e for p in self.model.plants for e in (p, *p.variables))}
+
+    @cached_property
+    def initial(self) -> State:
+        return tuple(
+            next(location for location in each.locations if location.initial)
+            if isinstance(each, sct.Plant)
+            else self.value(each.initial, (), {})
+            for each in self.places
+        )
+
+    def value(self, expression: ex.Expression | None, state: State, inputs: dict[sct.Input, Any]) -> Any:  # noqa: C901, PLR0912
+        """The value of an expression; an enumeration's is the literal itself. An absent one is true."""
+
+        def of(child: ex.Expression) -> Any:
+            return self.value(child, state, inputs)
+
+        match expression:
+            case None:
+                return True
+            case ex.BooleanLiteral() | ex.IntegerLiteral():
+                return expression.value
+            case ex.EnumerationLiteralReference():
+                return expression.literal
+            case sct.VariableReference():
+                return state[self.places[expression.variable]]
+            case sct.InputReference():
+                return inputs[expression.input]
+            case sct.LocationReference():
+                return state[self.places[expression.location.eContainer()]] is expression.location
+            case ex.Negation():
+                return not of(expression.operand)
+            case ex.UnaryMinus():
+                return -of(expression.operand)
+            case ex.Conditional():
+                return of(expression.then) if of(expression.condition) else of(expression.otherwise)
+            case ex.BinaryExpression():
+                left, right = of(expression.left), of(expression.right)
+        match expression:
+            case ex.Conjunction():
+                return left and right
+            case ex.Disjunction():
+                return left or right
+            case ex.Implication():
+                return right if left else True
+            case ex.Equation():
+                return left == right
+            case ex.Inequation():
+                return left != right
+            case ex.LessThan():
+                return left < right
+            case ex.LessOrEqual():
+                return left <= right
+            case ex.GreaterThan():
+                return left > right
+            case ex.GreaterOrEqual():
+                return left >= right
+            case ex.Addition():
+                return left + right
+            case ex.Subtraction():
+                return left - right
+            case ex.Multiplication():
+                return left * right
+        raise TypeError(expression)
+
+    def edges(self, event: sct.Event, state: State) -> list[sct.Edge] | None:
+        """The edges that the plants take together; None where the event is not enabled."""
+        taken = []
+        for plant in self.model.plants:
+            if not any(edge.event is event for location in plant.locations for edge in location.edges):
+                continue
+            possible = [
+                edge
+                for edge in state[self.places[plant]].edges
+                if edge.event is event and self.value(edge.guard, state, {})
+            ]
+            if not possible:
+                return None
+            taken += possible
+        return taken
+
+    def successors(self, event: sct.Event, state: State) -> dict[State, dict[sct.Input, Any]]:
+        """The states after the event, each with input values that lead there."""
+        edges = self.edges(event, state)
+        if edges is None:
+            return {}
+        reached: dict[State, dict[sct.Input, Any]] = {}
+        for values in product(*(_values(each.type) for each in event.inputs)):
+            inputs = dict(zip(event.inputs, values, strict=True))
+            after = list(state)
+            for edge in edges:
+                after[self.places[edge.target.eContainer()]] = edge.target
+                for update in edge.updates:
+                    after[self.places[update.variable]] = _saturated(
+                        self.value(update.value, state, inputs), update.variable.type
+                    )
+            reached.setdefault(tuple(after), inputs)
+        return reached
+
+    def required(self, event: sct.Event, state: State) -> bool:
+        """Whether the requirements let the event happen."""
+        return all(
+            self.value(each.condition, state, {}) == (each.kind == sct.RequirementKind.needs)
+            for each in self.model.requirements
+            if each.event is event
+        )
+
+    def is_marked(self, state: State) -> bool:
+        return all(state[self.places[plant]].marked for plant in self.model.plants)
+
+    def reach(self, start: State, *, requirements: bool, within: set[State] | None = None) -> set[State]:
+        """All states that can be reached from one."""
+        seen, pending = {start}, [start]
+        while pending:
+            state = pending.pop()
+            for event in self.events:
+                if requirements and not self.required(event, state):
+                    continue
+                for after in self.successors(event, state):
+                    if after not in seen and (within is None or after in within):
+                        seen.add(after)
+                        pending.append(after)
+        return seen
+
+    @cached_property
+    def uncontrolled(self) -> set[State]:
+        return self.reach(self.initial, requirements=False)
+
+    @cached_property
+    def controlled(self) -> set[State]:
+        good = self.reach(self.initial, requirements=True)
+        next_states = {
+            state: [
+                (event, after)
+                for event in self.events
+                if self.required(event, state)
+                for after in self.successors(event, state)
+            ]
+            for state in good
+        }
+        while True:
+            alive = {state for state in good if self.is_marked(state)}
+            grown = True
+            while grown:
+                more = {s for s in good - alive if any(after in alive for _, after in next_states[s])}
+                alive |= more
+                grown = bool(more)
+            kept = {
+                state
+                for state in alive
+                if all(event.controllable or after in alive for event, after in next_states[state])
+            }
+            if kept == good:
+                break
+            good = kept
+        return self.reach(self.initial, requirements=True, within=good) if self.initial in good else set()
+
+    def allows(self, event: sct.Event, state: State) -> bool:
+        """Whether the event can happen in a controlled state under the supervisor."""
+        after = self.successors(event, state)
+        return bool(after) and self.required(event, state) and all(each in self.controlled for each in after)
+
+
+def _values(kind: ex.Type) -> list[Any]:
+    match kind:
+        case ex.BooleanType():
+            return [False, True]
+        case ex.IntegerType():
+            return list(range(kind.minimum, kind.maximum + 1))
+    return list(kind.enumeration.literals)
+
+
+def _saturated(value: Any, kind: ex.Type) -> Any:
+    return min(max(value, kind.minimum), kind.maximum) if isinstance(kind, ex.IntegerType) else value

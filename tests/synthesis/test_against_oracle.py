@@ -1,0 +1,73 @@
+"""Synthesis over decision diagrams against synthesis by the definition, on random models."""
+
+from hypothesis import HealthCheck, event, given, settings
+
+from robosc.expressions import SctPrinter
+from robosc.metamodel import sct
+from robosc.roles import event_name
+from robosc.synthesis import Synthesis, synthesize
+from tests.random_sct import sct_models
+from tests.synthesis.oracle import Oracle
+
+RANDOM_MODELS = settings(
+    max_examples=150, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
+)
+
+
+def check(model: sct.SupervisoryControlModel, synthesis: Synthesis) -> None:
+    """Everything that synthesis says of a model is what the definition says."""
+    oracle = Oracle(model)
+    assert synthesis.uncontrolled_states == len(oracle.uncontrolled)
+    assert synthesis.controlled_states == len(oracle.controlled)
+    assert (synthesis.supervisor is None) == (not oracle.controlled)
+    if synthesis.supervisor is not None:
+        check_guards(oracle, synthesis.supervisor)
+
+
+def check_guards(oracle: Oracle, supervisor: sct.Supervisor) -> None:
+    assert [each.event for each in supervisor.guards] == [each for each in oracle.events if each.controllable]
+    for guard in supervisor.guards:
+        ever = False
+        for state in oracle.controlled:
+            enabled = oracle.edges(guard.event, state) is not None
+            requirement, synthesis = (oracle.value(part, state, {}) for part in (guard.requirement, guard.synthesis))
+            allowed = oracle.allows(guard.event, state)
+            assert (enabled and requirement and synthesis) == allowed, describe(guard)
+            if enabled:
+                assert requirement == oracle.required(guard.event, state), describe(guard)
+            ever = ever or allowed
+        assert guard.everEnabled == ever
+        check_parts_say_something(oracle, guard)
+
+
+def check_parts_say_something(oracle: Oracle, guard: sct.EventGuard) -> None:
+    """A part is absent where it would be true in every state that the rest leaves."""
+    states = [state for state in oracle.controlled if oracle.edges(guard.event, state) is not None]
+    if guard.requirement is not None:
+        assert not all(oracle.required(guard.event, state) for state in states), describe(guard)
+    if guard.synthesis is not None:
+        required = [state for state in states if oracle.required(guard.event, state)]
+        assert not all(oracle.allows(guard.event, state) for state in required), describe(guard)
+
+
+def describe(guard: sct.EventGuard) -> str:
+    text = SctPrinter()
+    parts = [part and text(part) for part in (guard.requirement, guard.synthesis)]
+    return f"{event_name(guard.event)}: requirement {parts[0]}, synthesis {parts[1]}"
+
+
+@given(sct_models())
+@RANDOM_MODELS
+def test_random_models(model):
+    synthesis = synthesize(model)
+    event("empty" if synthesis.supervisor is None else "supervised")
+    check(model, synthesis)
+
+
+@given(sct_models())
+@RANDOM_MODELS
+def test_synthesis_never_restricts_data_events(model):
+    synthesis = synthesize(model)
+    if synthesis.supervisor is not None:
+        data = [each for each in synthesis.supervisor.guards if each.event.kind == sct.EventKind.data]
+        assert [each.synthesis for each in data] == [None] * len(data)
