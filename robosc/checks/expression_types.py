@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
-from typing import TYPE_CHECKING
 
 from robosc.checks.rule import Finding
 from robosc.checks.type_repairs import equality_repair, repair
+from robosc.expressions import RoboscPrinter
 from robosc.instances import Instances
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
@@ -29,27 +29,6 @@ from robosc.typing import (
     is_number,
     operator_type,
 )
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-_SYMBOL: Mapping[type[ex.Expression], str] = {
-    ex.Implication: "=>",
-    ex.Disjunction: "or",
-    ex.Conjunction: "and",
-    ex.Equation: "=",
-    ex.Inequation: "!=",
-    ex.LessThan: "<",
-    ex.LessOrEqual: "<=",
-    ex.GreaterThan: ">",
-    ex.GreaterOrEqual: ">=",
-    ex.Addition: "+",
-    ex.Subtraction: "-",
-    ex.Multiplication: "*",
-    ex.Division: "/",
-    ex.Negation: "!",
-    ex.UnaryMinus: "-",
-}
 
 
 class Restriction(Enum):
@@ -134,13 +113,13 @@ class ExpressionCheck:
                 if operand is not None and not fits and found != UNKNOWN:
                     self.report(
                         operand,
-                        f"an operand of `{_SYMBOL[type(operator)]}` must be {wants}, found {found}",
+                        f"an operand of `{RoboscPrinter.symbols[type(operator)]}` must be {wants}, found {found}",
                         repair(operand, found, BOOLEAN if logical else DOUBLE),
                     )
         return operator_type(operator, *types)
 
     def _equality(self, operator: ex.Equation | ex.Inequation, types: list[Type]) -> None:
-        symbol = _SYMBOL[type(operator)]
+        symbol = RoboscPrinter.symbols[type(operator)]
         operands = (operator.left, operator.right)
         comparable = [
             each in {BOOLEAN, INTEGER, DOUBLE, STRING, UNKNOWN} or isinstance(each, EnumType) for each in types

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from robosc.expressions import RoboscPrinter
 from robosc.metamodel import expression as ex
+from robosc.metamodel import robosc as rsc
 from robosc.typing import (
     BOOLEAN,
     DOUBLE,
@@ -22,11 +24,7 @@ from robosc.typing import (
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-_COMPARISON: Mapping[Type, str] = {
-    INTEGER: "compare it, such as `… > 0`",
-    DOUBLE: "compare it, such as `… > 0.0`",
-    STRING: 'compare it, such as `… = "…"`',
-}
+_COMPARISON: Mapping[Type, str] = {INTEGER: "> 0", DOUBLE: "> 0.0", STRING: '= "…"'}
 _LITERALS: Mapping[Type, str] = {
     BOOLEAN: "`true` or `false`",
     INTEGER: "a whole number such as `0`",
@@ -40,7 +38,7 @@ def repair(expression: ex.Expression, found: Type, wanted: Type) -> str:
     An object value is found as UNKNOWN; where UNKNOWN is wanted, any type will do that can be compared.
     """
     if isinstance(found, (ObjectType, ArrayType)) or found == NONE:
-        return _part(found, wanted)
+        return _part(expression, found, wanted)
     literal = literal_repair(expression, found, wanted)
     if literal:
         return literal
@@ -95,23 +93,25 @@ def equality_repair(operator: ex.Equation | ex.Inequation, left: Type, right: Ty
     return operator, f"compare {left} with {left}, or {right} with {right}"
 
 
-def _part(found: Type, wanted: Type) -> str:
+def _part(whole: ex.Expression, found: Type, wanted: Type) -> str:
     if isinstance(found, ArrayType):
-        return "read one of its elements, such as `…[0]`"
+        return f"read one of its elements, such as `{_text(whole)}[0]`"
     if not isinstance(found, ObjectType):
         return "leave it out: this event carries no data"
     properties = list(found.definition.properties)
     fitting = [each for each in properties if declared_type(each.type) == wanted] or properties
-    return f"read one of its properties, such as `….{fitting[0].name}`" if fitting else "it has no property to read"
+    return (
+        f"read one of its properties, such as `{_text(whole)}.{fitting[0].name}`" if fitting else "it has none to read"
+    )
 
 
 def _conversion(expression: ex.Expression, found: Type, wanted: Type) -> str:
     if wanted == BOOLEAN and isinstance(found, EnumType):
-        return f"compare it with one of its values: {_alternatives(found)}"
+        return f"compare it, such as `{_text(expression)} = {_values(found)[0]}`" if _values(found) else "compare it"
     if wanted == BOOLEAN and found in _COMPARISON:
-        return _COMPARISON[found]
+        return f"compare it, such as `{_text(expression)} {_COMPARISON[found]}`"
     if (found, wanted) == (INTEGER, DOUBLE):
-        return "multiply it by `1.0`"
+        return f"write `{_text(expression)} * 1.0`"
     if (found, wanted) == (DOUBLE, INTEGER):
         why = "`/` always gives a double" if isinstance(expression, ex.Division) else "a double is never rounded"
         return f"write a whole number or declare it double: {why}"
@@ -126,3 +126,14 @@ def _alternatives(enum: EnumType) -> str:
 
 def _values(enum: EnumType) -> list[str]:
     return list(dict.fromkeys(each.value.name for each in enum.definition.rules if each.value))
+
+
+def _text(expression: ex.Expression) -> str:
+    """What stands there, if it is short enough to be repeated; names of the own component without it."""
+    if not isinstance(expression, rsc.Access):
+        return "(…)"
+    around = expression.eContainer()
+    while around is not None and not isinstance(around, rsc.Component):
+        around = around.eContainer()
+    text = RoboscPrinter()(expression)
+    return text.removeprefix(f"{around.name}.") if around is not None and around is expression.component else text
