@@ -69,7 +69,7 @@ def literal_repair(expression: ex.Expression, found: Type, wanted: Type) -> str 
             text = f'"{sign}{inner.value}"'
         case ex.BooleanLiteral(), BasicType.STRING:
             text = f'"{str(inner.value).lower()}"'
-        case ex.IntegerLiteral(), BasicType.BOOLEAN if inner.value in {0, 1}:
+        case ex.IntegerLiteral(), BasicType.BOOLEAN if not sign and inner.value in {0, 1}:
             text = str(bool(inner.value)).lower()
         case ex.StringLiteral(), BasicType.BOOLEAN if inner.value in {"true", "false"}:
             text = inner.value

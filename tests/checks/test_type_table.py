@@ -142,6 +142,7 @@ def test_types_of_one_name_are_told_apart() -> None:
         (ex.DoubleLiteral(value=4.5), INTEGER, "write a whole number or declare it double: a double is never rounded"),
         (ex.IntegerLiteral(value=1), BOOLEAN, "write `true`"),
         (ex.IntegerLiteral(value=0), BOOLEAN, "write `false`"),
+        (ex.UnaryMinus(operand=ex.IntegerLiteral(value=1)), BOOLEAN, "compare it, such as `(…) > 0`"),
         (ex.IntegerLiteral(value=2), BOOLEAN, "compare it, such as `(…) > 0`"),
         (ex.StringLiteral(value="false"), BOOLEAN, "write `false`"),
         (ex.BooleanLiteral(value=True), STRING, 'write `"true"`'),
