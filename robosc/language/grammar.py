@@ -21,7 +21,6 @@ class Failure:
 
     position: int
     expected: tuple[str, ...]
-    too_deep: bool = False
 
 
 @cache
@@ -43,9 +42,14 @@ def parse(text: str, rule: str) -> Node | Failure:
     except textx.TextXSyntaxError as fault:
         failed = fault.__cause__
         assert isinstance(failed, arpeggio.NoMatch)
-        return Failure(failed.position, tuple(dict.fromkeys(_wanted(each) for each in failed.rules)))
-    except RecursionError:
-        return Failure(0, (), too_deep=True)
+        return Failure(
+            failed.position, tuple(dict.fromkeys(each for each in map(_wanted, failed.rules) if each != "Comment"))
+        )
+
+
+def is_reserved(word: str) -> bool:
+    """Whether a word is a keyword, so that it needs a `^` where it could be one."""
+    return language()["UnreservedName"]._tx_peg_rule.regex.match(word) is None  # noqa: SLF001
 
 
 def attribute(node: Node) -> str | None:
@@ -56,5 +60,6 @@ def attribute(node: Node) -> str | None:
 def _wanted(rule: Any) -> str:
     if isinstance(rule, arpeggio.EndOfFile):
         return "end"
-    named = rule.rule_name and not rule.rule_name.startswith(("__", "sep"))
-    return str(rule.rule_name if named else getattr(rule, "to_match", rule.rule_name))
+    word = str(getattr(rule, "to_match", rule.rule_name))
+    named = rule.rule_name and not rule.rule_name.startswith(("__", "sep")) and not word.isalpha()
+    return str(rule.rule_name) if named else word

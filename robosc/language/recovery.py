@@ -1,27 +1,39 @@
-"""Parses a file; where it has faults, all that it can."""
+"""Parses a file; where it has faults, finds them all and parses the rest.
+
+A text without fault is parsed as a whole. Else its outline is parsed item by item, the smallest first; what does not
+parse is a finding and is blanked out, and the text that remains, parsed as a whole, makes the model.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
 
 from robosc.language.building import Builder
+from robosc.language.explaining import expected, found, hint
 from robosc.language.grammar import Failure, parse
+from robosc.language.outline import DEFINITIONS, Block, Brace, Outline
+from robosc.language.tokens import DEEPEST, Kind, Token, Tokens, too_deep
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
     from robosc.diagnostics import Diagnostic
     from robosc.language.building import Name
     from robosc.language.text import Text
     from robosc.metamodel import robosc as rsc
 
+#: Items that begin with these declare nothing that another place could name.
+_DECLARING_NOTHING = ("requirement", "provide", "on", "transition")
+
 
 @dataclass(frozen=True)
 class Parsed:
     """The model of a text, its names not linked.
 
-    `references`: the names by element and feature; `unread`: names that skipped text seems to declare.
+    `base` is None where nothing could be read. `references`: the names by element and feature; `unread`: names that
+    skipped text seems to declare.
     """
 
     base: rsc.Base | None
@@ -31,10 +43,215 @@ class Parsed:
 
 
 def parse_file(text: Text) -> Parsed:
-    """Parses the text of a file."""
-    tree = parse(text.content, "Base")
-    if isinstance(tree, Failure):
-        message = f"expected {' or '.join(tree.expected)}"
-        return Parsed(None, findings=[text.error("syntax", tree.position, tree.position + 1, message)])
+    """Parses the text of a file. Findings are of the rule `syntax`."""
+    tokens = Tokens(text.content)
+    tree = None if too_deep(tokens) else parse(text.content, "Base")
+    if tree is None or isinstance(tree, Failure):
+        return _Recovery(text, tokens).parse()
     builder = Builder(text)
-    return Parsed(builder.build(tree), builder.references, builder.findings)
+    base = builder.build(tree)
+    return Parsed(base, builder.references, builder.findings)
+
+
+class _Recovery:
+    """Parses a text that has faults. `_content` is the text, with what was found to be wrong blanked out or mended."""
+
+    def __init__(self, text: Text, tokens: Tokens) -> None:
+        self._text = text
+        self._tokens = tokens
+        # Comments are blanks here, and so is what lies behind the text: room for the braces that are missing there.
+        self._content = [each if each == "\n" else " " for each in text.content + " " * 10]
+        for each in tokens:
+            self._content[each.start : each.end] = each.text
+        self._findings: list[Diagnostic] = []
+        self._unread: set[str] = set()
+        self._is_library = tokens[0].text == "library"
+
+    def parse(self) -> Parsed:
+        """All findings, and the model of what is left."""
+        tokens = self._tokens
+        first, last = tokens[0], tokens[len(tokens) - 1]
+        if last.kind is Kind.OPEN_COMMENT:
+            self._report(len(tokens) - 1, "this comment is not closed", "end it with `*/`")
+            self._blank(last.start, last.end)
+        if not {"robot", "library"} & {first.text, _meant(first)} and DEFINITIONS.starter(first) is None:
+            if first is not last or last.kind is not Kind.OPEN_COMMENT:
+                self._report(0, f"found {found(first)}, expected `robot` or `library`")
+            return Parsed(None, findings=self._findings)
+        outline = Outline(tokens)
+        root = outline.file()
+        self._mend(outline.braces)
+        self._remainder(root)
+        for item in root.items:
+            self._check(item)
+        builder = Builder(self._text)
+        base = self._base(root, builder)
+        findings = sorted([*self._findings, *builder.findings], key=lambda each: each.span)
+        return Parsed(base, builder.references, findings, frozenset(self._unread))
+
+    # Braces
+
+    def _mend(self, braces: Iterable[Brace]) -> None:
+        tokens = self._tokens
+        at_end = tokens[len(tokens) - 1].kind is Kind.OPEN_COMMENT
+        for each in braces:
+            token = tokens[each.index]
+            if each.surplus:
+                self._report(each.index, "this `}` is one too many: what follows belongs inside", "leave it out")
+                self._blank(token.start, token.end)
+                continue
+            # Of the braces that are missing at the end, the innermost is reported.
+            if token.kind is not Kind.END or not at_end:
+                opened = None if each.opened is None else tokens[each.opened]
+                line = self._text.span(opened.start, opened.end).line if opened else None
+                why = f"the `{{` in line {line} is not closed" if line else None
+                self._report(each.index, f"found {found(token)}, expected `{each.text}`", why)
+            at_end = at_end or token.kind is Kind.END
+            if each.offset is not None:
+                self._content[each.offset] = each.text
+
+    def _remainder(self, root: Block) -> None:
+        """What stands behind the closing brace of the robot."""
+        tokens = self._tokens
+        if root.after < len(tokens) and tokens[root.after].kind is not Kind.OPEN_COMMENT:
+            token = tokens[root.after]
+            hint = "a file holds one robot or one library" if token.is_keyword("robot", "library") else None
+            self._report(root.after, f"found {found(token)}, expected the end of the file", hint)
+            self._skip(root.after, len(tokens))
+
+    # Items
+
+    def _check(self, block: Block) -> None:
+        """Parses an item and what is in it."""
+        for item in block.items:
+            self._check(item)
+        deep = None if block.items else too_deep(self._tokens, block.first, block.after)
+        if deep is not None:
+            self._report(deep, f"this is nested more than {DEEPEST} levels deep", "use variables for its parts")
+            self._skip_block(block)
+        elif self._is_library and block.level is DEFINITIONS and self._starts(block, "requirement", "provide"):
+            message = f"a library holds no {self._tokens[block.first].text} statements"
+            self._report(block.first, message, "write it in the robot that imports the library")
+            self._skip_block(block)
+        else:
+            failure = self._failure(block)
+            if failure is not None:
+                self._failed(block, failure)
+
+    def _failure(self, block: Block) -> Failure | None:
+        result = parse(self._own_text(block), block.level.rule if block.level else "Base")
+        return result if isinstance(result, Failure) else None
+
+    def _at(self, block: Block, failure: Failure) -> int:
+        return self._tokens.index_at(block.start + failure.position)
+
+    def _failed(self, block: Block, failure: Failure) -> None:
+        index = self._at(block, failure)
+        goes_on = "end" in failure.expected and self._tokens[index].start == block.start + failure.position
+        if not goes_on or block.items or not block.first < index < block.after:
+            self._explain(block, index, failure)
+            self._skip_block(block)
+            return
+        # The item itself is whole, and something follows that may be an item with a fault, or nothing known.
+        outline = Outline(self._tokens, index, block.after)
+        following, *others = outline.items(block.levels)
+        self._mend(outline.braces)
+        self._skip(outline.after, block.after)
+        fault = self._failure(following)
+        if fault is not None and self._at(following, fault) == index:
+            self._explain(block, index, failure)
+            for item in following.items:
+                self._check(item)
+            self._skip_block(following)
+        else:
+            self._check(following)
+        for item in others:
+            self._check(item)
+
+    def _explain(self, block: Block, index: int, failure: Failure) -> None:
+        tokens, token = self._tokens, self._tokens[index]
+        if token.kind is Kind.OPEN_STRING:
+            self._report(index, "this string is not closed", f"end it with `{token.text[0]}` in the same line")
+            return
+        message = f"found {found(token)}, expected {expected(failure.expected, block.level)}"
+        repair = hint(tokens, index, failure.expected, block)
+        if index >= block.after and token.is_first:
+            # What is missing belongs where the item ends, not to the next one.
+            end = tokens[index - 1].end
+            self._findings.append(self._text.error("syntax", end, end, message, repair))
+        else:
+            self._report(index, message, repair)
+
+    def _starts(self, block: Block, *words: str) -> bool:
+        return self._tokens[block.first].is_keyword(*words)
+
+    def _own_text(self, block: Block) -> str:
+        """The text of an item without what its braces hold."""
+        content = self._content[block.start : block.end]
+        for item in block.items:
+            content[item.start - block.start : item.end - block.start] = " " * (item.end - item.start)
+        return "".join(content)
+
+    # The model
+
+    def _base(self, root: Block, builder: Builder) -> rsc.Base | None:
+        """The model of what is left; without a first line that can be read, of the definitions alone."""
+        failure = self._failure(root)
+        if failure is None:
+            return self._built("".join(self._content[: root.end]), 0, builder)
+        self._explain(root, self._at(root, failure), failure)
+        if not root.items:
+            return None
+        header = f"{'library' if self._is_library else 'robot'} unnamed {{"
+        start, end = root.items[0].start, root.items[-1].end
+        base = self._built(f"{header}{''.join(self._content[start:end])}}}", start - len(header), builder)
+        if base is not None:
+            base.source = self._text.source(root.start, min(root.end, len(self._text.content)))
+        return base
+
+    def _built(self, content: str, offset: int, builder: Builder) -> rsc.Base | None:
+        tree = parse(content, "Base")
+        if isinstance(tree, Failure):
+            # Each item parses by itself; should they not do so together, that is said where it is seen.
+            index = self._tokens.index_at(tree.position + offset)
+            self._report(index, f"found {found(self._tokens[index])}, expected {expected(tree.expected, None)}")
+            return None
+        base: rsc.Base = builder.build(tree, offset)
+        return base
+
+    # Skipping
+
+    def _skip_block(self, block: Block) -> None:
+        """Blanks an item out, and notes the names that it seems to declare."""
+        at = block.first
+        for item in (*block.items, None):
+            until = item.first if item else block.after
+            self._skip(at, until, declares=not self._starts(block, *_DECLARING_NOTHING))
+            if item:
+                self._skip_block(item)
+                at = item.after
+        self._blank(block.start, block.end)
+
+    def _skip(self, first: int, after: int, *, declares: bool = True) -> None:
+        tokens = self._tokens
+        for index in range(first, after):
+            token = tokens[index]
+            named = token.is_name and not tokens[index - 1].is_keyword("goto") and not token.text.startswith("^")
+            if token.kind is Kind.WORD and (declares or named):
+                self._unread.add(token.text.removeprefix("^"))
+        if first < after:
+            self._blank(tokens[first].start, tokens[after - 1].end)
+
+    def _blank(self, start: int, end: int) -> None:
+        self._content[start:end] = [each if each == "\n" else " " for each in self._content[start:end]]
+
+    # Findings
+
+    def _report(self, index: int, message: str, hint: str | None = None) -> None:
+        token = self._tokens[index]
+        self._findings.append(self._text.error("syntax", token.start, token.end, message, hint))
+
+
+def _meant(token: Token) -> str | None:
+    """The first word of a file that a token was meant to be."""
+    return next(iter(get_close_matches(token.text, ["library", "robot"], n=1, cutoff=0.7)), None)

@@ -1,0 +1,122 @@
+"""Says in words what a text has in a place, what the grammar wants there, and how to mend it."""
+
+from __future__ import annotations
+
+from difflib import get_close_matches
+from typing import TYPE_CHECKING
+
+from robosc.language.grammar import is_reserved
+from robosc.language.tokens import Kind, Token
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from robosc.language.outline import Block, Level
+    from robosc.language.tokens import Tokens
+
+#: What other languages write, and what RoboSC writes for it.
+_FOREIGN = {
+    "==": "=",
+    "===": "=",
+    "<>": "!=",
+    "=<": "<=",
+    "&&": "and",
+    "&": "and",
+    "||": "or",
+    "|": "or",
+    "\N{NOT EQUAL TO}": "!=",
+    "\N{LESS-THAN OR EQUAL TO}": "<=",
+    "\N{GREATER-THAN OR EQUAL TO}": ">=",
+    "\N{RIGHTWARDS ARROW}": "->",
+    "\N{LEFT DOUBLE QUOTATION MARK}": '"',
+    "\N{RIGHT DOUBLE QUOTATION MARK}": '"',
+}
+_RULES = {
+    "Name": "a name",
+    "UnreservedName": "a name",
+    "String": "a string",
+    "Integer": "a whole number",
+    "SignedInteger": "a whole number",
+    "Double": "a number",
+}
+#: What stands for several words that the grammar wants at once: all of them are replaced where the first ones are met.
+_GROUPS = (
+    (
+        "an expression",
+        {"value", "UnreservedName", "!"},
+        {"Double", "Integer", "String", "true", "false", "-", "("},
+    ),
+    (
+        "an operator",
+        {"and", "or", "=>"},
+        {"=", "!=", "<", "<=", ">", ">=", "+", "-", "*", "/", "=(?!>)", "-(?!>)"},
+    ),
+    ("a type", {"double", "integer", "none"}, {"boolean", "string", "array", "UnreservedName"}),
+)
+
+
+def found(token: Token) -> str:
+    """What stands there."""
+    if token.kind is Kind.END:
+        return "the end of the file"
+    text = token.text if len(token.text) <= 30 else f"{token.text[:29]}\N{HORIZONTAL ELLIPSIS}"
+    return f"`{text}`" if text.isprintable() and not text.isspace() else f"the character U+{ord(token.text[0]):04X}"
+
+
+def expected(wanted: Iterable[str], level: Level | None) -> str:
+    """What the grammar wants, as an enumeration; its `end` is the next item of the level."""
+    words = list(wanted)
+    for name, core, rest in _GROUPS:
+        if core <= set(words):
+            words = [name if each in core else each for each in words if each not in rest]
+    if len(words) > 1:
+        # That a name may go on is true nearly everywhere and never what is missing.
+        words = [each for each in words if each not in {".", "["}]
+    named = [_RULES.get(each, each if " " in each else f"`{each}`") for each in words if each != "end"]
+    if "end" in words:
+        named.append(f"the next {level.noun}" if level else "the end of the file")
+    return enumeration(dict.fromkeys(named))
+
+
+def enumeration(parts: Iterable[str]) -> str:
+    """`a, b or c`."""
+    *others, last = parts
+    return f"{', '.join(others)} or {last}" if others else last
+
+
+def hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) -> str | None:
+    """How to mend what stands at a token of an item, where that can be told."""
+    token, before = tokens[index], tokens[index - 1]
+    symbols = [
+        each for each in (":", ":=", "=", "->", "{", ",") if each in wanted or (each == "=" and "=(?!>)" in wanted)
+    ]
+    if token.text in _FOREIGN:
+        return f"write `{_FOREIGN[token.text]}`"
+    if token.text == ";":
+        return "leave it out: nothing ends with a semicolon"
+    if before.is_keyword(",") and token.kind is Kind.SYMBOL:
+        return "leave out the comma before it"
+    if token.text in {"=", ":", ":=", "=>", "->"} and len(symbols) == 1:
+        return f"write `{symbols[0]}`"
+    if "." in {token.text, before.text} and Kind.NUMBER in {token.kind, before.kind, tokens[index + 1].kind}:
+        return "a number has digits on both sides of its point, such as `0.5` or `1.0`"
+    if token.kind is Kind.NUMBER and not token.text.replace(".", "").isdigit():
+        return "a number has digits and a point only, no exponent and no letters"
+    return _word_hint(tokens, index, wanted, block) if token.kind is Kind.WORD else None
+
+
+def _word_hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) -> str | None:
+    token = tokens[index]
+    words = {each for each in wanted if each.isalpha() and each.islower()} - {"end"}
+    if "end" in wanted and block.level:
+        words |= block.level.starters
+    close = get_close_matches(token.text, sorted(words - {token.text}), n=1, cutoff=0.7)
+    if tokens[index - 1].text == "not":
+        return "write `!` for `not`"
+    if not token.text.removeprefix("^").isascii():
+        return "a name is made of the letters a to z and A to Z, of digits and of `_`"
+    if token.text == "if" and tokens[block.first].is_keyword("on"):
+        return "a transition with an event has no condition; use a variable, or a `transition if` from the next state"
+    if index < block.after and "UnreservedName" in wanted and is_reserved(token.text):
+        return f"write `^{token.text}` where a keyword is used as a name"
+    return f"did you mean `{close[0]}`?" if close else None

@@ -1,0 +1,233 @@
+"""The skeleton of a text that has syntax errors: which definition goes from where to where.
+
+Definitions begin with keywords that can stand nowhere else, so that a missing or surplus brace shows where the next one
+begins in the wrong place. The outline mends the braces; all other faults stay within one definition.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from difflib import get_close_matches
+from typing import TYPE_CHECKING
+
+from robosc.language.grammar import is_reserved
+from robosc.language.tokens import Kind, Token
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from robosc.language.tokens import Tokens
+
+
+@dataclass(frozen=True)
+class Level:
+    """What stands inside a kind of braces: items of a rule of the grammar, in words a `noun`.
+
+    `starters` are the keywords that an item begins with, `bodies` what its braces hold, by such a keyword.
+    """
+
+    rule: str
+    noun: str
+    starters: frozenset[str] = frozenset()
+    bodies: Mapping[str, Level] = field(default_factory=dict)
+
+    def starter(self, token: Token) -> str | None:
+        """The keyword that a token is or, misspelt, was meant to be."""
+        if token.kind is not Kind.WORD:
+            return None
+        return next(iter(get_close_matches(token.text, sorted(self.starters), n=1, cutoff=0.7)), None)
+
+
+PROPERTIES = Level("ObjectProperty", "property")
+RULES = Level("EnumRule", "rule", frozenset({"default"}))
+TRANSITIONS = Level("Transition", "transition", frozenset({"on", "transition"}))
+AUTOMATON = Level(
+    "AutomatonDefinition",
+    "variable, state or transition",
+    frozenset({"variable", "initial", "marked", "state", "on", "transition"}),
+    {"initial": TRANSITIONS, "marked": TRANSITIONS, "state": TRANSITIONS},
+)
+COMPONENT = Level(
+    "ComponentDefinition",
+    "message, service, action or behaviour",
+    frozenset({"incoming", "outgoing", "message", "service", "action", "behaviour"}),
+    {"behaviour": AUTOMATON},
+)
+DATA_TYPES = {"object": PROPERTIES, "enum": RULES}
+DEFINITIONS = Level(
+    "Definition",
+    "definition",
+    frozenset({"interface", "component", "datatype", "requirement", "provide"}),
+    {"component": COMPONENT},
+)
+#: Keywords that begin an item together with the one before them.
+_CONTINUED = {"message": ("incoming", "outgoing")} | dict.fromkeys(
+    ("state", "initial", "marked"), ("initial", "marked")
+)
+#: Keywords and braces that follow the one that an item begins with.
+_SECOND = {"message", "object", "enum", "{"}
+
+
+@dataclass(frozen=True)
+class Block:
+    """One item of a level, or the whole text (`level` is None): its range of tokens and of the text.
+
+    `items` are what its braces hold, each within its range.
+    """
+
+    level: Level | None
+    first: int
+    after: int
+    start: int
+    end: int
+    items: tuple[Block, ...] = ()
+    levels: tuple[Level, ...] = ()
+
+
+@dataclass(frozen=True)
+class Brace:
+    """A brace that is missing before a token, or (`surplus`) a token that is a brace too many.
+
+    `offset` is a blank of the text where the missing one can stand, None where there is no blank; `opened` is the token
+    of the brace that it would close.
+    """
+
+    text: str
+    index: int
+    offset: int | None = None
+    surplus: bool = False
+    opened: int | None = None
+
+
+class Outline:
+    """Finds the items in a range of tokens. `braces` are those that it had to add or take away."""
+
+    def __init__(self, tokens: Tokens, first: int = 0, limit: int | None = None) -> None:
+        self.braces: list[Brace] = []
+        self._tokens = tokens
+        self._at = first
+        self._filled: dict[int, int] = {}
+        self._limit = len(tokens) if limit is None else limit
+
+    @property
+    def after(self) -> int:
+        """The index of the first token that was not looked at."""
+        return self._at
+
+    def file(self) -> Block:
+        """The whole text: a robot or a library."""
+        while not self._ended() and not self._starts(DEFINITIONS) and not self._is("{"):
+            self._at += 1
+        if self._is("{"):
+            self._at += 1
+        elif not self._ended():
+            self._missing("{")
+        items = self._body((DEFINITIONS,))
+        return Block(None, 0, self._at, 0, self._end(), items)
+
+    def items(self, levels: tuple[Level, ...]) -> tuple[Block, ...]:
+        """The items of the last of these levels, up to where one of the others goes on."""
+        items = []
+        while not self._ended() and not self._is("}") and (self._starts(levels[-1]) or not self._outer(levels)):
+            items.append(self._item(levels))
+        return tuple(items)
+
+    def _item(self, levels: tuple[Level, ...]) -> Block:
+        level, first = levels[-1], self._at
+        body = self._body_level(level)
+        items: tuple[Block, ...] = ()
+        if self._is("{"):
+            self._skip(levels)
+        else:
+            self._at += 1
+        while not self._ended() and not self._is("}"):
+            if body is not None and self._opens(body):
+                items = self._body((*levels, body))
+                break
+            if any(self._starts(each) for each in levels):
+                break
+            if self._is("{"):
+                self._skip(levels)
+            else:
+                self._at += 1
+        return Block(level, first, self._at, self._tokens[first].start, self._end(), items, levels)
+
+    def _opens(self, body: Level) -> bool:
+        """Whether the braces of an item open here; passes the brace, or notes that it is missing."""
+        if self._is("{") and not self._tokens[self._at - 1].is_keyword("with"):
+            self._at += 1
+            return True
+        if self._starts(body):
+            self._missing("{")
+            return True
+        return False
+
+    def _body(self, levels: tuple[Level, ...]) -> tuple[Block, ...]:
+        """What stands between an opening brace, just passed, and its closing one, which is passed too."""
+        opened = self._at - 1
+        items = self.items(levels)
+        while self._is("}"):
+            self._at += 1
+            if not self._starts(levels[-1]) or self._outer(levels):
+                return items
+            self.braces.append(Brace("}", self._at - 1, surplus=True))
+            items += self.items(levels)
+        self._missing("}", opened)
+        return items
+
+    def _body_level(self, level: Level) -> Level | None:
+        starter = level.starter(self._tokens[self._at])
+        if starter != "datatype":
+            return level.bodies.get(starter or "")
+        kind = self._tokens[self._at + 1].text
+        return DATA_TYPES.get(next(iter(get_close_matches(kind, sorted(DATA_TYPES), n=1)), ""))
+
+    def _skip(self, levels: tuple[Level, ...]) -> None:
+        """Passes braces that hold no items of their own, with what they hold."""
+        depth = 0
+        while not self._ended() and not any(self._starts(each) for each in levels if each.starters):
+            depth += self._is("{") - self._is("}")
+            self._at += 1
+            if depth == 0:
+                return
+
+    def _outer(self, levels: tuple[Level, ...]) -> bool:
+        return any(self._starts(each) for each in levels[:-1])
+
+    def _starts(self, level: Level) -> bool:
+        """Whether an item of a level begins at the current token."""
+        tokens, at = self._tokens, self._at
+        named = tokens[at + 1].is_keyword(":")
+        if level is PROPERTIES:
+            return tokens[at].kind is Kind.WORD and named
+        if level is RULES and tokens[at - 2].is_keyword("->") and not self._is("}"):
+            return True
+        if named or not (tokens[at].is_keyword(*level.starters) or self._misspelt(level)):
+            return False
+        return not tokens[at - 1].is_keyword(*_CONTINUED.get(tokens[at].text, ()))
+
+    def _misspelt(self, level: Level) -> bool:
+        """Whether a line begins with what looks like a starter and a name: no line of an item goes on so."""
+        token, after = self._tokens[self._at], self._tokens[self._at + 1]
+        if not token.is_first or token.is_name or level.starter(token) is None or is_reserved(token.text):
+            return False
+        return after.text in _SECOND or (after.kind is Kind.WORD and not is_reserved(after.text))
+
+    def _missing(self, brace: str, opened: int | None = None) -> None:
+        token = self._tokens[self._at]
+        offset = self._end()
+        # Behind the text there is room without end.
+        free = offset < token.start or token.kind is Kind.END
+        self.braces.append(Brace(brace, self._at, offset if free else None, opened=opened))
+        if free:
+            self._filled[self._at] = offset + 1
+
+    def _is(self, symbol: str) -> bool:
+        return not self._ended() and self._tokens[self._at].is_keyword(symbol)
+
+    def _ended(self) -> bool:
+        return self._at >= self._limit
+
+    def _end(self) -> int:
+        """Where the text before the current token ends, a brace that was added there included."""
+        return max(self._tokens[self._at - 1].end if self._at else 0, self._filled.get(self._at, 0))

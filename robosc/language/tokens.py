@@ -1,0 +1,128 @@
+"""Cuts a text into words, for what the parser can't say: what it found, and where the next definition begins."""
+
+from __future__ import annotations
+
+import re
+from bisect import bisect_right
+from dataclasses import dataclass
+from enum import Enum, auto
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+_TOKEN = re.compile(
+    r"""[ \t\n\r]+|//[^\n]*|/\*[\s\S]*?\*/
+    |(?P<OPEN_COMMENT>/\*[\s\S]*)
+    |(?P<WORD>\^?[^\W\d]\w*)
+    |(?P<NUMBER>\d+(?:\.\d+)?\w*)
+    |(?P<STRING>"(?:[^"\\\n]|\\.)*"|'(?:[^'\\\n]|\\.)*')
+    |(?P<OPEN_STRING>["'][^\n]*)
+    |(?P<SYMBOL>:=|->|=>|=<|==|!=|<=|>=|<>|&&|\|\||\.\.|[\s\S])
+    """,
+    re.VERBOSE,
+)
+
+#: After these only a name can stand, so that what looks like a keyword is one.
+BEFORE_NAMES = frozenset(
+    {"robot", "library", "component", "message", "service", "action", "state", "variable"}
+    | {"interface", "object", "enum", "goto", "->"}
+)
+
+
+class Kind(Enum):
+    """What a token is."""
+
+    WORD = auto()
+    NUMBER = auto()
+    STRING = auto()
+    SYMBOL = auto()
+    OPEN_STRING = auto()
+    OPEN_COMMENT = auto()
+    END = auto()
+
+
+@dataclass(frozen=True)
+class Token:
+    """A word, number, string or symbol, with its offsets.
+
+    `is_name`: it is no keyword, whatever it looks like; `is_first`: it is the first in its line.
+    """
+
+    kind: Kind
+    text: str
+    start: int
+    end: int
+    is_name: bool = False
+    is_first: bool = False
+
+    def is_keyword(self, *words: str) -> bool:
+        """Whether it is one of these words or symbols, and not a name of the same letters."""
+        return self.text in words and self.kind in {Kind.WORD, Kind.SYMBOL} and not self.is_name
+
+
+class Tokens:
+    """The tokens of a text, blanks and comments left out. The last one is the end of the text."""
+
+    def __init__(self, text: str) -> None:
+        self._tokens = list(_tokens(text))
+
+    def __getitem__(self, index: int) -> Token:
+        """The token at an index, or the end of the text where the index is past it."""
+        return self._tokens[min(index, len(self._tokens) - 1)]
+
+    def __len__(self) -> int:
+        return len(self._tokens) - 1
+
+    def __iter__(self) -> Iterator[Token]:
+        return iter(self._tokens[:-1])
+
+    @cached_property
+    def _starts(self) -> list[int]:
+        return [each.start for each in self._tokens]
+
+    def index_at(self, offset: int) -> int:
+        """The index of the token that an offset lies in, or of the first one after it."""
+        index = max(bisect_right(self._starts, offset) - 1, 0)
+        return index if offset < self[index].end else min(index + 1, len(self))
+
+
+def _tokens(text: str) -> Iterator[Token]:
+    previous = Token(Kind.END, "", 0, 0)
+    for found in _TOKEN.finditer(text):
+        if found.lastgroup is None:
+            continue
+        kind, word = Kind[found.lastgroup], found.group()
+        is_name = kind is Kind.WORD and (word.startswith("^") or previous.is_keyword(*BEFORE_NAMES))
+        is_first = "\n" in text[previous.end : found.start()]
+        previous = Token(kind, word, found.start(), found.end(), is_name, is_first)
+        yield previous
+    # The end stands right after the last token, where a reader looks for what is missing.
+    yield Token(Kind.END, "", previous.end, previous.end)
+
+
+#: How deep brackets and signs may be nested: what reads the model follows it by recursion.
+DEEPEST = 50
+
+
+def too_deep(tokens: Tokens, first: int = 0, after: int | None = None) -> int | None:
+    """The index of the first token that is nested deeper than DEEPEST; None where there is none."""
+    around: list[int] = []
+    signs = 0
+    for index in range(first, len(tokens) if after is None else after):
+        token = tokens[index]
+        if token.is_keyword("(", "[", "{"):
+            around.append(signs + 1)
+            signs = 0
+        elif token.is_keyword("!", "-"):
+            signs += 1
+        else:
+            signs = 0
+            if token.is_keyword(")", "]", "}") and around:
+                around.pop()
+            elif token.is_keyword("requirement", "provide", "component", "datatype", "state", "on", "transition"):
+                around.clear()  # A brace that is missing before makes nothing after it deep.
+        if len(around) > DEEPEST or sum(around) + signs > DEEPEST:
+            return index
+    return None
