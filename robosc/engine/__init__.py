@@ -1,1 +1,7 @@
-"""The reference engine: executes an sct model with its supervisor."""
+"""The reference interpreter: executes an sct model with its supervisor, with or without the control loop."""
+
+from robosc.engine.control_loop import ControlLoop, Hooks, Settings
+from robosc.engine.interpreter import Blocked, Engine
+from robosc.engine.state import State, Value
+
+__all__ = ["Blocked", "ControlLoop", "Engine", "Hooks", "Settings", "State", "Value"]
