@@ -107,6 +107,7 @@ class ControlLoop:
         self._reactions = self.settings.reactions_per_tick
         self._sent_to.clear()
         self._started.clear()
+        self._settle()
         self._serve(self._queued(), self.settings.events_per_tick or len(self._queued()))
 
     def _queued(self) -> list[str]:
@@ -123,15 +124,17 @@ class ControlLoop:
         ]
 
     def _serve(self, due: Sequence[str], most: int) -> int:
-        """Asks each due event at its turn, cancels first, and runs at most so many; returns what is left of these."""
+        """Asks each due event at its turn, cancels first, and runs at most so many; returns what is left of these.
+
+        The model has settled whenever one is asked.
+        """
         for queue in (self._cancels, self._triggers):
             for event in [each for each in queue if each in due]:
                 if most == 0:
                     break
-                self._settle()
                 if self._free(event) and self.engine.enabled(event) and self._run(event):
+                    self._settle()
                     most -= 1
-        self._settle()
         return most
 
     def _free(self, event: str) -> bool:

@@ -1,0 +1,145 @@
+"""A program around a generated engine that executes a script and says after each line what came of it."""
+
+import subprocess
+from collections.abc import Sequence
+from pathlib import Path
+
+from robosc.config import ControlLoop
+from robosc.m2t.c import engine
+from robosc.m2t.c.names import CNames
+from robosc.metamodel import expression as ex
+from robosc.metamodel import sct
+
+FLAGS = ("-O1", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
+#: What a user of the engine is promised to draw no warning.
+STRICT = ("-std=c99", "-Wall", "-Wextra", "-Wconversion", "-Wpedantic", "-Werror")
+
+_PROGRAM = """\
+#include "%(p)s_supervisor.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool withheld[%(u)s_EVENT_COUNT + 1];
+
+static bool before(void *context, %(p)s_event event)
+{
+    (void)context;
+    return !withheld[event];
+}
+
+static void after(void *context, %(p)s_event event)
+{
+    (void)context;
+    printf(" %%s", %(p)s_event_name(event));
+}
+
+static void livelock(void *context)
+{
+    printf(" livelock%%s", (const char *)context);
+}
+
+static %(p)s_event event(void)
+{
+    char name[200];
+    int number = 0;
+    if (scanf(" %%199s", name) != 1) abort();
+    while (strcmp(name, %(p)s_event_name((%(p)s_event)number)) != 0) {
+        if (number++ == %(u)s_EVENT_COUNT) abort();
+    }
+    return (%(p)s_event)number;
+}
+
+static void input(%(p)s_supervisor *robot)
+{
+    long long value;
+    int number;
+    if (scanf(" %%d %%lld", &number, &value) != 2) abort();
+    switch (number) {
+%(inputs)s
+    default: abort();
+    }
+}
+
+int main(void)
+{
+    %(p)s_supervisor robot;
+    %(p)s_hooks hooks = { "!", before, after, livelock };
+    char command[20];
+    int result = 0;
+    %(p)s_init(&robot, NULL, &hooks);
+    while (scanf(" %%19s", command) == 1) {
+        if (strcmp(command, "input") == 0) { input(&robot); continue; }
+        if (strcmp(command, "withhold") == 0) { %(p)s_event e = event(); withheld[e] = !withheld[e]; continue; }
+        printf("%%s:", command);
+        result = 0;
+        if (strcmp(command, "perform") == 0) result = %(p)s_perform(&robot, event());
+        else if (strcmp(command, "begin") == 0) %(p)s_begin(&robot);
+        else if (strcmp(command, "end") == 0) %(p)s_end(&robot);
+        else if (strcmp(command, "tick") == 0) %(p)s_tick(&robot);
+        else abort();
+        printf(" = %%d;", result);
+%(state)s
+        printf(";");
+        for (int e = 0; e < %(u)s_EVENT_COUNT; ++e) {
+            if (%(p)s_enabled(&robot, (%(p)s_event)e)) printf(" %%s", %(p)s_event_name((%(p)s_event)e));
+        }
+        printf("\\n");
+    }
+    return 0;
+}
+"""
+
+
+def program(model: sct.SupervisoryControlModel) -> str:
+    """The source of the program."""
+    names = CNames(model)
+    values = []
+    for plant in model.plants:
+        if len(plant.locations) > 1:
+            values.append(f'printf(" %s", {names.lookup(plant)}(robot.state.{names.member(plant)}));')
+        for each in plant.variables:
+            member = f"robot.state.{names.member(each)}"
+            if isinstance(each.type, ex.EnumerationType):
+                values.append(f'printf(" %s", {names.lookup(each.type.enumeration)}({member}));')
+            else:
+                values.append(f'printf(" %lld", (long long){member});')
+    inputs = [each for plant in model.plants for each in plant.inputs]
+    return _PROGRAM % {
+        "p": names.prefix,
+        "u": names.macro,
+        "state": "\n".join(f"        {each}" for each in values),
+        "inputs": "\n".join(
+            f"    case {number}: robot->inputs.{names.member(each)} = (__typeof__(robot->inputs.{names.member(each)}))value;"
+            " break;"
+            for number, each in enumerate(inputs)
+        ),
+    }
+
+
+def write(model: sct.SupervisoryControlModel, folder: Path, settings: ControlLoop | None = None) -> Path:
+    """Writes header and source; returns the source."""
+    for name, text in engine.generate(model, settings or ControlLoop()).items():
+        (folder / name).write_text(text)
+    return folder / f"{CNames(model).prefix}_supervisor.c"
+
+
+def build(model: sct.SupervisoryControlModel, folder: Path, settings: ControlLoop | None = None) -> Path:
+    """Compiles engine and program, the engine without a warning."""
+    source, main, built = write(model, folder, settings), folder / "main.c", folder / "main"
+    main.write_text(program(model))
+    compiled = folder / "engine.o"
+    for arguments in (
+        [*STRICT, "-c", str(source), "-o", str(compiled)],
+        ["-std=gnu99", str(main), str(compiled), "-o", str(built)],
+    ):
+        done = subprocess.run(["gcc", *FLAGS, *arguments], capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
+    return built
+
+
+def run(built: Path, script: Sequence[str]) -> list[str]:
+    """What the program says, a line for each operation of the script."""
+    done = subprocess.run([built], input="\n".join(script), capture_output=True, text=True, check=False, timeout=60)
+    assert done.returncode == 0, done.stderr
+    return done.stdout.splitlines()

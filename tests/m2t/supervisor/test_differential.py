@@ -1,0 +1,57 @@
+"""The engine in C does what the interpreter does, event for event: `ROBOSC_MODELS=200` tries more models."""
+
+import os
+import tempfile
+from pathlib import Path
+
+from hypothesis import HealthCheck, assume, given, settings
+from hypothesis import strategies as st
+
+from robosc import config
+from robosc.engine import Settings
+from robosc.metamodel import sct
+from robosc.synthesis import synthesize
+from tests.engine.robots import robots
+from tests.m2t.supervisor.driver import build, run
+from tests.m2t.supervisor.walk import Walk
+from tests.random_sct import sct_models
+
+MODELS = int(os.environ.get("ROBOSC_MODELS", "8"))
+_few = settings(
+    max_examples=MODELS, deadline=None, derandomize="ROBOSC_MODELS" not in os.environ,
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much, HealthCheck.data_too_large],
+)  # fmt: skip
+_settings = st.builds(
+    Settings,
+    events_per_tick=st.sampled_from((0, 0, 1, 2)),
+    reactions_per_tick=st.sampled_from((10, 10, 0, 1, 3)),
+    react_immediately=st.sampled_from((True, True, True, False)),
+)
+
+
+def _compare(model: sct.SupervisoryControlModel, loop: Settings, seed: int) -> None:
+    walk = Walk(model, loop, seed)
+    walk.steps(120)
+    chosen = config.ControlLoop(
+        events_per_tick=loop.events_per_tick,
+        reactions_per_tick=loop.reactions_per_tick,
+        react_immediately=loop.react_immediately,
+    )
+    with tempfile.TemporaryDirectory() as folder:
+        said = run(build(model, Path(folder), chosen), walk.script)
+    for number, (theirs, ours) in enumerate(zip(said, walk.said, strict=True)):
+        assert theirs == ours, f"step {number} of {walk.script}"
+
+
+@_few
+@given(robots(), _settings, st.integers(0, 2**32))
+def test_robots(model: sct.SupervisoryControlModel, loop: Settings, seed: int) -> None:
+    _compare(model, loop, seed)
+
+
+@_few
+@given(sct_models(), _settings, st.integers(0, 2**32))
+def test_random_models(model: sct.SupervisoryControlModel, loop: Settings, seed: int) -> None:
+    model.supervisor = synthesize(model).supervisor
+    assume(model.supervisor is not None)
+    _compare(model, loop, seed)

@@ -1,0 +1,85 @@
+"""A random walk of the control loop in Python, as a script for the generated engine and with what it is to say."""
+
+from random import Random
+
+from robosc.engine import ControlLoop, Hooks, Settings
+from robosc.metamodel import expression as ex
+from robosc.metamodel import sct
+
+
+class Walk:
+    """Performs random operations; `script` and `said` grow with each."""
+
+    def __init__(self, model: sct.SupervisoryControlModel, settings: Settings, seed: int) -> None:
+        self.random = Random(seed)
+        self.script: list[str] = []
+        self.said: list[str] = []
+        self._happened: list[str] = []
+        self._withheld: set[str] = set()
+        self.loop = ControlLoop(
+            model,
+            settings,
+            Hooks(lambda event: event not in self._withheld, self._happened.append, self._livelock),
+        )
+        roles = self.loop.engine.roles
+        #: Events as the header orders them.
+        order = (*roles.cancels, *roles.triggers, *roles.silent, *(e for es in roles.data for e in es), *roles.incoming)
+        self._events = [f"{each.eContainer().name}.{each.name}" for each in order]
+        self._by_name = dict(zip(self._events, order, strict=True))
+        self._inputs = {each: number for number, each in enumerate(x for p in model.plants for x in p.inputs)}
+
+    def steps(self, number: int) -> None:
+        for _ in range(number):
+            kind = self.random.choice(("perform", "perform", "batch", "batch", "batch", "tick", "tick", "withhold"))
+            getattr(self, kind)()
+
+    def perform(self) -> None:
+        possible = [each for each in self._events if self.loop.enabled(each)]
+        event = self.random.choice(possible if possible and self.random.random() < 0.8 else self._events)
+        data = {}
+        for each in self._by_name[event].inputs:
+            value, number = self._value(each.type)
+            data[each.name] = value
+            self.script.append(f"input {self._inputs[each]} {number}")
+        self.script.append(f"perform {event}")
+        self._say("perform", self.loop.perform(event, data))
+
+    def batch(self) -> None:
+        self._operate("begin")
+        for _ in range(self.random.randint(0, 3)):
+            self.perform()
+        self._operate("end")
+
+    def tick(self) -> None:
+        self._operate("tick")
+
+    def withhold(self) -> None:
+        event = self.random.choice(self._events)
+        self._withheld ^= {event}
+        self.script.append(f"withhold {event}")
+
+    def _operate(self, operation: str) -> None:
+        self.script.append(operation)
+        getattr(self.loop, operation)()
+        self._say(operation, False)
+
+    def _livelock(self) -> None:
+        self._happened.append("livelock!")
+
+    def _say(self, operation: str, result: bool) -> None:
+        values = [int(each) if isinstance(each, bool) else each for each in self.loop.state.values()]
+        enabled = [each for each in self._events if self.loop.enabled(each)]
+        parts = (f"{operation}:", *self._happened, f"= {int(result)};", *values)
+        self.said.append(" ".join(map(str, parts)) + ";" + "".join(f" {each}" for each in enabled))
+        self._happened.clear()
+
+    def _value(self, kind: ex.Type) -> tuple[bool | int | str, int]:
+        match kind:
+            case ex.BooleanType():
+                value = self.random.random() < 0.5
+                return value, int(value)
+            case ex.EnumerationType():
+                literal = self.random.choice(list(kind.enumeration.literals))
+                return literal.name, kind.enumeration.literals.index(literal)
+        number = self.random.randint(kind.minimum, kind.maximum)
+        return number, number
