@@ -96,15 +96,16 @@ class _Loading:
             return  # reported where the file was looked for, or in the file
         element, feature = reference.element, reference.feature
         target = _walk(other.root, fragment)
+        shown = reference.target.removeprefix("#")
         if target is None:
-            document.report(reference.span, f"'{feature.name}' refers to '{reference.target}', where nothing is")
+            document.report(reference.span, f"'{feature.name}' refers to '{shown}', where nothing is")
         elif not isinstance(target, feature.eType.python_class):
             message = f"'{feature.name}' refers to a {target.eClass.name}, but wants a {feature.eType.name}"
             document.report(reference.span, message)
         elif not feature.many:
             setattr(element, feature.name, target)
         elif target in getattr(element, feature.name):
-            document.report(reference.span, f"'{feature.name}' names '{reference.target}' twice")
+            document.report(reference.span, f"'{feature.name}' names '{shown}' twice")
         else:
             getattr(element, feature.name).append(target)
 

@@ -1,0 +1,84 @@
+"""CIF 3: the plants and requirements of a robot, and the plants under their supervisor (thesis 5.2).
+
+The text stays inside what the data-based synthesis of Eclipse ESCET 5 to 10 accepts; `docs/cif.md` says what is
+written.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from robosc.diagnostics import Diagnostic, Severity
+from robosc.m2t.cif.arithmetic import assigned, condition
+from robosc.m2t.cif.linear import LARGEST, Unsupported, bounds, shift
+from robosc.m2t.cif.specification import Writer
+from robosc.m2t.templates import environment
+from robosc.metamodel import expression as ex
+from robosc.metamodel import sct
+from robosc.metamodel.places import place
+from robosc.metamodel.reflection import tree
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from typing import Any
+
+    from robosc.config import Configuration
+    from robosc.models import Models
+
+_NAME = re.compile("[A-Za-z_][A-Za-z0-9_]*")
+
+
+def preconditions(models: Models, _configuration: Configuration) -> list[Diagnostic]:
+    """What keeps CIF from the sct model, as errors of the rule `cif`, each at the text that it comes from.
+
+    Numbers beyond 32 bits, names that are none, and expressions that would have to be split into too many cases, since
+    CIF's synthesis can neither subtract nor multiply.
+    """
+    findings = []
+    for _, element in tree(models.sct):
+        for culprit, reason in _faults(element):
+            file, span = place(culprit)
+            findings.append(Diagnostic(file, span, Severity.ERROR, "cif", f"this can't be said in CIF: {reason}"))
+    return findings
+
+
+def generate(models: Models, _configuration: Configuration) -> dict[str, str]:
+    """`<robot>.cif`, and where the model has a supervisor `<robot>.supervised.cif`; of the sct model alone.
+
+    Raises Unsupported where `preconditions` finds something.
+    """
+    templates = environment(__name__)
+    specification = Writer(models.sct).specification()
+    kinds = ["cif"] if models.sct.supervisor is None else ["cif", "supervised.cif"]
+    return {
+        f"{models.sct.name}.{kind}": templates.get_template(f"robot.{kind}.j2").render(specification=specification)
+        for kind in kinds
+    }
+
+
+def _faults(element: Any) -> Iterator[tuple[Any, str]]:
+    if isinstance(element, ex.NamedElement) and not _NAME.fullmatch(element.name):
+        yield element, f"'{element.name}' is no identifier"
+    numeric = isinstance(element, (sct.DiscreteVariable, sct.Input)) and isinstance(element.type, ex.IntegerType)
+    if numeric and bounds(element)[1] + shift(element) > LARGEST:
+        yield element, "its range does not fit 32 bits"
+    try:
+        _translate(element)
+    except Unsupported as error:
+        yield error.expression, error.reason
+
+
+def _translate(element: Any) -> None:
+    """Makes CIF of the expressions directly inside an element."""
+    match element:
+        case sct.Update():
+            assigned(element.variable, element.value)
+        case sct.Edge() if element.guard is not None:
+            condition(element.guard)
+        case sct.Requirement():
+            condition(element.condition)
+        case sct.EventGuard():
+            for part in (element.requirement, element.synthesis):
+                if part is not None:
+                    condition(part)

@@ -1,0 +1,249 @@
+"""Rewrites expressions into what CIF's data-based synthesis accepts: no negative number, no `-`, no `*`.
+
+A comparison becomes one of two sums, what is subtracted having moved to the other side; a product of variables is split
+by the values of one of them; a value to be assigned saturates, and where something is subtracted it is found by
+comparing. An expression that needs none of this stays as it is.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robosc.expressions import copied
+from robosc.m2t.cif.linear import LARGEST, Linear, Unsupported, bounds, shift
+from robosc.metamodel import expression as ex
+from robosc.metamodel import sct
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+#: Cases that one expression may be split into.
+MOST_CASES = 1024
+
+_COMPARISONS = (
+    ex.Equation,
+    ex.Inequation,
+    ex.LessThan,
+    ex.LessOrEqual,
+    ex.GreaterThan,
+    ex.GreaterOrEqual,
+)
+_ATOMS = (
+    ex.BooleanLiteral,
+    ex.EnumerationLiteralReference,
+    sct.LocationReference,
+    sct.VariableReference,
+    sct.InputReference,
+)
+_NUMERIC = (ex.IntegerLiteral, ex.Addition, ex.Subtraction, ex.Multiplication, ex.UnaryMinus)
+_Comparison = type[ex.BinaryExpression]
+#: Alternatives, of which the first counts whose condition holds; the last has none.
+_Pieces = list[tuple[ex.Expression | None, Linear]]
+
+
+def condition(expression: ex.Expression) -> ex.Expression:
+    """A boolean or enumeration-valued expression, in a tree of its own. Raises Unsupported."""
+    match expression:
+        case ex.Conditional():
+            return ex.Conditional(
+                condition=condition(expression.condition),
+                then=condition(expression.then),
+                otherwise=condition(expression.otherwise),
+            )
+        case ex.Negation():
+            return ex.Negation(operand=condition(expression.operand))
+        case ex.BinaryExpression():
+            if isinstance(expression, _COMPARISONS) and _is_number(expression.left):
+                return _comparison(expression)
+            return type(expression)(left=condition(expression.left), right=condition(expression.right))
+    if isinstance(expression, _ATOMS):
+        return copied(expression)
+    raise Unsupported(expression, f"CIF has no {type(expression).__name__}")
+
+
+def assigned(variable: sct.DiscreteVariable, value: ex.Expression) -> ex.Expression:
+    """What CIF assigns to a variable that gets a value, inside its range. Raises Unsupported."""
+    if not isinstance(variable.type, ex.IntegerType):
+        return condition(value)
+    low, high = (bound + shift(variable) for bound in bounds(variable))
+    pieces = _linear(value)
+    if _is_plain(value) and len(pieces) == 1 and shift(variable) == 0:
+        least, greatest = pieces[0][1].range()
+        if low <= least and greatest <= high:
+            return copied(value)
+    shifted: _Pieces = [(guard, each + Linear(shift(variable))) for guard, each in pieces]
+    return _first(shifted, lambda each: _saturated(each, low, high, value))
+
+
+def held(variable: sct.DiscreteVariable) -> ex.Expression:
+    """A variable's initial value, as CIF holds it."""
+    return assigned(variable, variable.initial)
+
+
+def _is_number(expression: ex.Expression) -> bool:
+    match expression:
+        case sct.VariableReference():
+            return isinstance(expression.variable.type, ex.IntegerType)
+        case sct.InputReference():
+            return isinstance(expression.input.type, ex.IntegerType)
+        case ex.Conditional():
+            return _is_number(expression.then)
+    return isinstance(expression, _NUMERIC)
+
+
+def _is_plain(expression: ex.Expression) -> bool:
+    """Whether CIF takes a number as it is."""
+    match expression:
+        case ex.IntegerLiteral():
+            return 0 <= expression.value <= LARGEST
+        case sct.VariableReference():
+            return shift(expression.variable) == 0
+        case sct.InputReference():
+            return shift(expression.input) == 0
+        case ex.Addition():
+            return _is_plain(expression.left) and _is_plain(expression.right)
+    return False
+
+
+def _comparison(expression: ex.BinaryExpression) -> ex.Expression:
+    if _is_plain(expression.left) and _is_plain(expression.right):
+        return copied(expression)
+    pieces = _sum(expression, _linear(expression.left), _scaled(_linear(expression.right), -1))
+    return _first(pieces, lambda each: _against_zero(type(expression), each, expression))
+
+
+def _against_zero(operator: _Comparison, value: Linear, origin: ex.Expression) -> ex.Expression:
+    if not value.factors:
+        return ex.BooleanLiteral(value=_HOLDS[operator](value.constant))
+    left, right = (_written(side, origin) for side in value.sides())
+    return operator(left=left, right=right)
+
+
+def _written(value: Linear, origin: ex.Expression) -> ex.Expression:
+    if value.range()[1] > LARGEST:
+        raise Unsupported(origin, "its numbers do not fit 32 bits")
+    return value.tree()
+
+
+_HOLDS: dict[_Comparison, Callable[[int], bool]] = {
+    ex.Equation: lambda value: value == 0,
+    ex.Inequation: lambda value: value != 0,
+    ex.LessThan: lambda value: value < 0,
+    ex.LessOrEqual: lambda value: value <= 0,
+    ex.GreaterThan: lambda value: value > 0,
+    ex.GreaterOrEqual: lambda value: value >= 0,
+}
+
+
+def _saturated(value: Linear, low: int, high: int, origin: ex.Expression) -> ex.Expression:
+    """The value, or the nearest bound, in terms that are never negative."""
+    least, greatest = value.range()
+    if least >= high or greatest <= low:
+        return ex.IntegerLiteral(value=high if least >= high else low)
+
+    def compared(operator: _Comparison, to: int) -> ex.Expression:
+        return _against_zero(operator, value + Linear(-to), origin)
+
+    cases: list[tuple[ex.Expression, int]] = []
+    if value.constant >= 0 and all(factor > 0 for factor in value.factors.values()):
+        result = _written(value, origin)
+        if greatest > high:
+            cases.append((compared(ex.GreaterThan, high), high))
+        if least < low:
+            cases.append((compared(ex.LessThan, low), low))
+    else:
+        first, last = max(least, low), min(greatest, high)
+        _limit(origin, last - first + 1)
+        result = ex.IntegerLiteral(value=last)
+        cases.append((compared(ex.LessOrEqual, first), first))
+        cases += [(compared(ex.Equation, each), each) for each in range(first + 1, last)]
+    for guard, constant in reversed(cases):
+        result = ex.Conditional(condition=guard, then=ex.IntegerLiteral(value=constant), otherwise=result)
+    return result
+
+
+def _first(pieces: _Pieces, text: Callable[[Linear], ex.Expression]) -> ex.Expression:
+    """The expression of the first alternative whose condition holds."""
+    result: ex.Expression | None = None
+    for guard, value in reversed(pieces):
+        made = text(value)
+        result = (
+            made if guard is None or result is None else ex.Conditional(condition=guard, then=made, otherwise=result)
+        )
+    assert result is not None
+    return result
+
+
+def _linear(expression: ex.Expression) -> _Pieces:
+    match expression:
+        case ex.IntegerLiteral():
+            return [(None, Linear(expression.value))]
+        case sct.VariableReference():
+            return [(None, Linear.of(expression.variable))]
+        case sct.InputReference():
+            return [(None, Linear.of(expression.input))]
+        case ex.UnaryMinus():
+            return _scaled(_linear(expression.operand), -1)
+        case ex.Addition():
+            return _sum(expression, _linear(expression.left), _linear(expression.right))
+        case ex.Subtraction():
+            return _sum(expression, _linear(expression.left), _scaled(_linear(expression.right), -1))
+        case ex.Multiplication():
+            return _product(expression)
+        case ex.Conditional():
+            then = [(_both(condition(expression.condition), guard), each) for guard, each in _linear(expression.then)]
+            return _limited(expression, [*then, *_linear(expression.otherwise)])
+    raise Unsupported(expression, f"CIF has no {type(expression).__name__}")
+
+
+def _scaled(pieces: _Pieces, factor: int) -> _Pieces:
+    return [(guard, each.times(factor)) for guard, each in pieces]
+
+
+def _sum(origin: ex.Expression, left: _Pieces, right: _Pieces) -> _Pieces:
+    _limit(origin, len(left) * len(right))
+    return [(_both(one, other), first + second) for one, first in left for other, second in right]
+
+
+def _product(expression: ex.Multiplication) -> _Pieces:
+    """Split by the values of the factor that has fewer."""
+    factors = [(each, _linear(each)) for each in (expression.left, expression.right)]
+    factors.sort(key=lambda each: _values(each[1]))
+    (split, pieces), (_, others) = factors
+    _limit(expression, _values(pieces) * len(others))
+    made: _Pieces = []
+    low = min(each.range()[0] for _, each in pieces)
+    high = max(each.range()[1] for _, each in pieces)
+    for value in range(low, high + 1):
+        guard = None
+        if value < high:
+            equal = ex.Equation(left=copied(split), right=_number(value))
+            guard = condition(equal)
+        made += [(_both(guard, other), each.times(value)) for other, each in others]
+    return made
+
+
+def _number(value: int) -> ex.Expression:
+    literal = ex.IntegerLiteral(value=abs(value))
+    return literal if value >= 0 else ex.UnaryMinus(operand=literal)
+
+
+def _values(pieces: _Pieces) -> int:
+    ranges = [each.range() for _, each in pieces]
+    return max(high for _, high in ranges) - min(low for low, _ in ranges) + 1
+
+
+def _both(one: ex.Expression | None, other: ex.Expression | None) -> ex.Expression | None:
+    """The conjunction of two conditions, either of which may be missing, in a tree of its own."""
+    parts = [copied(each) for each in (one, other) if each is not None]
+    return ex.Conjunction(left=parts[0], right=parts[1]) if len(parts) == 2 else next(iter(parts), None)
+
+
+def _limited(origin: ex.Expression, pieces: _Pieces) -> _Pieces:
+    _limit(origin, len(pieces))
+    return pieces
+
+
+def _limit(origin: ex.Expression, cases: int) -> None:
+    if cases > MOST_CASES:
+        raise Unsupported(origin, f"it would take {cases} cases to say it without - and *; {MOST_CASES} are the most")

@@ -1,0 +1,50 @@
+"""What the elements of an sct model are called in CIF: one to one, no keyword, nothing hidden by a nearer name."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from robosc.m2t.cif.keywords import KEYWORDS
+from robosc.naming import Names
+
+if TYPE_CHECKING:
+    from robosc.metamodel import expression as ex
+    from robosc.metamodel import sct
+
+
+class CifNames:
+    """The names in one specification.
+
+    A plant's members share one scope and so do plants, enumerations, literals and the supervisor. A member called like
+    something of the outer scope would hide it from the plant's edges, so it gets another name.
+    """
+
+    def __init__(self, model: sct.SupervisoryControlModel) -> None:
+        self._names: dict[Any, str] = {}
+        outer = Names()
+        for element in self._outer(model):
+            self._names[element] = outer.fresh(element.name)
+        #: The automaton that holds what synthesis added.
+        self.supervisor = outer.fresh("sup")
+        taken = [*self._names.values(), self.supervisor]
+        for plant in model.plants:
+            inner = Names(taken)
+            for member in (*plant.events, *plant.inputs, *plant.variables, *plant.locations):
+                self._names[member] = inner.fresh(member.name)
+
+    @staticmethod
+    def _outer(model: sct.SupervisoryControlModel) -> list[ex.NamedElement]:
+        literals = [literal for enumeration in model.enumerations for literal in enumeration.literals]
+        return [*model.plants, *model.enumerations, *literals]
+
+    def declared(self, element: ex.NamedElement) -> str:
+        """The name where the element is declared, and within the same plant."""
+        name = self._names[element]
+        return f"${name}" if name in KEYWORDS else name
+
+    def used(self, element: ex.NamedElement, plant: sct.Plant | None) -> str:
+        """The name as it is read from inside a plant, or from outside of all."""
+        owner = element.eContainer()
+        if owner is plant or owner not in self._names or not hasattr(owner, "locations"):
+            return self.declared(element)
+        return f"{self.declared(owner)}.{self.declared(element)}"

@@ -1,0 +1,177 @@
+"""How a model read back from CIF differs from the one it was generated from."""
+
+from collections.abc import Iterator
+from itertools import product, zip_longest
+from typing import Any
+
+from robosc.evaluation import evaluate, saturate
+from robosc.metamodel import expression as ex
+from robosc.metamodel import sct
+from robosc.metamodel.reflection import tree
+
+#: Valuations that two expressions are compared under.
+_MOST = 400
+
+
+def differences(
+    one: sct.SupervisoryControlModel, other: sct.SupervisoryControlModel, *, exact: bool = False
+) -> list[str]:
+    """What is in one model and not in the other, of what CIF holds.
+
+    Expressions are the same where they have the same value in all states (of many states: in some, the first and the
+    last among them), updates after saturation; with `exact`, where they are the same tree.
+    """
+    return list(_Comparison(one, other, exact).run())
+
+
+class _Comparison:
+    def __init__(self, one: Any, other: Any, exact: bool) -> None:
+        self.one, self.other, self.exact = one, other, exact
+        self.twins = {(type(each), _name(each)): each for _, each in tree(other) if isinstance(each, ex.NamedElement)}
+
+    def run(self) -> Iterator[str]:
+        yield from self.names("the model", [self.one], [self.other])
+        yield from self.names("enumerations", self.one.enumerations, self.other.enumerations)
+        for mine, yours in zip(self.one.enumerations, self.other.enumerations, strict=False):
+            yield from self.names(f"literals of {mine.name}", mine.literals, yours.literals)
+        yield from self.names("plants", self.one.plants, self.other.plants)
+        for mine, yours in zip(self.one.plants, self.other.plants, strict=False):
+            yield from self.plant(mine, yours)
+        supervised = self.other.supervisor is not None
+        for mine, yours in zip_longest([] if supervised else self.one.requirements, self.other.requirements):
+            if _name(mine.event) != _name(yours.event) or str(mine.kind) != str(yours.kind):
+                yield f"{mine.kind} {_name(mine.event)} is {yours.kind} {_name(yours.event)}"
+            yield from self.expression("requirement", mine.condition, yours.condition)
+        if supervised:
+            for mine, yours in zip_longest(self.one.supervisor.guards, self.other.supervisor.guards):
+                if _name(mine.event) != _name(yours.event):
+                    yield f"guard of {_name(mine.event)} is of {_name(yours.event)}"
+                yield from self.expression("requirement part", mine.requirement, yours.requirement)
+                yield from self.expression("synthesis part", mine.synthesis, yours.synthesis)
+
+    def names(self, what: str, mine: Any, yours: Any) -> Iterator[str]:
+        first, second = [each.name for each in mine], [each.name for each in yours]
+        if first != second:
+            yield f"{what} {first} are {second}"
+
+    def plant(self, mine: sct.Plant, yours: sct.Plant) -> Iterator[str]:
+        for members in ("events", "inputs", "variables", "locations"):
+            if mine.kind == sct.PlantKind.message and members == "locations":
+                continue  # its only location has no name in CIF
+            yield from self.names(f"{members} of {mine.name}", getattr(mine, members), getattr(yours, members))
+        for one, other in zip(mine.events, yours.events, strict=False):
+            if one.controllable != other.controllable:
+                yield f"{_name(one)} is controllable or not"
+        for one, other in zip([*mine.inputs, *mine.variables], [*yours.inputs, *yours.variables], strict=False):
+            if _domain(one.type) != _domain(other.type):
+                yield f"the type of {_name(one)} differs"
+        for one, other in zip(mine.variables, yours.variables, strict=False):
+            yield from self.expression(f"initial value of {one.name}", one.initial, other.initial)
+        for one, other in zip(mine.locations, yours.locations, strict=False):
+            yield from self.location(one, other)
+
+    def location(self, mine: sct.Location, yours: sct.Location) -> Iterator[str]:
+        if (mine.initial, mine.marked) != (yours.initial, yours.marked):
+            yield f"location {_name(mine)} is marked or initial or not"
+        for one, other in zip_longest(mine.edges, yours.edges):
+            where = f"{_name(mine)} -{_name(one.event)}->"
+            if _name(one.event) != _name(other.event) or _index(one.target) != _index(other.target):
+                yield f"{where} is for {_name(other.event)} to {_name(other.target)}"
+            yield from self.expression(f"guard of {where}", one.guard, other.guard)
+            for update, twin in zip_longest(one.updates, other.updates):
+                if update.variable.name != twin.variable.name:
+                    yield f"{where} updates {twin.variable.name}"
+                yield from self.expression(f"update of {where}", update.value, twin.value, update.variable.type)
+
+    def expression(self, what: str, mine: Any, yours: Any, target: Any = None) -> Iterator[str]:
+        if mine is None or yours is None:
+            if mine is not yours:
+                yield f"{what} is there or not"
+        elif self.exact:
+            if _shape(mine) != _shape(yours):
+                yield f"{what} is {_shape(yours)}, not {_shape(mine)}"
+        else:
+            for state in _states(mine, yours):
+                first, second = _value(mine, state, target), _value(yours, state, target)
+                if first != second:
+                    yield f"{what} is {second}, not {first}, where {state}"
+                    return
+
+
+def _name(element: Any) -> str:
+    owner = element.eContainer()
+    if isinstance(owner, sct.Plant):
+        place = f"{_index(element)}" if isinstance(element, sct.Location) else element.name
+        return f"{owner.name}.{place}"
+    return str(element.name)
+
+
+def _index(element: Any) -> int:
+    position: int = element.eContainer().locations.index(element)
+    return position
+
+
+def _domain(kind: Any) -> list[Any]:
+    match kind:
+        case ex.BooleanType():
+            return [False, True]
+        case ex.IntegerType():
+            low, high = kind.minimum, kind.maximum
+            values = range(low, high + 1)
+            return list(values) if len(values) < 30 else [*values[:10], values[len(values) // 2], *values[-10:]]
+    return [each.name for each in kind.enumeration.literals]
+
+
+def _cells(expression: Any) -> dict[str, list[Any]]:
+    cells: dict[str, list[Any]] = {}
+    for _, each in tree(expression):
+        match each:
+            case sct.VariableReference():
+                cells[_name(each.variable)] = _domain(each.variable.type)
+            case sct.InputReference():
+                cells[_name(each.input)] = _domain(each.input.type)
+            case sct.LocationReference():
+                owner = each.location.eContainer()
+                cells[owner.name] = list(range(len(owner.locations)))
+    return cells
+
+
+def _states(mine: Any, yours: Any) -> list[dict[str, Any]]:
+    cells = _cells(mine) | _cells(yours)
+    all_states = list(product(*cells.values()))
+    step = max(1, len(all_states) // _MOST)
+    return [dict(zip(cells, each, strict=True)) for each in [*all_states[::step], all_states[-1]]]
+
+
+def _value(expression: Any, state: dict[str, Any], target: Any) -> Any:
+    def read(each: Any) -> Any:
+        match each:
+            case sct.VariableReference():
+                return state[_name(each.variable)]
+            case sct.InputReference():
+                return state[_name(each.input)]
+            case sct.LocationReference():
+                return state[each.location.eContainer().name] == _index(each.location)
+        return each.literal.name
+
+    value = evaluate(expression, read)
+    if isinstance(target, ex.IntegerType):
+        assert isinstance(value, int)
+        return saturate(value, target.minimum, target.maximum)
+    return value
+
+
+def _shape(expression: Any) -> Any:
+    match expression:
+        case sct.VariableReference():
+            return _name(expression.variable)
+        case sct.InputReference():
+            return _name(expression.input)
+        case sct.LocationReference():
+            return _name(expression.location)
+        case ex.EnumerationLiteralReference():
+            return expression.literal.name
+        case ex.BooleanLiteral() | ex.IntegerLiteral():
+            return expression.value
+    children = [child for path, child in tree(expression) if path.count("/") == 2]
+    return (type(expression).__name__, *map(_shape, children))

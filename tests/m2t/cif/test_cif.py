@@ -1,0 +1,316 @@
+"""CIF text: listing by listing as in the thesis, readable by a grammar of CIF, and equal in meaning to the model."""
+
+import re
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from robosc.config import Configuration
+from robosc.diagnostics import Severity, Span
+from robosc.m2t import cif
+from robosc.metamodel import expression as ex
+from robosc.metamodel import sct
+from robosc.metamodel.reflection import tree
+from robosc.models import Models
+from tests.m2t.cif.differences import differences
+from tests.m2t.cif.rebuilding import rebuild
+from tests.random_sct import sct_models
+from tests.sct_models import disables, edge, model, needs, plant
+
+HERE = Path(__file__).parent
+
+
+def generated(given: sct.SupervisoryControlModel) -> dict[str, str]:
+    assert cif.preconditions(Models(given), Configuration()) == []
+    return cif.generate(Models(given), Configuration())
+
+
+def listings() -> sct.SupervisoryControlModel:
+    """The plants, requirements and the enumeration that thesis 5.2 prints, with an instance of each."""
+    none = "not component_X.state1 and not component_X.state2"
+    provided = [
+        edge("c_d1", "d1", when="component_X.state1"),
+        edge("c_d2", "d2", when="component_X.state2"),
+        edge("c_none", "none", when=none),
+    ]
+    return model(
+        [
+            plant(
+                "message_sample",
+                {"ready": [edge("u_response")]},
+                kind="message",
+                uncontrollable={"u_response": ["i_response_one", "i_response_two"]},
+                inputs={"i_response_one": "bool", "i_response_two": "bool"},
+            ),
+            plant("message_sent", {"ready": [edge("c_trigger")]}, kind="message", controllable=["c_trigger"]),
+            plant(
+                "service_sample",
+                {
+                    "idle": [edge("c_trigger", "wait_for_response")],
+                    "wait_for_response": [edge("u_response", "ready"), edge("u_error", "error")],
+                    "ready": [edge("c_reset", "idle")],
+                    "error": [edge("c_reset", "idle")],
+                },
+                kind="service",
+                controllable=["c_trigger", "c_reset"],
+                uncontrollable=["u_response", "u_error"],
+            ),
+            plant(
+                "action_sample",
+                {
+                    "idle": [edge("c_trigger", "executing")],
+                    "executing": [
+                        edge("u_feedback"),
+                        edge("u_response", "ready"),
+                        edge("u_error", "error"),
+                        edge("c_cancel", "idle"),
+                    ],
+                    "ready": [edge("c_reset", "idle")],
+                    "error": [edge("c_reset", "idle")],
+                },
+                kind="action",
+                controllable=["c_trigger", "c_reset", "c_cancel"],
+                uncontrollable={"u_feedback": ["i_feedback_one"], "u_response": [], "u_error": []},
+                inputs={"i_feedback_one": "0..20"},
+            ),
+            plant(
+                "component_X",
+                {
+                    "state1": [edge("c_tau1", "state2", when="seen == two and count < 20")],
+                    "state2": [
+                        edge("message_sample.u_response", do={"mark": "message_sample.i_response_one"}),
+                        edge("action_sample.u_feedback", "state1", do={"count": "action_sample.i_feedback_one"}),
+                    ],
+                },
+                controllable=["c_tau1"],
+                variables={"mark": "bool", "seen": "sample_enum = two", "count": "0..20"},
+            ),
+            plant(
+                "data_sent",
+                {"none": provided, "d1": provided, "d2": provided},
+                kind="data",
+                controllable=["c_d1", "c_d2", "c_none"],
+                marked=["none", "d1", "d2"],
+            ),
+        ],
+        [
+            needs("message_sent.c_trigger", "component_X.state1", "message sent needs X.state1"),
+            disables("message_sent.c_trigger", "not component_X.state1"),
+        ],
+        {"sample_enum": ["one", "two", "three"]},
+        name="Listings",
+    )
+
+
+def test_the_listings_of_the_thesis(golden) -> None:
+    golden(HERE / "golden" / "Listings.cif", generated(listings())["Listings.cif"])
+
+
+def test_the_supervised_system(golden) -> None:
+    given = listings()
+    given.supervisor = sct.Supervisor(
+        uncontrolledStates=1234,
+        controlledStates=567,
+        bddNodes=1,
+        guards=[
+            sct.EventGuard(event=event, everEnabled=True)
+            for each in given.plants
+            for event in each.events
+            if event.controllable
+        ],
+    )
+    first, second, *_ = given.supervisor.guards
+    first.requirement = sct.LocationReference(location=given.plants[4].locations[0])
+    first.synthesis = ex.Negation(operand=sct.VariableReference(variable=given.plants[4].variables[0]))
+    second.synthesis = ex.BooleanLiteral(value=False)
+    files = generated(given)
+    golden(HERE / "golden" / "Listings.supervised.cif", files["Listings.supervised.cif"])
+    assert differences(given, rebuild(files["Listings.supervised.cif"])) == []
+
+
+def test_without_a_supervisor_there_is_no_supervised_system() -> None:
+    assert list(generated(listings())) == ["Listings.cif"]
+
+
+def test_plain_models_come_back_as_they_were() -> None:
+    given = listings()
+    again = rebuild(generated(given)["Listings.cif"])
+    assert differences(given, again, exact=True) == []
+    assert [str(each.kind) for each in again.plants] == [str(each.kind) for each in given.plants]
+    assert [[str(event.kind) for event in each.events] for each in again.plants] == [
+        [str(event.kind) for event in each.events] for each in given.plants
+    ]
+
+
+@settings(max_examples=60, deadline=None)
+@given(given=sct_models())
+def test_every_model_keeps_its_meaning(given: sct.SupervisoryControlModel) -> None:
+    text = generated(given)["robot.cif"]
+    assert differences(given, rebuild(text)) == []
+    assert not re.search(r"[-*]", re.sub("//.*", "", text))
+
+
+def expression(text: str, **kinds: str) -> sct.SupervisoryControlModel:
+    """A model with one guard and the variables that it reads."""
+    return model([plant("p", {"l": [edge("e", when=text)]}, controllable=["e"], variables=kinds)])
+
+
+def updated(target: str, text: str, **kinds: str) -> sct.SupervisoryControlModel:
+    """A model with one update of `t`, a variable of the type `target`."""
+    return model([plant("p", {"l": [edge("e", do={"t": text})]}, controllable=["e"], variables={"t": target, **kinds})])
+
+
+def said(given: sct.SupervisoryControlModel) -> str:
+    """What follows the event of the only edge."""
+    text = generated(given)["robot.cif"]
+    assert differences(given, rebuild(text)) == []
+    found = re.search(r"edge e(?: when| do t :=) (.*);", text)
+    assert found
+    return found.group(1)
+
+
+@pytest.mark.parametrize(
+    ("text", "wanted"),
+    [
+        ("a + b <= 3", "a + b <= 3"),
+        ("a + (b + 1) == 3", "a + (b + 1) = 3"),
+        ("a - b > 2", "a > b + 2"),
+        ("a > -1", "a + 1 > 0"),
+        ("-a < 0", "0 < a"),
+        ("s < 0", "s < 3"),
+        ("s == a", "s = a + 3"),
+        ("2 * a != b", "a + a != b"),
+        ("2 * 3 > 1 + 4 - 8", "true"),
+        ("a * b == 2", "if a = 0: false elif a = 1: b = 2 else b + b = 2 end"),
+        ("(a if c else 0 - b) < s", "if c: a + 3 < s else 3 < b + s end"),
+        ("10 * a > b", "if a = 0: 0 elif a = 1: 10 else 20 end > b"),
+        ("implies(c, implies(c, d))", "c => (c => d)"),
+        ("implies(implies(c, d), c)", "(c => d) => c"),
+        ("not c and not (c or d)", "not c and not (c or d)"),
+        ("c == (a < b)", "c = (a < b)"),
+        ("not (c == d)", "not (c = d)"),
+        ("(c if d else c or d) != c", "if d: c else c or d end != c"),
+    ],
+)
+def test_conditions(text: str, wanted: str) -> None:
+    assert said(expression(text, a="0..2", b="0..5", c="bool", d="bool", s="-3..3")) == wanted
+
+
+@pytest.mark.parametrize(
+    ("target", "text", "wanted"),
+    [
+        ("0..9", "a + 1", "a + 1"),
+        ("0..2", "a + 1", "if a > 1: 2 else a + 1 end"),
+        ("2..3", "a", "2"),
+        ("2..7", "b", "if b < 2: 2 else b end"),
+        ("1..2", "b", "if b > 2: 2 elif b < 1: 1 else b end"),
+        ("0..2", "7", "2"),
+        ("0..2", "-7", "0"),
+        ("3..4", "-a", "3"),
+        ("0..2", "a - 1", "if a <= 1: 0 else 1 end"),
+        ("0..3", "b - a", "if b <= a: 0 elif b = a + 1: 1 elif b = a + 2: 2 else 3 end"),
+        ("-1..1", "a", "if a > 1: 2 else a + 1 end"),
+        ("-3..3", "s", "s"),
+        ("-3..3", "s + 0", "s"),
+        ("0..6", "s", "if s <= 3: 0 elif s = 4: 1 elif s = 5: 2 else 3 end"),
+        ("0..9", "a * b", "if a = 0: 0 elif a = 1: b elif b + b > 9: 9 else b + b end"),
+        ("bool", "a > b", "a > b"),
+    ],
+)
+def test_updates(target: str, text: str, wanted: str) -> None:
+    assert said(updated(target, text, a="0..2", b="0..5", s="-3..3")) == wanted
+
+
+def test_a_negative_range_is_shifted_and_says_so() -> None:
+    text = generated(updated("-5..100 = -2", "t"))["robot.cif"]
+    assert "  disc int[0..105] t = 3; // t + 5, with t in -5..100\n" in text
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        (expression("a * b > c", a="0..99", b="0..99", c="0..2"), None),
+        (
+            expression("a * b * c > 0", a="0..99", b="0..99", c="0..99"),
+            "it would take 10000 cases to say it without - and *; 1024 are the most",
+        ),
+        (
+            updated("0..5000", "a - 1", a="0..5000"),
+            "it would take 5000 cases to say it without - and *; 1024 are the most",
+        ),
+        (expression("a + a > 3", a="0..2147483646"), None),
+        (expression("a - 3 + a > 3", a="0..2147483646"), "its numbers do not fit 32 bits"),
+        (expression("c", c="bool", a="-1..2147483646"), "its range does not fit 32 bits"),
+        (expression("c", a="0..2147483647", c="bool"), "its range does not fit 32 bits"),
+    ],
+)
+def test_what_cannot_be_said_is_an_error_at_its_place(given: sct.SupervisoryControlModel, message: str | None) -> None:
+    location = given.plants[0].locations[0]
+    location.edges[0].source = "robot.rscd:7:5-8:9"
+    for variable in given.plants[0].variables:
+        variable.source = "robot.rscd:7:5-8:9"
+    found = cif.preconditions(Models(given), Configuration())
+    if message is None:
+        assert found == []
+        return
+    [finding] = found
+    assert (finding.file, finding.span, finding.rule) == ("robot.rscd", Span(7, 5, 8, 9), "cif")
+    assert (finding.severity, finding.message) == (Severity.ERROR, f"this can't be said in CIF: {message}")
+
+
+def test_names_that_clash_are_told_apart(golden) -> None:
+    given = model(
+        [
+            plant("P", {"a": [edge("e", "b")], "b": [edge("Q.e")]}, controllable=["e"]),
+            plant(
+                "Q",
+                {"a": [edge("e", "b", when="P.b and v", do={"v": "not v"})], "b": []},
+                controllable=["e"],
+                variables={"v": "bool", "w": "C"},
+            ),
+        ],
+        [needs("Q.e", "Q.b and Q.w == C.red")],
+        {"C": ["red", "blue"], "D": ["green"]},
+        guards={},
+    )
+    first, second = given.plants
+    first.name, first.events[0].name = "sup", "edge"
+    second.name, second.events[0].name, second.variables[0].name = "x", "when", "goto"
+    for location, name in zip([*first.locations, *second.locations], ["event", "plant", "when", "goto"], strict=True):
+        location.name = name
+    given.enumerations[0].literals[1].name = given.enumerations[1].literals[0].name = "x"
+    second.variables[1].name = "red"
+    files = generated(given)
+    golden(HERE / "golden" / "names.supervised.cif", files["robot.supervised.cif"])
+    again = rebuild(files["robot.cif"])
+    guard = again.plants[1].locations[0].edges[0].guard
+    assert guard.left.location is again.plants[0].locations[1]
+    assert guard.right.variable is again.plants[1].variables[0]
+    red = again.requirements[0].condition.right
+    assert red.left.variable is again.plants[1].variables[1]
+    assert red.right.literal is again.enumerations[0].literals[0]
+
+
+HOSTILE = [
+    "x; end plant y: location: initial; end //",
+    "two\nlines: plant y: location: initial; end",
+    "\r\u2028end\x07",
+    "größer",
+]
+
+
+@pytest.mark.parametrize("text", HOSTILE)
+def test_nothing_breaks_out_of_its_place(text: str) -> None:
+    quoting = model(
+        [plant("p", {"l": [edge("e")]}, controllable=["e"], topic=text, origin=text)], [needs("e", "p.l", text)]
+    )
+    files = generated(quoting)
+    assert differences(quoting, rebuild(files["robot.cif"])) == []
+    assert all(each.isprintable() and each.isascii() for each in files["robot.cif"].replace("\n", ""))
+    named = model([plant("p", {"l": [edge("e")]}, controllable=["e"])])
+    for _, element in tree(named):
+        if isinstance(element, ex.NamedElement):
+            element.name = text
+    assert len(cif.preconditions(Models(named), Configuration())) == 4
