@@ -1,0 +1,172 @@
+"""Expressions of the node as C++17."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar
+
+from robosc.expressions import ATOM, PRECEDENCE, ExpressionPrinter
+from robosc.m2t.c.comments import string_literal
+from robosc.metamodel import expression as ex
+from robosc.metamodel import rosgraph, sct
+from robosc.metamodel.reflection import tree
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from robosc.m2t.cpp.names import CppNames
+
+_ARITHMETIC = (ex.Addition, ex.Subtraction, ex.Multiplication)
+_CONVERSIONS: dict[type[ex.Type | None], str] = {
+    ex.BooleanType: "bool",
+    ex.IntegerType: "Integer",
+    ex.DoubleType: "double",
+}
+
+
+class CppPrinter(ExpressionPrinter):
+    """Prints what the node evaluates: doubles as `double`, whole numbers as the node's saturating `Integer`.
+
+    `data` is the variable that holds the data which came in, `node` the one with the node's variables. Elements of
+    arrays are read through an `ArrayReader` called `read`, in the order of the text and as far as `and`, `or` and
+    `=>` need them.
+    """
+
+    symbols: ClassVar[Mapping[type[ex.Expression], str]] = {
+        ex.Disjunction: "||",
+        ex.Conjunction: "&&",
+        ex.Equation: "==",
+        ex.Inequation: "!=",
+        ex.LessThan: "<",
+        ex.LessOrEqual: "<=",
+        ex.GreaterThan: ">",
+        ex.GreaterOrEqual: ">=",
+        ex.Addition: "+",
+        ex.Subtraction: "-",
+        ex.Multiplication: "*",
+        ex.Division: "/",
+        ex.Negation: "!",
+        ex.UnaryMinus: "-",
+    }
+
+    def __init__(self, names: CppNames, data: str = "message", node: str = "data_") -> None:
+        self._names = names
+        self._data = data
+        self._node = node
+
+    def precedence(self, expression: ex.Expression) -> int:
+        """A state is a comparison in C++; an implication and a choice are printed in parentheses."""
+        match expression:
+            case sct.LocationReference() if " " in self._names.is_in(expression.location):
+                return PRECEDENCE[ex.Equation]
+            case ex.Implication():
+                return ATOM
+            case ex.Inequation() if is_double(expression.left):
+                return ATOM
+        return super().precedence(expression)
+
+    def binary(self, expression: ex.BinaryExpression) -> str:
+        """A comparison with NaN is false, `!=` too; no whole number overflows in the compiler's own `int`."""
+        if isinstance(expression, ex.Implication):
+            return f"(!{self._tight(expression.left)} || {self._tight(expression.right)})"
+        if isinstance(expression, ex.Inequation) and is_double(expression.left):
+            return f"differ({self(expression.left)}, {self(expression.right)})"
+        if isinstance(expression, _ARITHMETIC) and not is_double(expression) and is_constant(expression):
+            return f"Integer({self(expression.left)}) {self.symbols[type(expression)]} {self._tight(expression.right)}"
+        return super().binary(expression)
+
+    def atom(self, expression: ex.Expression) -> str:
+        """Literals, references to the state, the node's variables and the data that came in, conversions."""
+        match expression:
+            case ex.BooleanLiteral():
+                return "true" if expression.value else "false"
+            case ex.IntegerLiteral():
+                return str(expression.value)
+            case ex.DoubleLiteral():
+                return repr(expression.value)
+            case ex.StringLiteral():
+                return f"std::string({string_literal(expression.value)})"
+            case ex.DoubleConversion():
+                return f"double({self(expression.operand)})"
+            case ex.Conditional():
+                tight = map(self._tight, (expression.condition, expression.then, expression.otherwise))
+                return "({} ? {} : {})".format(*tight)
+        return self._reference(expression)
+
+    def _reference(self, expression: ex.Expression) -> str:
+        match expression:
+            case ex.EnumerationLiteralReference():
+                return self._names.literal(expression.literal)
+            case sct.LocationReference():
+                return self._names.is_in(expression.location)
+            case sct.VariableReference():
+                value = self._names.state(expression.variable)
+                return f"Integer({value})" if isinstance(expression.variable.type, ex.IntegerType) else value
+            case rosgraph.NodeVariableReference():
+                return f"{self._node}.{self._names.variable(expression.variable)}"
+            case rosgraph.WireAccess():
+                conversion = _CONVERSIONS.get(type(expression.type))
+                return f"{conversion}({self.wire(expression)})" if conversion else self.wire(expression)
+            case rosgraph.ConversionCall():
+                return f"{self._names.conversion(expression.conversion)}({self.wire(expression.argument)})"
+        return super().atom(expression)
+
+    def wire(self, access: rosgraph.WireAccess) -> str:
+        """The place in the ROS data, not converted to a type of the model."""
+        text = self._data
+        for step in access.steps:
+            if isinstance(step, rosgraph.FieldStep):
+                text += f".{step.name}"
+            else:
+                assert isinstance(step, rosgraph.IndexStep)
+                text = f"read.at({text}, {step.index})"
+        return text
+
+    def integer(self, expression: ex.Expression, kind: ex.IntegerType) -> str:
+        """A whole number as an `Integer`, within the bounds of its type."""
+        text = self(expression)
+        if is_constant(expression) or self.precedence(expression) != ATOM:
+            text = f"Integer({text})"
+        if kind.minimum is None or kind.maximum is None:
+            return text
+        return f"{text}.within({kind.minimum}, {kind.maximum})"
+
+    def _tight(self, expression: ex.Expression) -> str:
+        text = self(expression)
+        return text if self.precedence(expression) == ATOM else f"({text})"
+
+
+def is_double(expression: ex.Expression) -> bool:
+    """Whether the value is a double."""
+    match expression:
+        case ex.DoubleLiteral() | ex.Division() | ex.DoubleConversion():
+            return True
+        case ex.UnaryMinus():
+            return is_double(expression.operand)
+        case ex.Conditional():
+            return is_double(expression.then)
+        case rosgraph.NodeVariableReference():
+            return isinstance(expression.variable.type, ex.DoubleType)
+        case rosgraph.WireAccess():
+            return isinstance(expression.type, ex.DoubleType)
+    return isinstance(expression, _ARITHMETIC) and is_double(expression.left)
+
+
+def parts(expression: ex.Expression) -> Iterator[ex.Expression]:
+    """The expression and everything in it, from the outside inwards and from left to right."""
+    return (each for _, each in tree(expression) if isinstance(each, ex.Expression))
+
+
+def reads_elements(expression: ex.Expression) -> bool:
+    """Whether an element of an array is read."""
+    return any(
+        isinstance(step, rosgraph.IndexStep)
+        for each in parts(expression)
+        if isinstance(each, rosgraph.WireAccess)
+        for step in each.steps
+    )
+
+
+def is_constant(expression: ex.Expression) -> bool:
+    """Whether the expression is made of integer literals only."""
+    operators = (ex.BinaryExpression, ex.UnaryExpression, ex.IntegerLiteral)
+    return all(isinstance(each, operators) for each in parts(expression))

@@ -1,0 +1,308 @@
+"""What the templates of a node print: a ROS graph with every expression, name and type as text of C++."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from robosc.m2t.c.types import type_name
+from robosc.m2t.cpp import reports
+from robosc.m2t.cpp.expressions import CppPrinter, parts, reads_elements
+from robosc.m2t.cpp.names import CppNames
+from robosc.metamodel import expression as ex
+from robosc.metamodel import rosgraph, sct
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+
+@dataclass(frozen=True)
+class Assignment:
+    """`target = value`; skipped where the value reads past the end of an array."""
+
+    target: str
+    value: str
+    reads_elements: bool
+
+
+@dataclass(frozen=True)
+class Reaction:
+    """Assignments under a condition on the state before the event; None: always."""
+
+    condition: str | None
+    assignments: list[Assignment]
+
+
+@dataclass(frozen=True)
+class Happening:
+    """An event, its inputs, its data and what it changes in the node.
+
+    `keeps_old`: the values read `old`, a copy of the node's variables from before.
+    """
+
+    event: str
+    name: str
+    inputs: list[Assignment]
+    keeps_old: bool
+    reactions: list[Reaction]
+    data: reports.EventData | None
+
+
+@dataclass(frozen=True)
+class Subscription:
+    """A topic that the node listens to; `word` is fit for names. `unread`: nothing in its messages matters."""
+
+    word: str
+    topic: str
+    interface: rosgraph.Interface
+    receptions: list[Happening]
+    unread: bool
+
+
+@dataclass(frozen=True)
+class Alternative:
+    """The data of one provide statement: names of fields and their values, under a condition on the state."""
+
+    condition: str
+    fields: list[tuple[str, str]]
+    data: reports.EventData | None
+
+
+@dataclass(frozen=True)
+class Message:
+    """A message that the node sends."""
+
+    word: str
+    event: str
+    requirements: list[str]
+    alternatives: list[Alternative]
+    reaction: Happening | None
+
+
+@dataclass(frozen=True)
+class Publisher:
+    """A topic that the node sends to."""
+
+    word: str
+    topic: str
+    interface: rosgraph.Interface
+    messages: list[Message]
+
+
+@dataclass(frozen=True)
+class Enumeration:
+    """An enumeration that only the node knows: literals in C++ and in the model."""
+
+    name: str
+    literals: list[tuple[str, str]]
+
+
+@dataclass(frozen=True)
+class Rule:
+    """A rule of a conversion."""
+
+    condition: str
+    literal: str
+    reads_elements: bool
+
+
+@dataclass(frozen=True)
+class Conversion:
+    """A function from data to a literal."""
+
+    name: str
+    function: str
+    type: str
+    rules: list[Rule]
+    default: str
+
+
+@dataclass(frozen=True)
+class Variable:
+    """A variable of the node."""
+
+    name: str
+    type: str
+    initial: str
+
+
+class Node:
+    """The node of one graph; everything is ready to be printed, in the order of the model."""
+
+    def __init__(self, graph: rosgraph.RosGraph) -> None:
+        self._graph = graph
+        self._names = CppNames(graph)
+        self._printer = CppPrinter(self._names)
+        self.robot = graph.name
+        self.prefix = self._names.c.prefix
+        self.enumerations = [self._enumeration(each) for each in graph.enumerations]
+        self.conversions = [self._conversion(each) for each in graph.conversions]
+        self.components = [
+            (member, [self._variable(each) for each in graph.variables if each.component == component])
+            for component, member in self._names.components.items()
+        ]
+        self.subscriptions = [self._subscription(each) for each in graph.subscriptions]
+        self.publishers = [self._publisher(each) for each in graph.publishers]
+        outside = {each.event for topic in graph.subscriptions for each in topic.receptions}
+        outside |= {each.event for topic in graph.publishers for each in topic.sendings}
+        silent = dict.fromkeys(each.event for each in graph.reactions if each.event not in outside)
+        self.silent = [self._happening(event) for event in silent]
+        self.reported = [
+            reports.component(plant, [each for each in graph.variables if each.component == plant.origin], self._names)
+            for plant in graph.model.plants
+            if plant.kind == sct.PlantKind.behaviour
+        ]
+
+    @property
+    def interfaces(self) -> list[rosgraph.Interface]:
+        """The message types in use, each once, by package and name."""
+        used = [each.interface for each in self._graph.subscriptions] + [
+            each.interface for each in self._graph.publishers
+        ]
+        found = {(each.package, each.type): each for each in used}
+        return [found[key] for key in sorted(found)]
+
+    # Types
+
+    def _type(self, kind: ex.Type) -> str:
+        match kind:
+            case ex.BooleanType():
+                return "bool"
+            case ex.IntegerType():
+                return "Integer"
+            case ex.DoubleType():
+                return "double"
+            case ex.StringType():
+                return "std::string"
+        assert isinstance(kind, ex.EnumerationType)
+        return self._names.enumeration(kind.enumeration) or f"std::{type_name(kind)}"
+
+    def _variable(self, variable: rosgraph.NodeVariable) -> Variable:
+        return Variable(self._names.member(variable), self._type(variable.type), self._printer(variable.initial))
+
+    def _enumeration(self, enumeration: ex.Enumeration) -> Enumeration:
+        literals = [(self._names.literal(each).rpartition("::")[2], each.name) for each in enumeration.literals]
+        return Enumeration(str(self._names.enumeration(enumeration)).rpartition("::")[2], literals)
+
+    def _conversion(self, conversion: rosgraph.Conversion) -> Conversion:
+        printer = CppPrinter(self._names, data="value")
+        return Conversion(
+            conversion.name,
+            self._names.conversion(conversion),
+            self._type(ex.EnumerationType(enumeration=conversion.enumeration)),
+            [
+                Rule(printer(each.condition), self._names.literal(each.literal), reads_elements(each.condition))
+                for each in conversion.rules
+            ],
+            self._names.literal(conversion.default),
+        )
+
+    # What comes in
+
+    def _subscription(self, subscription: rosgraph.Subscription) -> Subscription:
+        receptions = [self._reception(each) for each in subscription.receptions]
+        return Subscription(
+            self._names.word(subscription),
+            subscription.topic,
+            subscription.interface,
+            receptions,
+            unread=not any(each.data for each in receptions),
+        )
+
+    def _reception(self, reception: rosgraph.Reception) -> Happening:
+        values = [each.value for each in reception.inputs]
+        for reaction in self._reactions(reception.event):
+            values += [each.value for each in reaction.assignments]
+        inputs = [
+            Assignment(
+                f"supervisor_.inputs.{self._names.c.member(each.input)}",
+                self._input(each),
+                reads_elements(each.value),
+            )
+            for each in reception.inputs
+        ]
+        return self._happening(reception.event, inputs, reports.received(values, self._names))
+
+    def _input(self, assignment: rosgraph.InputAssignment) -> str:
+        kind = assignment.input.type
+        if isinstance(kind, ex.IntegerType):
+            return f"{self._printer.integer(assignment.value, kind)}.to<std::{type_name(kind)}>()"
+        return self._printer(assignment.value)
+
+    def _reactions(self, event: sct.Event) -> list[rosgraph.Reaction]:
+        return [each for each in self._graph.reactions if each.event == event]
+
+    def _happening(
+        self, event: sct.Event, inputs: Sequence[Assignment] = (), data: reports.EventData | None = None
+    ) -> Happening:
+        reactions = self._reactions(event)
+        assignments = [each for reaction in reactions for each in reaction.assignments]
+        assigned = {each.variable for each in assignments}
+        keeps_old = any(
+            isinstance(part, rosgraph.NodeVariableReference) and part.variable in assigned
+            for each in assignments
+            for part in parts(each.value)
+        )
+        printer = CppPrinter(self._names, node="old") if keeps_old else self._printer
+        return Happening(
+            self._names.c.enumerator(event),
+            f"{event.eContainer().name}.{event.name}",
+            list(inputs),
+            keeps_old,
+            self._merged(reactions, printer),
+            data,
+        )
+
+    def _merged(self, reactions: Sequence[rosgraph.Reaction], printer: CppPrinter) -> list[Reaction]:
+        """Reactions of one component that do the same become one."""
+        places: dict[tuple[sct.Plant, tuple[Assignment, ...]], list[sct.Location]] = {}
+        for each in reactions:
+            assignments = tuple(self._assignment(assignment, printer) for assignment in each.assignments)
+            places.setdefault((each.locations[0].eContainer(), assignments), []).extend(each.locations)
+        return [Reaction(self._is_in(plant, where), list(what)) for (plant, what), where in places.items()]
+
+    def _is_in(self, plant: sct.Plant, locations: Sequence[sct.Location]) -> str | None:
+        if len(locations) == len(plant.locations):
+            return None
+        return " || ".join(self._names.is_in(each) for each in locations)
+
+    def _assignment(self, assignment: rosgraph.NodeAssignment, printer: CppPrinter) -> Assignment:
+        kind = assignment.variable.type
+        return Assignment(
+            f"data_.{self._names.variable(assignment.variable)}",
+            printer.integer(assignment.value, kind) if isinstance(kind, ex.IntegerType) else printer(assignment.value),
+            reads_elements(assignment.value),
+        )
+
+    # What goes out
+
+    def _publisher(self, publisher: rosgraph.Publisher) -> Publisher:
+        return Publisher(
+            self._names.word(publisher),
+            publisher.topic,
+            publisher.interface,
+            [self._message(each) for each in publisher.sendings],
+        )
+
+    def _message(self, sending: rosgraph.Sending) -> Message:
+        word = self._names.c.member(sending.event.eContainer()).removeprefix("message_")
+        return Message(
+            word,
+            self._names.c.enumerator(sending.event),
+            [each.text for each in self._graph.model.requirements if each.event == sending.event and each.text],
+            [self._alternative(each, f"{word}_message_") for each in sending.alternatives],
+            self._happening(sending.event) if self._reactions(sending.event) else None,
+        )
+
+    def _alternative(self, provided: rosgraph.ProvidedData, message: str) -> Alternative:
+        return Alternative(
+            self._names.is_in(provided.location),
+            [(".".join(each.path), self._field(each)) for each in provided.fields],
+            reports.sent(provided, message, self._names),
+        )
+
+    def _field(self, assignment: rosgraph.FieldAssignment) -> str:
+        kind = assignment.type
+        if isinstance(kind, ex.IntegerType):
+            return self._printer.integer(assignment.value, kind)
+        return self._printer(assignment.value)

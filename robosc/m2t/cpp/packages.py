@@ -1,0 +1,80 @@
+"""What the packages of both kinds of nodes have in common: names, dependencies, files, the engine."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from robosc.m2t.c import engine
+from robosc.m2t.cpp.definition import definition_text
+from robosc.m2t.cpp.rendering import fold, node_environment
+from robosc.naming import controller_name
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from robosc.config import Configuration
+    from robosc.m2t.cpp.node import Node
+    from robosc.metamodel import rosgraph
+
+#: Types of geometry_msgs that hold numbers only: no header, no quaternion.
+_PLAIN = frozenset(["Accel", "Inertia", "Point", "Point32", "Polygon", "Twist", "Vector3", "Wrench"])
+
+
+def message_packages(node: Node, configuration: Configuration) -> set[str]:
+    """The packages of the messages that the node uses, its reports on itself included."""
+    reports = {"std_msgs"} if configuration.publish_state_information else set()
+    return {each.package for each in node.interfaces} | reports
+
+
+def has_defaults(interface: rosgraph.Interface) -> bool:
+    """Whether a message of this type may hold a header or a quaternion, which the node then sets."""
+    if interface.package == "std_msgs":
+        return interface.type == "Header"
+    return interface.package != "geometry_msgs" or interface.type not in _PLAIN
+
+
+@dataclass(frozen=True)
+class Target:
+    """One kind of ROS: where its templates are, and the ending of its launch files."""
+
+    package: str
+    launch_file: str
+
+
+def package(
+    target: Target, graph: rosgraph.RosGraph, node: Node, configuration: Configuration, values: Mapping[str, Any]
+) -> dict[str, str]:
+    """The files of a package by their path in it; `values` is what only this target's templates read."""
+    name = configuration.package.name or controller_name(graph)
+    headers = ["data.hpp", "json.hpp", "parameters.hpp"]
+    if configuration.publish_state_information:
+        headers.append("definition.hpp")
+    if any(has_defaults(each.interface) for each in node.publishers):
+        headers.append("defaults.hpp")
+    files = {
+        "package.xml": "package.xml.j2",
+        "CMakeLists.txt": "CMakeLists.txt.j2",
+        f"launch/{name}{target.launch_file}": "launch.j2",
+        **{f"include/{name}/{each}": f"{each}.j2" for each in headers},
+        f"src/{name}_node.cpp": "node.cpp.j2",
+    }
+    values = {
+        **values,
+        "node": node,
+        "package": name,
+        "about": configuration.package,
+        "description": configuration.package.description or f"The supervisory controller of {graph.name}.",
+        "own_headers": sorted(headers),
+        "period_ms": configuration.control_loop.period_ms,
+        "publishes_state": configuration.publish_state_information,
+        "writes_log": configuration.write_events_to_log,
+        "definition": definition_text(graph),
+        "has_defaults": has_defaults,
+        "frame": lambda topic: configuration.frame_id.get(topic.removeprefix("/"), ""),
+    }
+    templates = node_environment(target.package)
+    texts = {path: templates.get_template(template).render(values) for path, template in files.items()}
+    texts[f"src/{name}_node.cpp"] = fold(texts[f"src/{name}_node.cpp"])
+    supervisor = engine.generate(graph.model, configuration.control_loop)
+    return texts | {f"src/{file}": text for file, text in supervisor.items()}

@@ -1,0 +1,82 @@
+"""What the node generators can't write yet, or must not: each a located error."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from robosc.diagnostics import Diagnostic, Severity
+from robosc.metamodel import expression as ex
+from robosc.metamodel import rosgraph
+from robosc.metamodel.places import START, place
+from robosc.metamodel.reflection import tree
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from robosc.config import Configuration
+    from robosc.models import Models
+
+RULE = "precondition"
+
+_PACKAGE = re.compile(r"[a-z][a-z0-9_]*[a-z0-9]")
+_TYPE = re.compile(r"[A-Z][A-Za-z0-9]*")
+_FIELD = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+_TOPIC = re.compile(r"(~?/)?[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*")
+
+
+def preconditions(models: Models, configuration: Configuration) -> list[Diagnostic]:
+    """What keeps these models from becoming a node, with these settings; nothing where they can."""
+    graph = models.rosgraph
+    if graph is None:
+        message = "there is no ROS graph beside this model: generate from the .rscd or the .rosgraph.xmi"
+        return [Diagnostic(models.sct.name, START, Severity.ERROR, RULE, message)]
+    return [*_clients(graph), *_names(graph), *_settings(configuration)]
+
+
+def _error(element: ex.Located, message: str, hint: str | None = None) -> Diagnostic:
+    file, span = place(element)
+    return Diagnostic(file, span, Severity.ERROR, RULE, message, hint)
+
+
+def _clients(graph: rosgraph.RosGraph) -> Iterator[Diagnostic]:
+    clients: list[rosgraph.ServiceClient | rosgraph.ActionClient] = [*graph.serviceClients, *graph.actionClients]
+    for each in clients:
+        kind = each.interface.kind.name
+        yield _error(each, f"the {kind} {each.request.name} can't be generated for ROS yet: messages only")
+
+
+def _names(graph: rosgraph.RosGraph) -> Iterator[Diagnostic]:
+    """Names that stand in code as they are, and that ROS itself would refuse otherwise."""
+    for each in graph.interfaces:
+        if not _PACKAGE.fullmatch(each.package) or "__" in each.package:
+            yield _error(each, f'"{each.package}" is no name of a ROS package')
+        if not _TYPE.fullmatch(each.type):
+            yield _error(each, f'"{each.type}" is no name of a ROS type')
+    topics: list[rosgraph.Subscription | rosgraph.Publisher] = [*graph.subscriptions, *graph.publishers]
+    for topic in topics:
+        if not _TOPIC.fullmatch(topic.topic):
+            hint = "letters, digits and underscores, with single slashes between them"
+            yield _error(topic, f'"{topic.topic}" is no name of a ROS topic', hint)
+    for element, name in _fields(graph):
+        if not _FIELD.fullmatch(name):
+            yield _error(element, f'"{name}" is no name of a field in ROS')
+
+
+def _fields(graph: rosgraph.RosGraph) -> Iterator[tuple[ex.Located, str]]:
+    for _, element in tree(graph):
+        if isinstance(element, rosgraph.FieldAssignment):
+            yield from ((element, name) for name in element.path)
+        elif isinstance(element, rosgraph.FieldStep):
+            yield element, element.name
+
+
+def _settings(configuration: Configuration) -> Iterator[Diagnostic]:
+    unfinished = {
+        "watchdogMs": configuration.watchdog_ms,
+        "watchdogStops": configuration.watchdog_stops,
+        "onShutdown": configuration.on_shutdown,
+    }
+    for key, value in unfinished.items():
+        if value:
+            yield configuration.error((key,), f'"{key}" can\'t be generated for ROS yet')

@@ -1,0 +1,84 @@
+"""Renders the templates of a node: a target's own ones on top of those here."""
+
+from __future__ import annotations
+
+import re
+import textwrap
+from typing import TYPE_CHECKING
+from xml.sax.saxutils import escape, quoteattr
+
+from jinja2 import ChoiceLoader
+
+from robosc.m2t.c.comments import comment_text, string_literal
+from robosc.m2t.templates import environment
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
+
+_WIDTH = 116
+_LITERAL_OR_BLANK = re.compile(r"""\"(?:\\.|[^"\\])*"|'(?:\\.|[^'\\])*'| """)
+
+
+def node_environment(target: str) -> Environment:
+    """The templates of a target (`robosc.m2t.ros1`), which may extend and import those of this package."""
+    templates = environment(target)
+    own, shared = templates.loader, environment("robosc.m2t.cpp").loader
+    assert own is not None
+    assert shared is not None
+    templates.loader = ChoiceLoader([own, shared])
+    templates.filters.update(
+        literal=string_literal,
+        raw_literal=raw_literal,
+        comment=line_comment,
+        shift=shift,
+        xml=xml_text,
+        attribute=xml_attribute,
+    )
+    return templates
+
+
+def line_comment(text: str, indent: int = 0) -> str:
+    """The text as comment lines of C++, wrapped; nothing in it ends them or joins them with the line after."""
+    lines = textwrap.wrap(comment_text(text), _WIDTH - indent, break_long_words=False, break_on_hyphens=False)
+    margin = " " * indent + "// "
+    return "\n".join(f"{margin}{line}{'.' if line.endswith(chr(92)) else ''}" for line in lines)
+
+
+def raw_literal(json: str) -> str:
+    """A raw string literal with JSON text in ASCII, whose strings can't end it."""
+    return 'R"json(' + json.replace(')json"', '\\u0029json"') + ')json"'
+
+
+def fold(code: str, width: int = 120) -> str:
+    """C++ code with lines that are too long broken at blanks outside of literals; comments and directives stay."""
+    return "".join(_folded(line, width) for line in code.splitlines(keepends=True))
+
+
+def _folded(line: str, width: int, continued: str = "") -> str:
+    code = line.lstrip()
+    margin = line[: len(line) - len(code)]
+    blanks = [each.start() for each in _LITERAL_OR_BLANK.finditer(line) if each[0] == " "]
+    fitting = [each for each in blanks if len(margin) < each <= width]
+    if len(line.rstrip()) <= width or not fitting or code.startswith(("//", "#")):
+        return line
+    continued = continued or margin + "    "
+    return line[: fitting[-1]] + "\n" + _folded(continued + line[fitting[-1] + 1 :], width, continued)
+
+
+def shift(text: str, indent: int) -> str:
+    """The text with every line that is not empty so much further to the right."""
+    return textwrap.indent(text, " " * indent)
+
+
+def xml_text(text: str) -> str:
+    """The text between tags, without the characters that XML can't hold."""
+    return escape(_printable(text))
+
+
+def xml_attribute(text: str) -> str:
+    """The text as the value of an attribute, in its quotes."""
+    return quoteattr(_printable(text))
+
+
+def _printable(text: str) -> str:
+    return "".join(each for each in text if each.isprintable() or each in "\n\t")
