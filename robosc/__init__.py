@@ -135,7 +135,7 @@ def synthesize(model: SupervisoryControlModel) -> Supervisor:
 
 
 def generate(target: str, models: Models, configuration: Configuration | None = None) -> dict[str, str]:
-    """The files of a target (`cif`, `supervisor`, `ros1`, `ros2`, `xmi`): relative POSIX path to text.
+    """The files of a target (`cif`, `supervisor`, `ros1`, `ros2`, `xmi`): POSIX path in the target's folder to text.
 
     Without a configuration all settings have their defaults. Raises ModelError where the models or the configuration
     don't meet the target's preconditions, ValueError where the target is unknown or a model that it reads is missing.

@@ -5,12 +5,16 @@ import re
 from collections.abc import Iterator
 from difflib import get_close_matches
 from pathlib import Path
-from typing import Annotated, Any, Literal, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, PrivateAttr, ValidationError
 from pydantic.alias_generators import to_camel
 
 from robosc.diagnostics import Diagnostic, ModelError, Severity, Span
+from robosc.naming import controller_name
+
+if TYPE_CHECKING:
+    from robosc.metamodel.expression import NamedElement
 
 FILE_NAME = "controller-config.json"
 RULE = "configuration"
@@ -163,6 +167,10 @@ class Configuration(_Settings):
     def model_post_init(self, context: Any) -> None:
         """Keeps what the configuration was read from, so that later findings can be located."""
         self._file, self._text = context or (FILE_NAME, "{}")
+
+    def package_name(self, robot: "NamedElement") -> str:
+        """The name of a robot's package, node and executable."""
+        return self.package.name or controller_name(robot)
 
     def error(self, key: Key, message: str, hint: str | None = None) -> Diagnostic:
         """An error at a key of the file that this was read from, such as `("onShutdown", 0)`.

@@ -19,19 +19,30 @@ class Generator(Protocol):
         """What keeps the target from these models, or is doubtful about them."""
 
     def generate(self, models: Models, configuration: Configuration) -> dict[str, str]:
-        """The files: relative POSIX path to text. The models have a supervisor and meet the preconditions."""
+        """The files: POSIX path in the target's folder to text. The models have a supervisor, the preconditions hold."""
 
 
 @dataclass(frozen=True)
 class Target:
-    """A target: what it is, where its files go below the output folder, and what it reads."""
+    """A target: what it is, what it reads, and where its files go."""
 
     name: str
     description: str
-    folder: str = ""
-    needs_graph: bool = False
-    #: The setting in the configuration's `output` that names a folder for a copy of the package.
+    _folder: str = ""
+    #: The setting in the configuration's `output` that names a folder for a copy, of a target that is a ROS package.
     location: str | None = None
+
+    @property
+    def needs_graph(self) -> bool:
+        """Whether it reads the ROS graph beside the sct model."""
+        return self.location is not None
+
+    def folder(self, models: Models, configuration: Configuration) -> str:
+        """Where its files go below the output folder: POSIX path, empty for that folder itself.
+
+        ROS packages stand beside those of other robots in one folder, so that this can be a workspace's `src`.
+        """
+        return f"{self._folder}/{configuration.package_name(models.sct)}" if self.location else self._folder
 
     def generator(self) -> Generator:
         """The module that generates it; loaded when it is asked for."""
@@ -43,8 +54,8 @@ TARGETS = {
     for target in (
         Target("cif", "plants and requirements, and the supervised system, in CIF 3"),
         Target("supervisor", "the supervisor and its control loop in C99", "supervisor"),
-        Target("ros1", "a controller node for ROS 1", "ros1", True, "ros1_controller_node_location"),
-        Target("ros2", "a controller node for ROS 2", "ros2", True, "ros2_controller_node_location"),
+        Target("ros1", "a controller node for ROS 1", "ros1", "ros1_controller_node_location"),
+        Target("ros2", "a controller node for ROS 2", "ros2", "ros2_controller_node_location"),
         Target("xmi", "the models between the steps"),
     )
 }

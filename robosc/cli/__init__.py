@@ -16,6 +16,7 @@ ERRORS_FOUND = 1
 WRONG_CALL = 2
 EMPTY_SUPERVISOR = 3
 INTERNAL_ERROR = 70
+INTERRUPTED = 130
 
 _COMMANDS = {
     "check": "Say what is wrong with models.",
@@ -62,8 +63,12 @@ class _Commands(click.Group):
             return super().invoke(ctx)
         except (click.ClickException, click.exceptions.Exit, click.Abort, BrokenPipeError):
             raise
+        except KeyboardInterrupt:
+            raise click.exceptions.Exit(INTERRUPTED) from None
         except OSError as error:
             raise CallError(f"{error.filename}: {error.strerror}" if error.filename else str(error)) from error
+        except MemoryError as error:
+            raise CallError(f"the model is too large: {str(error) or 'out of memory'}") from error
         except Exception as error:
             if ctx.params["traceback"]:
                 traceback.print_exc()

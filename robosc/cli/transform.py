@@ -18,7 +18,7 @@ from robosc.supervision import supervise
 from robosc.targets import TARGETS, Target
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
     from robosc.models import Models
 
@@ -96,12 +96,9 @@ def _trees(
     trees: dict[Path, dict[str, str]] = {folder: {}}
     for target in targets:
         files = target.generator().generate(models, configuration)
-        trees[folder] |= {(PurePosixPath(target.folder) / path).as_posix(): text for path, text in files.items()}
+        below = PurePosixPath(target.folder(models, configuration))
+        trees[folder] |= {(below / path).as_posix(): text for path, text in files.items()}
         copy = getattr(configuration.output, target.location) if target.location else None
         if copy:
-            trees.setdefault(home / copy, {}).update(_without_package_folder(files))
+            trees.setdefault(home / copy, {}).update(files)
     return trees
-
-
-def _without_package_folder(files: Mapping[str, str]) -> dict[str, str]:
-    return {"/".join(PurePosixPath(path).parts[1:]): text for path, text in files.items()}

@@ -1,0 +1,82 @@
+"""`robosc check`: all findings of all models, in each form, with the right exit status."""
+
+import json
+from pathlib import Path
+
+from .conftest import DOOR, Run
+
+
+def test_nothing_wrong(run: Run, door: Path, library: Path) -> None:
+    answer = run("check", door, library)
+    assert (answer.exit_code, answer.output) == (0, "")
+
+
+def test_findings_as_text(run: Run, broken: Path) -> None:
+    answer = run("check", broken.name)
+    assert answer.exit_code == 1
+    first, _, second = answer.stdout.partition("broken.rscd:17:")
+    assert first.startswith("broken.rscd:11:7: error: ")
+    assert "[initial-state]\n          initial marked state opened {\n          ^^^^" in first
+    assert "[unresolved-reference]\n      requirement open needs Leaf.x\n" in second
+    assert answer.stderr == "2 errors\n"
+
+
+def test_findings_as_json(run: Run, broken: Path) -> None:
+    answer = run("check", broken.name, "--format", "json")
+    assert answer.exit_code == 1
+    found = json.loads(answer.stdout)
+    assert [(each["file"], each["line"], each["rule"]) for each in found] == [
+        (broken.name, 11, "initial-state"),
+        (broken.name, 17, "unresolved-reference"),
+    ]
+
+
+def test_findings_as_sarif(run: Run, broken: Path) -> None:
+    answer = run("check", broken, "--format", "sarif")
+    assert answer.exit_code == 1
+    assert json.loads(answer.stdout)["version"] == "2.1.0"
+
+
+def test_no_findings_are_an_empty_list(run: Run, door: Path) -> None:
+    answer = run("check", door, "--format", "json")
+    assert (answer.exit_code, json.loads(answer.stdout)) == (0, [])
+
+
+def test_one_broken_model_among_others(run: Run, broken: Path, door: Path, tmp_path: Path) -> None:
+    damaged = tmp_path / "damaged.xmi"
+    damaged.write_text("<robot")
+    answer = run("check", damaged, door, broken, "--format", "json")
+    assert answer.exit_code == 1
+    assert {Path(each["file"]).name for each in json.loads(answer.stdout)} == {"damaged.xmi", "broken.rscd"}
+
+
+def test_a_warning_is_no_error(run: Run, tmp_path: Path) -> None:
+    file = tmp_path / "twice.rscd"
+    message = 'component {} {{ outgoing message {} with identifier: "/x", type: none }}'
+    file.write_text(f"robot Twice {{ {message.format('A', 'a')} {message.format('B', 'b')} }}")
+    answer = run("check", file)
+    assert answer.exit_code == 0
+    assert "[unique-topic]" in answer.stdout
+    assert answer.stderr == "1 warning\n"
+
+
+def test_libraries_are_found_in_the_folders_of_the_call(run: Run, tmp_path: Path) -> None:
+    (tmp_path / "elsewhere").mkdir()
+    (tmp_path / "elsewhere" / "parts.rscd").write_text(
+        DOOR.replace("robot Door", "library Parts").partition("  req")[0] + "}"
+    )
+    file = tmp_path / "house.rscd"
+    file.write_text("robot House { component Front from Parts import Leaf }")
+    assert run("check", file).exit_code == 1
+    assert run("check", file, "-I", "elsewhere").exit_code == 0
+    assert run("check", file, "--library-path", tmp_path, "-I", "elsewhere").exit_code == 0
+
+
+def test_saved_models_are_checked_too(run: Run, door: Path) -> None:
+    assert run("transform", door, "--to", "xmi", "-o", "out").exit_code == 0
+    assert run("check", *Path("out").glob("*.xmi")).exit_code == 0
+    saved = Path("out/Door.robosc.xmi")
+    saved.write_text(saved.read_text().replace('initial="false"', 'initial="true"'))
+    answer = run("check", saved)
+    assert answer.exit_code == 1
+    assert "[initial-state]" in answer.stdout

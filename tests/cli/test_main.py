@@ -1,0 +1,117 @@
+"""What holds for all commands: help that loads nothing, versions, wrong calls, faults of the tool itself."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+import robosc
+import robosc.cli.check
+from robosc.cli import main
+
+from .conftest import Run
+
+COMMANDS = ["check", "transform", "synthesize", "rule", "diagram"]
+
+
+def loaded_by(*arguments: str) -> set[str]:
+    """The modules that a call of the command line loads."""
+    program = f"""
+import sys
+from robosc.cli import main
+try:
+    main({arguments!r})
+except SystemExit as end:
+    assert end.code == 0
+print("\\n" + " ".join(sys.modules))
+"""
+    done = subprocess.run([sys.executable, "-c", program], check=True, capture_output=True, text=True)
+    return set(done.stdout.splitlines()[-1].split())
+
+
+@pytest.mark.parametrize("option", ["--help", "--version"])
+def test_help_and_version_load_next_to_nothing(option: str) -> None:
+    loaded = {name.partition(".")[0] for name in loaded_by(option)}
+    assert loaded & {"arpeggio", "jinja2", "oxidd", "pydantic", "pyecore", "rich", "textx"} == set()
+
+
+def test_check_loads_nothing_that_generates(door: Path) -> None:
+    loaded = {name.partition(".")[0] for name in loaded_by("check", str(door))}
+    assert loaded & {"jinja2", "oxidd", "pydantic", "rich"} == set()
+    assert {"pyecore", "textx"} <= loaded
+
+
+def test_help_names_all_commands(run: Run) -> None:
+    answer = run("--help")
+    assert answer.exit_code == 0
+    listed = answer.stdout.partition("Commands:\n")[2].splitlines()
+    assert [line.split()[0] for line in listed] == COMMANDS
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_every_command_has_help_with_examples(run: Run, command: str) -> None:
+    answer = run(command, "--help")
+    assert answer.exit_code == 0
+    assert f"  robosc {command} " in answer.stdout.partition("Examples:\n")[2]
+
+
+def test_version(run: Run) -> None:
+    assert run("--version").stdout == f"robosc, version {robosc.__version__}\n"
+
+
+@pytest.mark.parametrize("call", [(), ("fly",), ("check",), ("check", "--colour", "x"), ("transform", "door.rscd")])
+def test_a_wrong_call(run: Run, door: Path, call: tuple[str, ...]) -> None:  # noqa: ARG001
+    assert run(*call).exit_code == 2
+
+
+@pytest.mark.parametrize("command", [("check",), ("synthesize",), ("transform", "--to", "xmi")])
+def test_a_file_that_is_not_there(run: Run, command: tuple[str, ...]) -> None:
+    answer = run(*command, "missing.rscd")
+    assert answer.exit_code == 2
+    assert "'missing.rscd' does not exist" in answer.stderr
+    assert run(*command, ".").exit_code == 2
+
+
+def test_a_file_that_goes_while_it_is_read(run: Run, door: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def gone(self: Path) -> bytes:
+        raise FileNotFoundError(2, "No such file or directory", str(self))
+
+    monkeypatch.setattr(Path, "read_bytes", gone)
+    answer = run("check", door)
+    assert answer.exit_code == 2
+    assert answer.stderr == f"Error: {door}: No such file or directory\n"
+
+
+def raising(error: BaseException, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Makes `check` raise an error."""
+
+    def command(models: object, **_: object) -> None:  # noqa: ARG001
+        raise error
+
+    monkeypatch.setattr(robosc.cli.check.command, "callback", command)
+
+
+def test_a_fault_of_the_tool_is_no_traceback(run: Run, door: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    raising(KeyError("unforeseen"), monkeypatch)
+    answer = run("check", door)
+    assert answer.exit_code == 70
+    assert "please report it: KeyError: 'unforeseen'" in answer.stderr
+    assert "Traceback" not in answer.output
+    assert "Traceback" in run("--traceback", "check", door).stderr
+    monkeypatch.setenv("ROBOSC_TRACEBACK", "1")
+    assert "Traceback" in run("check", door).stderr
+
+
+def test_too_little_memory_is_no_fault(run: Run, door: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    raising(MemoryError("no room"), monkeypatch)
+    answer = run("check", door)
+    assert answer.exit_code == 2
+    assert "no room" in answer.stderr
+
+
+def test_an_interruption(door: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    raising(KeyboardInterrupt(), monkeypatch)
+    answer = CliRunner().invoke(main, ["check", str(door)])
+    assert answer.exit_code == 130

@@ -1,0 +1,104 @@
+"""`robosc synthesize`: the supervisor as text and as JSON."""
+
+import json
+from pathlib import Path
+
+from .conftest import DOOR, Run
+
+
+def test_as_json(run: Run, door: Path) -> None:
+    answer = run("synthesize", door, "--json")
+    assert answer.exit_code == 0
+    said = json.loads(answer.stdout)
+    assert said.pop("seconds") > 0
+    assert said.pop("bdd_nodes") > 0
+    assert said == {
+        "robot": "Door",
+        "uncontrolled_states": 2,
+        "controlled_states": 2,
+        "empty": False,
+        "events": [
+            {
+                "name": "message_open.c_trigger",
+                "controllable": True,
+                "guard": "true",
+                "added_by_synthesis": None,
+                "ever_enabled": True,
+            },
+            {
+                "name": "message_close.c_trigger",
+                "controllable": True,
+                "guard": "true",
+                "added_by_synthesis": None,
+                "ever_enabled": True,
+            },
+        ],
+    }
+
+
+def test_all_but_the_time_is_the_same_on_every_run(run: Run, door: Path) -> None:
+    said = [json.loads(run("synthesize", door, "--json").stdout) for _ in range(2)]
+    for each in said:
+        del each["seconds"]
+    assert said[0] == said[1]
+
+
+#: A leaf that can only be closed while nobody has locked it, and that may not stay open.
+LOCK = """
+  component Lock {
+    incoming message lock with identifier: "/lock", type: none
+
+    behaviour {
+      initial marked state free {
+        on request to lock goto locked
+      }
+
+      marked state locked {}
+    }
+  }
+
+  requirement close needs Lock.free
+}
+"""
+
+
+def test_as_text(run: Run, tmp_path: Path) -> None:
+    file = tmp_path / "lock.rscd"
+    file.write_text(DOOR.partition("\n  requirement")[0].replace("marked state opened", "state opened") + LOCK)
+    answer = run("synthesize", file)
+    assert answer.exit_code == 0, answer.output
+    assert answer.stdout == (
+        "Door: 3 states, of 4 without requirements\n"
+        "\nmessage_open.c_trigger\n"
+        "    guard: component_Lock.free\n"
+        "    added by synthesis: component_Lock.free\n"
+        "\nmessage_close.c_trigger\n"
+        "    guard: true\n"
+        "\nmessage_lock.c_trigger\n"
+        "    guard: component_Leaf.closed\n"
+        "    added by synthesis: component_Leaf.closed\n"
+    )
+
+
+def test_no_supervisor(run: Run, stuck: Path) -> None:
+    answer = run("synthesize", stuck, "--json")
+    assert answer.exit_code == 3
+    said = json.loads(answer.stdout)
+    assert (said["empty"], said["controlled_states"], said["events"]) == (True, 0, [])
+    assert "message_open.c_trigger" in answer.stderr
+    assert "[empty-supervisor]" in answer.stderr
+    assert f"{stuck}:3:5: error: " in answer.stderr
+    assert run("synthesize", stuck).exit_code == 3
+    assert run("synthesize", stuck).stdout == ""
+
+
+def test_errors_come_first(run: Run, broken: Path) -> None:
+    answer = run("synthesize", broken, "--json")
+    assert (answer.exit_code, answer.stdout) == (1, "")
+    assert "[initial-state]" in answer.stderr
+
+
+def test_a_library_has_no_supervisor(run: Run, library: Path) -> None:
+    answer = run("synthesize", library)
+    assert answer.exit_code == 2
+    assert "holds a library" in answer.stderr

@@ -1,0 +1,157 @@
+"""`robosc transform`: what is written where, and that nothing is where something is wrong."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from robosc.targets import TARGETS
+
+from .conftest import Run
+
+ALL = ",".join(TARGETS)
+
+
+def tree(folder: Path) -> dict[str, bytes]:
+    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+def test_all_targets_have_their_place(run: Run, door: Path) -> None:
+    answer = run("transform", door, "--to", ALL)
+    assert answer.exit_code == 0, answer.output
+    written = tree(Path("build/Door"))
+    assert answer.stderr == f"build/Door: {len(written)} files, {len(written)} written\n"
+    assert answer.stdout == ""
+    places = {"/".join(name.split("/")[:2]) if name.startswith("ros") else name for name in written}
+    assert places == {
+        "Door.cif",
+        "Door.supervised.cif",
+        "Door.robosc.xmi",
+        "Door.rosgraph.xmi",
+        "Door.sct.xmi",
+        "ros1/door_controller",
+        "ros2/door_controller",
+        "supervisor/CMakeLists.txt",
+        "supervisor/door_supervisor.c",
+        "supervisor/door_supervisor.h",
+    }
+
+
+def test_the_same_from_any_folder(door: Path, tmp_path: Path) -> None:
+    (tmp_path / "far" / "away").mkdir(parents=True)
+    calls = [
+        (tmp_path, door.name, "one", "0"),
+        (tmp_path / "far" / "away", f"../../{door.name}", "../../two", "1"),
+        (Path("/"), str(door), str(tmp_path / "three"), "2"),
+    ]
+    for folder, model, output, seed in calls:
+        call = [sys.executable, "-m", "robosc", "transform", model, "--to", ALL, "-o", output]
+        subprocess.run(call, cwd=folder, env=os.environ | {"PYTHONHASHSEED": seed}, check=True, capture_output=True)
+    one = tree(tmp_path / "one")
+    assert one
+    assert tree(tmp_path / "two") == one
+    assert tree(tmp_path / "three") == one
+
+
+def test_only_what_changed_is_written(run: Run, door: Path) -> None:
+    run("transform", door, "--to", "xmi,cif", "-o", "out")
+    again = run("transform", door, "--to", "cif,xmi", "-o", "out")
+    assert again.stderr == "out: 5 files, 0 written\n"
+
+
+@pytest.mark.parametrize("start", ["robosc", "sct", "rosgraph"])
+def test_saved_models_give_the_same(run: Run, door: Path, start: str) -> None:
+    targets = [each.name for each in TARGETS.values() if start != "sct" or not each.needs_graph]
+    assert run("transform", door, "--to", ALL, "-o", "out").exit_code == 0
+    answer = run("transform", f"out/Door.{start}.xmi", "--to", ",".join(targets), "-o", "again")
+    assert answer.exit_code == 0, answer.output
+    again, out = tree(Path("again")), tree(Path("out"))
+    assert len(again) > 5
+    assert again.items() <= out.items()
+
+
+def test_what_an_sct_model_can_not_give(run: Run, door: Path) -> None:
+    run("transform", door, "--to", "xmi", "-o", "out")
+    answer = run("transform", "out/Door.sct.xmi", "--to", "cif,ros2", "-o", "again")
+    assert answer.exit_code == 2
+    assert "has no ROS graph, which ros2 needs" in answer.stderr
+    assert not Path("again").exists()
+
+
+@pytest.mark.parametrize(("model", "status"), [("broken", 1), ("stuck", 3), ("library", 2), ("damaged", 1)], ids=str)
+def test_nothing_is_written_where_something_is_wrong(
+    run: Run, door: Path, model: str, status: int, request: pytest.FixtureRequest
+) -> None:
+    run("transform", door, "--to", ALL, "-o", "out")
+    before = {path: (path.stat().st_mtime_ns, path.read_bytes()) for path in Path("out").rglob("*") if path.is_file()}
+    if model == "damaged":
+        file = Path("damaged.xmi")
+        file.write_text(Path("out/Door.sct.xmi").read_text()[:-30])
+    else:
+        file = request.getfixturevalue(model)
+        file.write_text(file.read_text().replace("robot Door", "robot Other"))
+    answer = run("transform", file, "--to", ALL, "-o", "out")
+    assert answer.exit_code == status, answer.output
+    assert "Error: " in answer.stderr if status == 2 else ": error: " in answer.stdout
+    after = {path: (path.stat().st_mtime_ns, path.read_bytes()) for path in Path("out").rglob("*") if path.is_file()}
+    assert after == before
+    assert run("transform", file, "--to", ALL).exit_code == status
+    assert not Path("build").exists()
+
+
+@pytest.mark.parametrize("targets", ["", "cif,", "ros3", "cif,ros3"])
+def test_unknown_targets(run: Run, door: Path, targets: str) -> None:
+    answer = run("transform", door, "--to", targets)
+    assert answer.exit_code == 2
+    assert "is none of cif, supervisor, ros1, ros2, xmi" in answer.stderr
+
+
+def test_targets_one_by_one(run: Run, door: Path) -> None:
+    run("transform", door, "--to", "cif, xmi", "-o", "one")
+    run("transform", door, "--to", "xmi", "--to", "cif", "-o", "two")
+    assert len(tree(Path("one"))) == 5
+    assert tree(Path("one")) == tree(Path("two"))
+
+
+def test_a_folder_that_can_not_be_written(run: Run, door: Path) -> None:
+    Path("out").write_text("a file")
+    assert run("transform", door, "--to", "xmi", "-o", "out").exit_code == 2
+    Path("taken/Door.sct.xmi").mkdir(parents=True)
+    answer = run("transform", door, "--to", "xmi", "-o", "taken")
+    assert answer.exit_code == 2
+    assert "Door.sct.xmi is a folder" in answer.stderr
+    assert tree(Path("taken")) == {}
+
+
+def test_the_configuration_near_the_model(run: Run, door: Path) -> None:
+    (door.parent / "settings").mkdir()
+    (door.parent / "settings" / "controller-config.json").write_text('{"package": {"name": "my_door"}}')
+    run("transform", door, "--to", "ros1", "-o", "out")
+    assert Path("out/ros1/my_door/package.xml").exists()
+    Path("other.json").write_text('{"package": {"name": "your_door"}}')
+    run("transform", door, "--to", "ros1", "-o", "out", "--config", "other.json")
+    assert Path("out/ros1/your_door/package.xml").exists()
+
+
+def test_a_configuration_with_errors(run: Run, door: Path) -> None:
+    Path("controller-config.json").write_text('{\n  "controlLoop": {"periodMS": 3}\n}\n')
+    answer = run("transform", door.name, "--to", "cif")
+    assert answer.exit_code == 1
+    assert answer.stdout.startswith('controller-config.json:2:19: error: unknown key "controlLoop.periodMS"')
+    assert '\n      "controlLoop": {"periodMS": 3}\n                      ^^^^^^^^^^\n' in answer.stdout
+    assert 'hint: did you mean "periodMs"?' in answer.stdout
+    assert run("transform", door, "--to", "cif", "--config", "missing.json").exit_code == 2
+
+
+def test_copies_of_the_packages(run: Run, door: Path) -> None:
+    (door.parent / "controller-config.json").write_text(
+        '{"output": {"ros1ControllerNodeLocation": "workspace/src/door", "ros2ControllerNodeLocation": "two"}}'
+    )
+    answer = run("transform", door, "--to", "ros1,cif", "-o", "out")
+    assert answer.exit_code == 0, answer.output
+    package = tree(Path("out/ros1/door_controller"))
+    assert "package.xml" in package
+    assert tree(Path("workspace/src/door")) == package
+    assert not Path("two").exists()
