@@ -45,6 +45,7 @@ class _Cover:
         self._encoding = encoding
         self._wanted = wanted
         self._spared = spared
+        self._cube = encoding.diagrams.cube(level for each in encoding.layout.state for level in each.levels)
         self._domains = sorted(encoding.layout.state, key=_telling)
 
     def products(self) -> Iterator[Product]:
@@ -96,8 +97,8 @@ class _Cover:
 
     def _values_in(self, states: Diagram, domain: Domain) -> Ranges:
         """The codes that an element has in the states."""
-        others = [level for each in self._encoding.layout.state if each is not domain for level in each.levels]
-        return codes(states.exists(self._encoding.diagrams.cube(others)), domain)
+        others = self._cube.exists(self._encoding.diagrams.cube(domain.levels))
+        return codes(states.exists(others), domain)
 
     def _states(self, product: Product) -> Diagram:
         result = self._encoding.diagrams.true

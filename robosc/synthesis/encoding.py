@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 Element: TypeAlias = "sct.Plant | sct.DiscreteVariable | sct.Input"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Domain:
     """A finite set of values, coded 0 … size-1, and the levels of its bits, most significant first.
 
@@ -107,6 +107,7 @@ class Encoding:
     def __init__(self, layout: Layout, diagrams: Diagrams) -> None:
         self.layout = layout
         self.diagrams = diagrams
+        self._between: dict[tuple[Element, int, int], Diagram] = {}
 
     def bits(self, element: Element) -> tuple[Diagram, ...]:
         """The bits of an element's code, least significant first."""
@@ -128,10 +129,13 @@ class Encoding:
 
     def between(self, element: Element, first: int, last: int) -> Diagram:
         """Where the element's code is one of first … last."""
-        code = (*self.bits(element), self.diagrams.false)
-        return ~arithmetic.less(code, arithmetic.constant(self.diagrams, first)) & ~arithmetic.less(
-            arithmetic.constant(self.diagrams, last), code
-        )
+        known = self._between.get((element, first, last))
+        if known is None:
+            code = (*self.bits(element), self.diagrams.false)
+            known = ~arithmetic.less(code, arithmetic.constant(self.diagrams, first))
+            known &= ~arithmetic.less(arithmetic.constant(self.diagrams, last), code)
+            self._between[element, first, last] = known
+        return known
 
     def becomes(self, element: Element, code: Vector) -> Diagram:
         """Where the element's next code is the given one."""

@@ -108,21 +108,23 @@ class Oracle:
 
     def successors(self, event: sct.Event, state: State) -> dict[State, dict[sct.Input, Any]]:
         """The states after the event, each with input values that lead there."""
-        edges = self.edges(event, state)
-        if edges is None:
+        if self.edges(event, state) is None:
             return {}
         reached: dict[State, dict[sct.Input, Any]] = {}
-        for values in product(*(_values(each.type) for each in event.inputs)):
+        for values in product(*(values_of(each.type) for each in event.inputs)):
             inputs = dict(zip(event.inputs, values, strict=True))
-            after = list(state)
-            for edge in edges:
-                after[self.places[edge.target.eContainer()]] = edge.target
-                for update in edge.updates:
-                    after[self.places[update.variable]] = _saturated(
-                        self.value(update.value, state, inputs), update.variable.type
-                    )
-            reached.setdefault(tuple(after), inputs)
+            reached.setdefault(self.successor(event, state, inputs), inputs)
         return reached
+
+    def successor(self, event: sct.Event, state: State, inputs: dict[sct.Input, Any]) -> State:
+        """The state after an enabled event."""
+        after = list(state)
+        for edge in self.edges(event, state) or ():
+            after[self.places[edge.target.eContainer()]] = edge.target
+            for update in edge.updates:
+                value = self.value(update.value, state, inputs)
+                after[self.places[update.variable]] = _saturated(value, update.variable.type)
+        return tuple(after)
 
     def required(self, event: sct.Event, state: State) -> bool:
         """Whether the requirements let the event happen."""
@@ -188,7 +190,8 @@ class Oracle:
         return bool(after) and self.required(event, state) and all(each in self.controlled for each in after)
 
 
-def _values(kind: ex.Type) -> list[Any]:
+def values_of(kind: ex.Type) -> list[Any]:
+    """All values of a type."""
     match kind:
         case ex.BooleanType():
             return [False, True]

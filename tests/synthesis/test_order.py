@@ -1,0 +1,39 @@
+"""The static variable order."""
+
+import random
+from itertools import pairwise
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from robosc.synthesis.order import total_span, variable_order
+
+
+def hypergraphs():
+    sizes = st.integers(1, 12)
+    return sizes.flatmap(
+        lambda size: st.tuples(
+            st.just(size), st.lists(st.lists(st.integers(0, size - 1), min_size=1, unique=True), max_size=12)
+        )
+    )
+
+
+@given(hypergraphs())
+def test_it_is_an_order_and_never_worse_than_the_given_one(hypergraph):
+    size, edges = hypergraph
+    order = variable_order(size, edges)
+    assert sorted(order) == list(range(size))
+    assert total_span(order, edges) <= total_span(range(size), edges)
+
+
+def test_a_scrambled_chain_is_put_straight():
+    names = list(range(60))
+    random.Random(1).shuffle(names)  # noqa: S311
+    edges = [[a, b] for a, b in pairwise(names)]
+    assert total_span(range(60), edges) > 1000
+    assert total_span(variable_order(60, edges), edges) == 59
+
+
+def test_cells_that_share_nothing_are_kept_together():
+    edges = [[cell, cell + 30, cell + 60] for cell in range(30)]
+    assert total_span(variable_order(90, edges), edges) == 60

@@ -1,0 +1,103 @@
+"""What synthesis keeps of its promises besides the right supervisor."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from robosc.diagnostics import ModelError
+from robosc.expressions import SctPrinter
+from robosc.synthesis import bdd, synthesize
+from tests.sct_models import edge, model, needs, plant
+from tests.synthesis.classics import philosophers
+
+ROOT = Path(__file__).parents[2]
+SCRIPT = """
+from robosc.expressions import SctPrinter
+from robosc.synthesis import synthesize
+from tests.synthesis.classics import philosophers
+synthesis = synthesize(philosophers(6))
+print(synthesis.bdd_nodes, synthesis.controlled_states)
+print([SctPrinter()(each.synthesis) for each in synthesis.supervisor.guards])
+"""
+
+
+def test_every_run_gives_the_same():
+    outputs = {
+        subprocess.run(
+            [sys.executable, "-c", SCRIPT],
+            cwd=ROOT,
+            env={**os.environ, "PYTHONHASHSEED": seed},
+            capture_output=True,
+            check=True,
+            text=True,
+        ).stdout
+        for seed in ("0", "1", "2")
+    }
+    assert len(outputs) == 1
+
+
+def described(synthesis):
+    text = SctPrinter()
+    guards = [each.synthesis and text(each.synthesis) for each in synthesis.supervisor.guards]
+    return synthesis.uncontrolled_states, synthesis.controlled_states, synthesis.bdd_nodes, guards
+
+
+def test_diagrams_grow_until_they_suffice(monkeypatch):
+    expected = described(synthesize(philosophers(5)))
+    runs = []
+    monkeypatch.setattr(bdd, "_FIRST_CAPACITY", 64)
+    monkeypatch.setattr(bdd, "Diagrams", bdd.Diagrams)
+    original = bdd.Diagrams.__init__
+    monkeypatch.setattr(
+        bdd.Diagrams, "__init__", lambda self, *arguments: (runs.append(arguments), original(self, *arguments))[1]
+    )
+    assert described(synthesize(philosophers(5))) == expected
+    assert len(runs) > 1
+
+
+def test_memory_is_bounded():
+    with pytest.raises(MemoryError, match="more than 1 MiB"):
+        synthesize(products(24), memory=1 << 20)
+
+
+def products(number):
+    """A variable that is the product of two others: every order needs very many nodes."""
+    return model(
+        [
+            plant(
+                "P",
+                {"only": [edge("u", do={"z": "x * y", "v": "x", "w": "y"})]},
+                uncontrollable={"u": ["x", "y"]},
+                variables=dict.fromkeys("vwz", f"0..{2**number}"),
+                inputs=dict.fromkeys("xy", f"0..{2 ** (number // 2)}"),
+            )
+        ]
+    )
+
+
+@pytest.mark.parametrize("condition", ["v / 2 > 1", "double(v) > 1", "1.5 > 1.0"])
+def test_doubles_are_refused_where_they_stand(condition):
+    made = model(
+        [plant("P", {"only": [edge("c")]}, controllable=["c"], variables={"v": "0..3"})], [needs("c", condition)]
+    )
+    for each in (made.requirements[0].condition, made.requirements[0].condition.left):
+        each.source = "robot.rscd:3:7-3:16"
+    with pytest.raises(ModelError, match="has no place in an sct model") as caught:
+        synthesize(made)
+    [finding] = caught.value.diagnostics
+    assert (finding.file, finding.span.line, finding.span.column, finding.rule) == ("robot.rscd", 3, 7, "type")
+
+
+def test_data_that_comes_with_a_controllable_event_is_refused():
+    made = model([plant("P", {"only": [edge("c")]}, controllable={"c": ["x"]}, inputs={"x": "bool"})])
+    with pytest.raises(ModelError, match=r"P\.c carries inputs"):
+        synthesize(made)
+
+
+def test_the_model_stays_as_it_is():
+    made = philosophers(3)
+    synthesize(made)
+    assert made.supervisor is None
