@@ -71,16 +71,17 @@ class Obstacle:
 
 @dataclass
 class World:
-    """The robot on the plane; it starts on the line and looks along it."""
+    """The robot on the plane; it starts beside the line and looks along it."""
 
     track: Track = field(default_factory=Track)
     obstacle: Obstacle | None = None
     x: float = 0.0
-    y: float = -Track.radius
+    y: float = 0.06 - Track.radius
     heading: float = 0.0
     linear: float = 0.0
     angular: float = 0.0
     travelled: float = 0.0
+    line_covered: bool = False
 
     def command(self, linear: float, angular: float) -> None:
         """The speeds to hold from now on, within what the motors can."""
@@ -123,7 +124,9 @@ class World:
         self.obstacle = Obstacle(x, y)
 
     def correction(self) -> float | None:
-        """How many pixels the line lies to the right of the image's centre; None where it is out of the image."""
+        """How many pixels the line lies to the right of the image's centre; None where it can't be seen."""
+        if self.line_covered:
+            return None
         x = self.x + LOOK_AHEAD * math.cos(self.heading)
         y = self.y + LOOK_AHEAD * math.sin(self.heading)
         _, line_x, line_y = self.track.nearest(x, y)
@@ -147,20 +150,24 @@ class World:
         return seen if RANGE_MIN <= seen <= RANGE_MAX else math.inf
 
 
-#: What happens to the robot, and when: half a minute of line, an obstacle that goes away again, a stop button.
+#: What happens to the robot, and when: half a minute of line, an obstacle that goes away again, a stop button, a
+#: line that can't be seen for a while.
 DEMONSTRATION = (
     (30.0, "obstacle"),
     (36.0, "clear"),
     (39.0, "/stop"),
     (42.0, "/continue"),
-    (45.0, "end"),
+    (45.0, "cover"),
+    (47.0, "uncover"),
+    (50.0, "end"),
 )
 
 
 class Simulation:
     """A world in which a scenario takes place; it says what its sensors and its people send.
 
-    The scenario is a sequence of times and happenings: `obstacle`, `clear`, `end`, or a topic for an empty message.
+    The scenario is a sequence of times and happenings: `obstacle`, `clear`, `cover` and `uncover` (the line), `end`, or
+    a topic for an empty message.
     """
 
     def __init__(self, scenario: tuple[tuple[float, str], ...] = DEMONSTRATION) -> None:
@@ -168,11 +175,18 @@ class Simulation:
         self.steps = 0
         self.ended = False
         self._scenario = list(scenario)
+        buttons = [happening for _, happening in scenario if happening.startswith("/")]
+        #: All topics that something may be sent to.
+        self.topics = [*dict.fromkeys(["/correction", "/no_line", "/scan", *buttons])]
 
     @property
     def time(self) -> float:
         """Seconds since the start."""
         return self.steps * STEP
+
+    def due(self, period: float) -> bool:
+        """Whether something that happens once a period happens now."""
+        return self.steps % round(period / STEP) == 0
 
     def advance(self) -> list[tuple[str, object]]:
         """One time step; what is sent after it, as topics and data: a number, a list of ranges, or None."""
@@ -181,28 +195,41 @@ class Simulation:
         messages: list[tuple[str, object]] = []
         while self._scenario and self._scenario[0][0] <= self.time:
             happening = self._scenario.pop(0)[1]
-            if happening == "obstacle":
-                self.world.place_obstacle(ahead=1.0)
-            elif happening == "clear":
-                self.world.obstacle = None
-            elif happening == "end":
-                self.ended = True
-            else:
+            if happening.startswith("/"):
                 messages.append((happening, None))
-        return messages + self.sensed()
+            else:
+                self._happen(happening)
+        return messages + self._sensed()
 
-    def sensed(self) -> list[tuple[str, object]]:
-        """What the sensors send at this time."""
+    def pose(self) -> dict[str, float | None]:
+        """Where the robot is: how far it came, how far it is from the line and from the obstacle, if there is one."""
+        gap = self.world.gap
+        return {
+            "travelled": self.world.travelled,
+            "offset": self.world.offset,
+            "gap": None if math.isinf(gap) else gap,
+        }
+
+    def _happen(self, happening: str) -> None:
+        if happening == "obstacle":
+            self.world.place_obstacle(ahead=1.0)
+        elif happening == "clear":
+            self.world.obstacle = None
+        elif happening in ("cover", "uncover"):
+            self.world.line_covered = happening == "cover"
+        elif happening == "end":
+            self.ended = True
+        else:
+            raise ValueError(f"nothing is called {happening}")
+
+    def _sensed(self) -> list[tuple[str, object]]:
         messages: list[tuple[str, object]] = []
-        if self._due(CAMERA_PERIOD):
+        if self.due(CAMERA_PERIOD):
             correction = self.world.correction()
             messages.append(("/no_line", None) if correction is None else ("/correction", correction))
-        if self._due(LIDAR_PERIOD):
+        if self.due(LIDAR_PERIOD):
             messages.append(("/scan", self.world.scan()))
         return messages
-
-    def _due(self, period: float) -> bool:
-        return self.steps % round(period / STEP) == 0
 
 
 def main() -> None:

@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from robosc.diagnostics import Diagnostic, Severity
+from robosc.diagnostics import START, Diagnostic, Severity
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph
-from robosc.metamodel.places import START, place
+from robosc.metamodel.places import place
 from robosc.metamodel.reflection import tree
 
 if TYPE_CHECKING:

@@ -1,0 +1,141 @@
+"""Runs the demonstration over a middleware: `world_ros1.py` and `world_ros2.py` bring the connection.
+
+In real time by default. With `--lockstep` the world gives the time (`/clock`; start the controller with `use_sim_time`)
+and runs up to five times as fast, never further ahead of the last command than two ticks of the controller: what comes
+out does not depend on how busy the machine is.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import os
+import queue
+import time
+from abc import ABC, abstractmethod
+from pathlib import Path
+
+from world import POSE_PERIOD, RANGE_MAX, RANGE_MIN, RAYS, STEP, Simulation
+
+LOCKSTEP_SPEED = 5
+ANSWER_WITHIN = 0.2
+PATIENCE = 30.0
+
+
+class Connection(ABC):
+    """Topics of a middleware. `topics` are the ones that it publishes; each command goes to `on_command`."""
+
+    @abstractmethod
+    def connected(self):
+        """Whether somebody listens to every topic."""
+
+    @abstractmethod
+    def clock(self, seconds):
+        """Tells everyone the time."""
+
+    @abstractmethod
+    def publish(self, topic, data, seconds):
+        """Sends a number, ranges of the lidar, or nothing (None) to a topic, stamped with a time."""
+
+    @abstractmethod
+    def receive(self, seconds):
+        """Waits so long, in real time, while commands come in."""
+
+    @abstractmethod
+    def close(self):
+        """Ends the connection."""
+
+    @staticmethod
+    def scan_geometry():
+        """What a lidar's message says beside the ranges."""
+        return {
+            "angle_min": 0.0,
+            "angle_max": 2 * math.pi * (RAYS - 1) / RAYS,
+            "angle_increment": 2 * math.pi / RAYS,
+            "range_min": RANGE_MIN,
+            "range_max": RANGE_MAX,
+        }
+
+
+class Runner:
+    """A simulation, connected, with a record of everything that crosses the connection."""
+
+    def __init__(self, connect, lockstep, record):
+        self.simulation = Simulation()
+        self.commands = queue.SimpleQueue()
+        self.connection = connect(self.simulation.topics, lambda *speeds: self.commands.put(speeds))
+        self.lockstep = lockstep
+        self.record = record
+        self.answered = 0.0
+
+    def run(self):
+        """Plays the scenario to its end; says whether it got there."""
+        if not self.waited_for(self.connection.connected):
+            return False
+        started = time.monotonic()
+        while not self.simulation.ended:
+            for topic, data in self.simulation.advance():
+                self.connection.publish(topic, data, self.simulation.time)
+                self.note(topic, self.in_short(data))
+            if self.simulation.due(POSE_PERIOD):
+                self.note("pose", self.simulation.pose())
+            if self.lockstep:
+                self.connection.clock(self.simulation.time)
+                self.receive(STEP / LOCKSTEP_SPEED)
+                if not self.waited_for(self.has_answer):
+                    return False
+            else:
+                self.receive(max(0.0, started + self.simulation.time - time.monotonic()))
+        return True
+
+    def receive(self, seconds):
+        """Waits, then obeys the commands that have come."""
+        self.connection.receive(seconds)
+        while not self.commands.empty():
+            linear, angular = self.commands.get()
+            self.simulation.world.command(linear, angular)
+            self.answered = self.simulation.time
+            self.note("/cmd_vel", [linear, angular])
+
+    def has_answer(self):
+        """Whether the last command is recent enough to drive on with."""
+        return self.simulation.time - self.answered < ANSWER_WITHIN
+
+    def waited_for(self, condition):
+        """Waits until a condition holds; says whether it does. The time, where it was not heard, is told again."""
+        until = time.monotonic() + PATIENCE
+        while not condition():
+            if time.monotonic() > until:
+                return False
+            if self.lockstep:
+                self.connection.clock(self.simulation.time)
+            self.receive(0.02)
+        return True
+
+    def note(self, topic, data):
+        """Writes a line to the record."""
+        self.record.write(json.dumps({"time": round(self.simulation.time, 3), "topic": topic, "data": data}) + "\n")
+
+    @staticmethod
+    def in_short(data):
+        """The data; of a scan only how far the nearest thing is (None: nothing was seen)."""
+        if not isinstance(data, list):
+            return data
+        return None if math.isinf(min(data)) else min(data)
+
+
+def main(connect, arguments):
+    """The command line; the exit status is 0 where the scenario was played to its end."""
+    parser = argparse.ArgumentParser(description="A simulated world with a line, an obstacle and a robot.")
+    parser.add_argument("--lockstep", action="store_true", help="publish /clock and run as fast as commands come")
+    parser.add_argument("--record", help="write what happened to this file, one JSON object a line")
+    options = parser.parse_args(arguments)
+    with Path(options.record or os.devnull).open("w", encoding="utf-8") as record:
+        runner = Runner(connect, options.lockstep, record)
+        try:
+            return 0 if runner.run() else 1
+        except KeyboardInterrupt:
+            return 1
+        finally:
+            runner.connection.close()

@@ -1,0 +1,120 @@
+"""The ROS installations of this machine, and what it takes to build and run packages with them."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import socket
+import subprocess
+from dataclasses import dataclass, field
+from pathlib import Path
+
+
+@dataclass(frozen=True)
+class Ros:
+    """An installation: the environment of its programs, its Python, and how a workspace is built."""
+
+    version: int
+    environment: dict[str, str]
+    python: str
+    build: list[str]
+    executables: str
+
+    def built(self, workspace: Path) -> str:
+        """Builds the packages below `src` of a workspace; what the build said. Fails where the build does."""
+        done = subprocess.run(
+            self.build,
+            cwd=workspace,
+            env=self.environment,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            timeout=600,
+            check=False,
+        )
+        assert done.returncode == 0, done.stdout[-4000:]
+        return done.stdout
+
+    def executable(self, workspace: Path, name: str) -> Path:
+        """A program of the package of the same name in a built workspace."""
+        return workspace / self.executables.format(name=name) / name
+
+
+@dataclass
+class Found:
+    """An installation, or the reason why there is none."""
+
+    ros: Ros | None = None
+    missing: list[str] = field(default_factory=list)
+
+
+def find_ros1() -> Found:
+    """ROS 1 as Debian packages it, all in /usr, or one below /opt/ros."""
+    found = Found()
+    if Path("/usr/share/roscpp/package.xml").exists():
+        environment = _plain_environment() | {"ROS_PACKAGE_PATH": "/usr/share", "ROS_ETC_DIR": "/etc/ros"}
+        python, prefix = "/usr/bin/python3", Path("/usr")
+    else:
+        sourced = _sourced("roscpp")
+        if sourced is None:
+            found.missing.append("no roscpp in /usr/share (Debian: libroscpp-dev) or /opt/ros")
+            return found
+        environment, prefix = sourced
+        python = shutil.which("python3", path=environment["PATH"]) or "python3"
+    needed = ["geometry_msgs", "roslaunch", "rospy", "sensor_msgs", "std_msgs"]
+    found.missing += [f"no {each}" for each in needed if not (prefix / "share" / each / "package.xml").exists()]
+    found.missing += [f"no {each}" for each in ("catkin_make", "cmake", "g++") if not _has(each, environment)]
+    if not found.missing:
+        build = ["catkin_make", f"-DPYTHON_EXECUTABLE={python}"]
+        found.ros = Ros(1, environment, python, build, "devel/lib/{name}")
+    return found
+
+
+def find_ros2() -> Found:
+    """The ROS 2 that this environment names (AMENT_PREFIX_PATH), or one below /opt/ros, if it has rclcpp."""
+    found = Found()
+    environment = dict(os.environ)
+    prefixes = [Path(each) for each in environment.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if each]
+    if not any((each / "share/rclcpp/package.xml").exists() for each in prefixes):
+        sourced = _sourced("rclcpp")
+        if sourced is None:
+            found.missing.append("no rclcpp in AMENT_PREFIX_PATH or /opt/ros")
+            return found
+        environment = sourced[0]
+    found.missing += [f"no {each}" for each in ("colcon", "cmake", "g++") if not _has(each, environment)]
+    if not found.missing:
+        environment |= {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST", "ROS_LOCALHOST_ONLY": "1"}
+        python = shutil.which("python3", path=environment["PATH"]) or "python3"
+        build = ["colcon", "build", "--event-handlers", "console_cohesion+", "--cmake-args", "-DBUILD_TESTING=OFF"]
+        found.ros = Ros(2, environment, python, build, "install/{name}/lib/{name}")
+    return found
+
+
+def free_port() -> int:
+    """A TCP port that nobody listens to."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port: int = probe.getsockname()[1]
+        return port
+
+
+def _has(program: str, environment: dict[str, str]) -> bool:
+    return shutil.which(program, path=environment["PATH"]) is not None
+
+
+def _plain_environment() -> dict[str, str]:
+    """An environment without any Python or ROS of the tests' own."""
+    kept = {name: os.environ[name] for name in ("HOME", "LANG", "LC_ALL", "USER") if name in os.environ}
+    return kept | {"PATH": "/usr/sbin:/usr/bin:/sbin:/bin"}
+
+
+def _sourced(package: str) -> tuple[dict[str, str], Path] | None:
+    for setup in sorted(Path("/opt/ros").glob("*/setup.sh"), reverse=True):
+        if (setup.parent / "share" / package / "package.xml").exists():
+            script = f'. "{setup}" && env -0'
+            shown = subprocess.run(
+                ["bash", "-c", script], env=_plain_environment(), capture_output=True, text=True, check=True
+            )
+            pairs = (each.split("=", 1) for each in shown.stdout.split("\0") if "=" in each)
+            return {name: value for name, value in pairs}, setup.parent
+    return None

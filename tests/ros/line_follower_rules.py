@@ -1,0 +1,89 @@
+"""What the line follower may send and when, written down by hand from its requirements: the tests' second opinion."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+Entry = Mapping[str, Any]
+
+MOVE = "message_move.c_trigger"
+HALT = "message_halt.c_trigger"
+
+
+@dataclass
+class Inputs:
+    """What the controller has been told."""
+
+    correction: float | None = None
+    clear: bool = False
+    stopped: bool = False
+
+    @property
+    def may_move(self) -> bool:
+        return self.correction is not None and self.clear and not self.stopped
+
+    def hear(self, topic: str, data: Any) -> None:
+        """Takes in a message; of a scan `data` says whether the way is clear."""
+        match topic:
+            case "correction":
+                self.correction = data
+            case "no_line":
+                self.correction = None
+            case "scan":
+                self.clear = data
+            case "stop":
+                self.stopped = True
+            case "continue":
+                self.stopped = False
+
+
+def violations(log: Iterable[Entry]) -> list[str]:
+    """What the event log of a node shows that must not be: each command in the node's own order, so this is exact."""
+    inputs = Inputs()
+    found = []
+    for entry in log:
+        plant, _, event = entry["event"].partition(".")
+        value = entry.get("data", {}).get("value")
+        if event == "u_response":
+            topic = plant.removeprefix("message_")
+            inputs.hear(topic, value == "clear" if topic == "scan" else value)
+        elif entry["event"] == MOVE:
+            wanted = {"linear": {"x": 0.2}, "angular": {"z": -(inputs.correction or 0.0) / 100}}
+            if not inputs.may_move:
+                found.append(f"at {entry['time']}: move, told {inputs}")
+            elif value != wanted:
+                found.append(f"at {entry['time']}: move with {value} instead of {wanted}")
+        elif entry["event"] == HALT and inputs.may_move:
+            found.append(f"at {entry['time']}: halt, told {inputs}")
+    return found
+
+
+def commands_in(log: Iterable[Entry]) -> list[tuple[float, float]]:
+    """The linear and angular speeds that a node says it has sent."""
+    sent = (entry["data"]["value"] for entry in log if entry["event"] in (MOVE, HALT))
+    return [(each["linear"]["x"], each["angular"]["z"]) for each in sent]
+
+
+def late_moves(record: Sequence[Entry], allowance: float, front: float) -> list[str]:
+    """Moves that the world received although all that it sent for so many seconds forbade them.
+
+    `front` is the distance from which on the way is clear. This needs nothing of what the node says about itself; it
+    is not exact, as messages are on their way for a while.
+    """
+    inputs = Inputs()
+    forbidden_since: float | None = 0.0
+    found = []
+    for entry in record:
+        topic, data, time = entry["topic"].removeprefix("/"), entry["data"], entry["time"]
+        if topic == "cmd_vel":
+            if data != [0.0, 0.0] and forbidden_since is not None and time - forbidden_since > allowance:
+                found.append(f"at {time}: {data}, forbidden since {forbidden_since}")
+            continue
+        inputs.hear(topic, (data is None or data > front) if topic == "scan" else data)
+        if inputs.may_move:
+            forbidden_since = None
+        elif forbidden_since is None:
+            forbidden_since = time
+    return found

@@ -1,0 +1,81 @@
+"""Programs that a test starts and that don't outlive it."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import time
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+    from pathlib import Path
+    from types import TracebackType
+
+_SECONDS_TO_END = 10
+
+
+class Processes:
+    """Starts programs, each with a log file and as a process group of its own; at the end all are stopped."""
+
+    def __init__(self, environment: dict[str, str], logs: Path) -> None:
+        self._environment = environment
+        self._logs = logs
+        self._started: list[tuple[str, subprocess.Popen[bytes]]] = []
+
+    def start(self, name: str, command: Sequence[str | Path]) -> subprocess.Popen[bytes]:
+        """Starts a program; `name` names its log."""
+        with (self._logs / f"{name}.log").open("wb") as log:
+            process = subprocess.Popen(
+                [str(each) for each in command],
+                env=self._environment,
+                cwd=self._logs,
+                stdin=subprocess.DEVNULL,
+                stdout=log,
+                stderr=subprocess.STDOUT,
+                start_new_session=True,
+            )
+        self._started.append((name, process))
+        return process
+
+    def wait_until(self, condition: Callable[[], bool], what: str, seconds: float = 30) -> None:
+        """Waits for something that the programs do; fails with their logs where it takes too long."""
+        until = time.monotonic() + seconds
+        while not condition():
+            assert time.monotonic() < until, f"{what}: not within {seconds} s\n{self.logs()}"
+            time.sleep(0.05)
+
+    def stop(self, process: subprocess.Popen[bytes]) -> int:
+        """Interrupts a program, as Ctrl-C does; its exit status. It has ten seconds to end."""
+        self._signal(process, signal.SIGINT)
+        try:
+            return process.wait(_SECONDS_TO_END)
+        except subprocess.TimeoutExpired:
+            return -1
+
+    def logs(self) -> str:
+        """What the programs wrote."""
+        texts = ((name, (self._logs / f"{name}.log").read_text(errors="replace")) for name, _ in self._started)
+        return "\n".join(f"--- {name}\n{text[-3000:]}" for name, text in texts)
+
+    def __enter__(self) -> Processes:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        for _, process in reversed(self._started):
+            if process.poll() is None:
+                self.stop(process)
+        for _, process in self._started:
+            # What a program has left behind is in its group.
+            self._signal(process, signal.SIGKILL)
+            process.wait()
+
+    @staticmethod
+    def _signal(process: subprocess.Popen[bytes], number: signal.Signals) -> None:
+        try:
+            os.killpg(process.pid, number)
+        except ProcessLookupError:
+            pass

@@ -1,0 +1,99 @@
+"""The line follower drives: a generated package, built by the platform's own tool, on real topics.
+
+Times and happenings are those of the example's demonstration. How fast the machine is does not matter: simulated time
+waits for the controller.
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+from tests.ros.line_follower_rules import commands_in, late_moves, violations
+
+if TYPE_CHECKING:
+    from tests.ros.conftest import Drive
+
+#: Seconds for a message on its way and for the ticks that answer it.
+TRANSPORT = 0.5
+OBSTACLE, CLEAR, STOP, CONTINUE, COVER, UNCOVER, END = 30.0, 36.0, 39.0, 42.0, 45.0, 47.0, 50.0
+
+
+def test_builds_without_warnings(drive: Drive) -> None:
+    assert "warning" not in drive.build.lower().replace("-- ==> ", "")
+
+
+def test_follows_the_line_for_thirty_seconds(drive: Drive) -> None:
+    poses = drive.poses(end=OBSTACLE)
+    assert len(poses) > 290
+    assert max(each["offset"] for each in poses) < 0.1
+    assert max(each["offset"] for each in poses[50:]) < 0.05
+    assert poses[-1]["travelled"] > 0.2 * OBSTACLE * 0.95
+    assert all(linear == 0.2 for _, linear, _ in drive.commands(1.0, OBSTACLE))
+
+
+def test_halts_for_the_obstacle_and_goes_on_when_it_is_gone(drive: Drive) -> None:
+    waiting = drive.commands(OBSTACLE + 4.0, CLEAR)
+    assert waiting
+    assert all(command[1:] == (0.0, 0.0) for command in waiting)
+    gaps = [each["gap"] for each in drive.poses(OBSTACLE + 0.1, CLEAR)]
+    assert 0.2 < min(gaps) < 0.4
+    assert moves(drive, CLEAR + TRANSPORT, STOP)
+
+
+def test_halts_for_the_stop_button_until_continue(drive: Drive) -> None:
+    stopped = drive.commands(STOP + TRANSPORT, CONTINUE)
+    assert stopped
+    assert all(command[1:] == (0.0, 0.0) for command in stopped)
+    assert moves(drive, CONTINUE + TRANSPORT, COVER)
+
+
+def test_halts_without_a_line(drive: Drive) -> None:
+    blind = drive.commands(COVER + TRANSPORT, UNCOVER)
+    assert blind
+    assert all(command[1:] == (0.0, 0.0) for command in blind)
+    assert moves(drive, UNCOVER + TRANSPORT, END)
+
+
+def test_moves_only_in_states_that_allow_it(drive: Drive) -> None:
+    assert violations(drive.log) == []
+    assert late_moves(drive.record, TRANSPORT, front=0.5) == []
+
+
+def test_what_is_received_is_what_was_decided(drive: Drive) -> None:
+    received = [(linear, angular) for _, linear, angular in drive.commands()]
+    decided = commands_in(drive.log)
+    starts = [at for at in range(3) if decided[at : at + len(received)] == received]
+    assert starts, "the commands on /cmd_vel are not those in the event log"
+    assert len(decided) - len(received) < 6
+
+
+def test_answers_in_every_tick(drive: Drive) -> None:
+    times = [each["time"] for each in drive.log if each["direction"] == "out"]
+    assert max(later - earlier for earlier, later in pairwise(times)) < 0.25
+
+
+def test_reports_state_and_definition(drive: Drive) -> None:
+    definitions = [each["data"] for each in drive.reports if each["topic"] == "definition"]
+    states = [each["data"] for each in drive.reports if each["topic"] == "state"]
+    assert len(definitions) == 1
+    assert [each["name"] for each in definitions[0]["components"]] == ["LineDetector", "Lidar", "EmergencyStop"]
+    seen = {(name, component["state"]) for each in states for name, component in each["components"].items()}
+    declared = {(each["name"], state["name"]) for each in definitions[0]["components"] for state in each["states"]}
+    assert seen == declared
+    assert sum(event == "message_stop.u_response" for each in states for event in each["transitions"]) == 1
+    assert all(each["transitions"] for each in states[1:])
+    # At most once a tick, and nearly always: in every tick something is sent.
+    assert END * 10 * 0.9 < len(states) <= END * 10 + 2
+
+
+def test_ends_cleanly_and_without_complaint(drive: Drive) -> None:
+    assert drive.node_status == 0
+    assert "WARN" not in drive.node_output
+    assert "ERROR" not in drive.node_output
+
+
+def moves(drive: Drive, start: float, end: float) -> bool:
+    """Whether the robot was told to move, all the time and the way the model says."""
+    commands = drive.commands(start, end)
+    return bool(commands) and all(linear == 0.2 for _, linear, _ in commands)
