@@ -43,7 +43,6 @@ class Effects:
         self.names = names
         self.ranges = ranges
         self.helpers: set[str] = set()
-        self.reads_inputs = False
 
     def statements(self, plants: dict[sct.Plant, Edges]) -> tuple[list[str], bool]:
         """The statements of an event whose plants take these edges, and whether they read a copy of the state, `old`.
@@ -144,7 +143,6 @@ class Effects:
         return _chain(steps, plant, list(edges), printer)
 
     def _assignment(self, update: sct.Update, printer: CPrinter) -> str:
-        self.reads_inputs |= any(isinstance(each, sct.Input) for each in self.ranges.cells(update.value))
         return f"state->{self.names.member(update.variable)} = {self._stored(update, printer)};"
 
     def _stored(self, update: sct.Update, printer: CPrinter) -> str:

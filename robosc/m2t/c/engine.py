@@ -99,7 +99,7 @@ class _Engine:
             "guards": guarded,
             "guards_read_state": any("state->" in line for each in guarded for line in each["lines"]),
             "effects": executed,
-            "effects_read_inputs": effects.reads_inputs,
+            "effects_read_inputs": any("inputs->" in line for each in executed for line in each["lines"]),
             "helpers": sorted(effects.helpers),
             "arrived": [each for each in arrived if each is not None],
             "moved": self.moved(),

@@ -104,15 +104,13 @@ def program(model: sct.SupervisoryControlModel) -> str:
                 values.append(f'printf(" %s", {names.lookup(each.type.enumeration)}({member}));')
             else:
                 values.append(f'printf(" %lld", (long long){member});')
-    inputs = [each for plant in model.plants for each in plant.inputs]
+    inputs = [f"robot->inputs.{names.member(each)}" for plant in model.plants for each in plant.inputs]
     return _PROGRAM % {
         "p": names.prefix,
         "u": names.macro,
         "state": "\n".join(f"        {each}" for each in values),
         "inputs": "\n".join(
-            f"    case {number}: robot->inputs.{names.member(each)} = (__typeof__(robot->inputs.{names.member(each)}))value;"
-            " break;"
-            for number, each in enumerate(inputs)
+            f"    case {number}: {member} = (__typeof__({member}))value; break;" for number, member in enumerate(inputs)
         ),
     }
 

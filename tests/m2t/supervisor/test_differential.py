@@ -4,7 +4,7 @@ import os
 import tempfile
 from pathlib import Path
 
-from hypothesis import HealthCheck, assume, given, settings
+from hypothesis import HealthCheck, Phase, assume, given, settings
 from hypothesis import strategies as st
 
 from robosc import config
@@ -18,9 +18,12 @@ from tests.random_sct import sct_models
 
 MODELS = int(os.environ.get("ROBOSC_MODELS", "8"))
 _few = settings(
-    max_examples=MODELS, deadline=None, derandomize="ROBOSC_MODELS" not in os.environ,
+    max_examples=MODELS,
+    deadline=None,
+    derandomize="ROBOSC_MODELS" not in os.environ,
+    phases=(Phase.explicit, Phase.generate),
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much, HealthCheck.data_too_large],
-)  # fmt: skip
+)
 _settings = st.builds(
     Settings,
     events_per_tick=st.sampled_from((0, 0, 1, 2)),

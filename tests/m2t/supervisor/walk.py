@@ -11,7 +11,7 @@ class Walk:
     """Performs random operations; `script` and `said` grow with each."""
 
     def __init__(self, model: sct.SupervisoryControlModel, settings: Settings, seed: int) -> None:
-        self.random = Random(seed)
+        self.random = Random(seed)  # noqa: S311
         self.script: list[str] = []
         self.said: list[str] = []
         self._happened: list[str] = []
