@@ -18,6 +18,7 @@ enumeration; ` = value` gives a variable's initial value, by default false, the 
 """
 
 import ast
+from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -186,8 +187,12 @@ class _Scope:
     plants: list[sct.Plant]
     enumerations: list[ex.Enumeration]
     names: dict[str, Any] = field(default_factory=dict)
+    events: dict[str, list[sct.Event]] = field(default_factory=lambda: defaultdict(list))
 
     def __post_init__(self) -> None:
+        for each in self.plants:
+            for event in each.events:
+                self.events[event.name].append(event)
         for enumeration in self.enumerations:
             for literal in enumeration.literals:
                 self.names[f"{enumeration.name}.{literal.name}"] = self.names[literal.name] = literal
@@ -264,9 +269,7 @@ class _Scope:
 
     def event(self, name: str, owner: sct.Plant | None) -> sct.Event:
         wanted, _, bare = name.rpartition(".")
-        found = [
-            event for each in self.plants if wanted in ("", each.name) for event in each.events if event.name == bare
-        ]
+        found = [each for each in self.events[bare] if wanted in ("", each.eContainer().name)]
         own = [event for event in found if event.eContainer() is owner]
         if len(own or found) != 1:
             raise LookupError(f"{len(found)} events are called {name}")

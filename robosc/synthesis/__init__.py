@@ -11,22 +11,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from time import perf_counter
-from typing import TYPE_CHECKING
 
 from robosc.diagnostics import Diagnostic, ModelError, Severity
 from robosc.metamodel import sct
 from robosc.metamodel.places import place
 from robosc.roles import event_name
-from robosc.synthesis.bdd import Diagram, Diagrams, with_enough_memory
+from robosc.synthesis.bdd import Diagrams, with_enough_memory
 from robosc.synthesis.encoding import Encoding, Layout
 from robosc.synthesis.explanation import EmptySupervisor, Reason
 from robosc.synthesis.fixpoint import reachable, supervise
 from robosc.synthesis.guards import permission
 from robosc.synthesis.paths import TraceStep
-from robosc.synthesis.relation import EventRelation
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
+from robosc.synthesis.relation import event_relations
 
 __all__ = ["Reason", "Synthesis", "TraceStep", "synthesize"]
 
@@ -82,7 +78,7 @@ def _synthesize(
 ) -> tuple[sct.Supervisor | None, Reason | None, int, int, int]:
     diagrams = Diagrams(layout.levels, capacity)
     encoding = Encoding(layout, diagrams)
-    relations = [EventRelation(event, model, encoding) for plant in model.plants for event in plant.events]
+    relations = event_relations(model, encoding)
     plant_moves = [(each, each.plant_step) for each in relations if each.plant_step is not None]
     moves = [(each, each.step) for each in relations if each.step is not None]
     uncontrolled = reachable(diagrams, [step for _, step in plant_moves], encoding.initial, diagrams.true)
@@ -96,15 +92,15 @@ def _synthesize(
     if not found.controlled.satisfiable():
         reason = EmptySupervisor(encoding, moves, plant_moves, found).reason()
         return None, reason, encoding.count(uncontrolled), 0, found.controlled.node_count()
-    supervisor = _supervisor(relations, encoding, found.controlled)
-    supervisor.uncontrolledStates = encoding.count(uncontrolled)
-    return supervisor, None, supervisor.uncontrolledStates, supervisor.controlledStates, supervisor.bddNodes
-
-
-def _supervisor(relations: Iterable[EventRelation], encoding: Encoding, controlled: Diagram) -> sct.Supervisor:
-    permissions = [permission(each, controlled, encoding) for each in relations if each.event.controllable]
-    return sct.Supervisor(
-        controlledStates=encoding.count(controlled),
-        bddNodes=controlled.node_count() + sum(each.allowed.node_count() for each in permissions),
+    permissions = [
+        permission(each, found.controlled, encoding, restricts=len(found.rounds) > 1)
+        for each in relations
+        if each.event.controllable
+    ]
+    supervisor = sct.Supervisor(
+        uncontrolledStates=encoding.count(uncontrolled),
+        controlledStates=encoding.count(found.controlled),
+        bddNodes=found.controlled.node_count() + sum(each.allowed.node_count() for each in permissions),
         guards=[each.guard for each in permissions],
     )
+    return supervisor, None, supervisor.uncontrolledStates, supervisor.controlledStates, supervisor.bddNodes

@@ -4,19 +4,18 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, TypeAlias
 
-from oxidd.bcdd import BCDDFunction, BCDDManager, BCDDSubstitution
+from oxidd.bcdd import BCDDFunction, BCDDManager
 from oxidd.util import BooleanOperator, DDMemoryError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
+    from collections.abc import Callable, Iterable
     from typing import TypeVar
 
     T = TypeVar("T")
 
 #: A boolean function over the variables of its `Diagrams`; equal functions are equal and hash alike. It offers
-#: `& | ^ ~`, `equiv`, `imp`, `ite`, `exists(cube)`, `substitute`, `satisfiable`, `valid`, `sat_count`, `node_count`.
+#: `& | ^ ~`, `equiv`, `imp`, `ite`, `exists(cube)`, `satisfiable`, `valid`, `sat_count`, `node_count`.
 Diagram: TypeAlias = BCDDFunction
-Substitution: TypeAlias = BCDDSubstitution
 
 #: What a node and its share of the operation cache take, measured.
 _BYTES_PER_NODE = 40
@@ -45,10 +44,6 @@ class Diagrams:
         for level in sorted(levels, reverse=True):
             result = self.variable(level) & result
         return result
-
-    def renaming(self, levels: Mapping[int, int]) -> Substitution:
-        """Puts one variable in the place of another."""
-        return BCDDFunction.make_substitution((old, self.variable(new)) for old, new in levels.items())
 
     def node(self, level: int, high: Diagram, low: Diagram) -> Diagram:
         """`high` where the variable is true, else `low`."""

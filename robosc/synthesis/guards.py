@@ -25,15 +25,18 @@ class Permission:
     allowed: Diagram
 
 
-def permission(relation: EventRelation, controlled: Diagram, encoding: Encoding) -> Permission:
+def permission(relation: EventRelation, controlled: Diagram, encoding: Encoding, *, restricts: bool) -> Permission:
     """The guard of a controllable event, over the states that are reachable under the supervisor.
+
+    `restricts` says whether synthesis gave up any state at all: if not, it added nothing to any event.
 
     In each of these states: the plants enable the event and both parts of the guard hold exactly where the event leads
     to such a state again and its requirements hold.
     """
     enabled = controlled & relation.enabled
     required = enabled & relation.requirement
-    allowed = required if relation.step is None else required & relation.step.preimage(controlled)
+    step = relation.step if restricts else None
+    allowed = required if step is None else required & step.preimage(controlled)
     guard = sct.EventGuard(event=relation.event, everEnabled=allowed.satisfiable())
     if enabled != required:
         asked = conjunction(_condition(each) for each in relation.requirements)

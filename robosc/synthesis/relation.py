@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from robosc.metamodel import sct
 from robosc.synthesis import arithmetic
-from robosc.synthesis.bdd import Diagram, Substitution, and_exists
+from robosc.synthesis.bdd import Diagram, and_exists
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -20,41 +20,48 @@ if TYPE_CHECKING:
 class Step:
     """All that an event can do under some condition, its inputs quantified: each value of theirs may come.
 
-    `relation` speaks of present and next values; what it does not mention in `changed` stays as it is.
+    `relation` speaks of present and next values. `present` and `following` are the variables of what it changes, and
+    `same` says that these are equal: renaming by a conjunction, unlike by substitution, leaves alone what is below.
     """
 
     level: int
     relation: Diagram
     present: Diagram
     following: Diagram
-    to_following: Substitution
-    to_present: Substitution
+    same: Diagram
 
     def image(self, states: Diagram) -> Diagram:
         """The states after the event in one of `states`."""
-        return and_exists(states, self.relation, self.present).substitute(self.to_present)
+        return and_exists(and_exists(states, self.relation, self.present), self.same, self.following)
 
     def preimage(self, states: Diagram) -> Diagram:
         """The states in which the event can lead to one of `states`."""
-        return and_exists(states.substitute(self.to_following), self.relation, self.following)
+        return and_exists(and_exists(states, self.same, self.present), self.relation, self.following)
 
 
 class EventRelation:
     """One event: where the plants enable it, what the requirements ask, what it changes."""
 
-    def __init__(self, event: sct.Event, model: sct.SupervisoryControlModel, encoding: Encoding) -> None:
+    def __init__(
+        self,
+        event: sct.Event,
+        edges: Sequence[Sequence[sct.Edge]],
+        requirements: Sequence[sct.Requirement],
+        encoding: Encoding,
+    ) -> None:
+        """`edges` are those with the event, plant by plant, `requirements` those on it."""
         self.event = event
+        self.requirements = requirements
         self._encoding = encoding
-        self._edges = [edges for edges in (_edges(plant, event) for plant in model.plants) if edges]
+        self._edges = edges
         changed = [each for edges in self._edges for each in _changed(edges)]
         self.changed = tuple(each for each in changed if encoding.layout.domains[each].size > 1)
         self.enabled = self._conjunction(self._enabled(edges) for edges in self._edges)
-        self.requirements = [each for each in model.requirements if each.event is event]
         self.requirement = self._conjunction(
             ~encoding.holds(each.condition)
             if each.kind == sct.RequirementKind.disables
             else encoding.holds(each.condition)
-            for each in self.requirements
+            for each in requirements
         )
 
     def with_inputs(self) -> Diagram:
@@ -98,8 +105,7 @@ class EventRelation:
             relation=relation,
             present=diagrams.cube(present),
             following=diagrams.cube(following),
-            to_following=diagrams.renaming(dict(zip(present, following, strict=True))),
-            to_present=diagrams.renaming(dict(zip(following, present, strict=True))),
+            same=self._conjunction(self._encoding.keeps(each) for each in self.changed),
         )
 
     def _conjunction(self, parts: Iterable[Diagram]) -> Diagram:
@@ -134,8 +140,24 @@ class EventRelation:
         return result
 
 
-def _edges(plant: sct.Plant, event: sct.Event) -> list[sct.Edge]:
-    return [edge for location in plant.locations for edge in location.edges if edge.event is event]
+def event_relations(model: sct.SupervisoryControlModel, encoding: Encoding) -> list[EventRelation]:
+    """The relations of all events, in the order of the plants."""
+    edges: dict[sct.Event, list[list[sct.Edge]]] = {}
+    for plant in model.plants:
+        own: dict[sct.Event, list[sct.Edge]] = {}
+        for location in plant.locations:
+            for edge in location.edges:
+                own.setdefault(edge.event, []).append(edge)
+        for event, each in own.items():
+            edges.setdefault(event, []).append(each)
+    requirements: dict[sct.Event, list[sct.Requirement]] = {}
+    for requirement in model.requirements:
+        requirements.setdefault(requirement.event, []).append(requirement)
+    return [
+        EventRelation(event, edges.get(event, []), requirements.get(event, []), encoding)
+        for plant in model.plants
+        for event in plant.events
+    ]
 
 
 def _changed(edges: Sequence[sct.Edge]) -> list[Element]:
