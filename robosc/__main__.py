@@ -1,5 +1,5 @@
 """`python -m robosc`: the command line."""
 
-from robosc.cli import main
+from robosc.cli import run
 
-main(prog_name="robosc")
+run()

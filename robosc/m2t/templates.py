@@ -2,14 +2,27 @@
 
 from __future__ import annotations
 
+import sys
+from contextlib import suppress
+from pathlib import Path
 from typing import TYPE_CHECKING
 
-from jinja2 import BaseLoader, ChoiceLoader, Environment, FileSystemLoader, StrictUndefined
+from jinja2 import BaseLoader, ChoiceLoader, Environment, FileSystemBytecodeCache, FileSystemLoader, StrictUndefined
 
 from robosc.resources import locate
 
 if TYPE_CHECKING:
-    from pathlib import Path
+    from jinja2.bccache import Bucket
+
+
+class _Compiled(FileSystemBytecodeCache):
+    """Keeps compiled templates as Python keeps its modules: in `__pycache__` beside them, if that can be written."""
+
+    def dump_bytecode(self, bucket: Bucket) -> None:
+        if not sys.dont_write_bytecode:
+            with suppress(OSError):
+                Path(self.directory).mkdir(exist_ok=True)
+                super().dump_bytecode(bucket)
 
 
 def environment(package: str, overrides: Path | None = None) -> Environment:
@@ -24,6 +37,7 @@ def environment(package: str, overrides: Path | None = None) -> Environment:
         loaders.insert(0, FileSystemLoader(overrides))
     return Environment(
         loader=ChoiceLoader(loaders),
+        bytecode_cache=_Compiled(str(folder / "__pycache__")),
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
