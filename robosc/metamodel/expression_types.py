@@ -126,5 +126,5 @@ class ExpressionTypes:
                 return expression.conversion.enumeration
         if type(expression) in _LITERAL:
             return _LITERAL[type(expression)]
-        self.faults.append((expression, f"a {type(expression).__name__} belongs in a robosc model only"))
+        self.faults.append((expression, f"{type(expression).__name__} belongs in a robosc model only"))
         return None

@@ -59,7 +59,7 @@ _REFERENCES = ("enumeration", "literal", "location", "variable", "input", "event
 def _element(element: Any, own: set[Any]) -> Iterator[Fault]:
     match element:
         case sct.Input() | sct.DiscreteVariable() if not isinstance(element.type, _TYPES):
-            yield element, f"a {type(element.type).__name__} has no place in an sct model"
+            yield element, f"{type(element.type).__name__} has no place in an sct model"
         case ex.IntegerType():
             if element.minimum is None or element.maximum is None:
                 yield element, "both bounds of an integer are given in an sct model"
@@ -72,7 +72,7 @@ def _element(element: Any, own: set[Any]) -> Iterator[Fault]:
         if referred is not None and referred not in own:
             yield element, f"the {name} '{referred.name}' is another model's"
     if isinstance(element, _FOREIGN):
-        yield element, f"a {type(element).__name__} has no place in an sct model"
+        yield element, f"{type(element).__name__} has no place in an sct model"
 
 
 def _plant(plant: sct.Plant, types: ExpressionTypes) -> Iterator[Fault]:

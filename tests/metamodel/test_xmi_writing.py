@@ -1,5 +1,7 @@
 """Models to XMI text: what is written where, and that nothing but the model decides it."""
+# ruff: noqa: E501 - XML declares its namespaces in one line.
 
+import re
 from typing import Any
 
 import pytest
@@ -133,7 +135,8 @@ def test_doubles_come_back(value: float, tmp_path: Any) -> None:
 
 
 def test_lists_of_texts_are_elements(texts: dict[str, str]) -> None:
-    assert "<path>pose</path>\n        <path>x</path>" in texts["Warehouse.rosgraph.xmi"]
+    path = re.search(r"<path>pose</path>\s*<path>x</path>", texts["Warehouse.rosgraph.xmi"])
+    assert path
 
 
 def test_what_xml_cannot_hold_is_located() -> None:

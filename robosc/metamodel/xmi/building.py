@@ -9,7 +9,7 @@ from pyecore.ecore import EEnum
 from robosc.diagnostics import Diagnostic, Severity, Span
 from robosc.metamodel._ecore import packages
 from robosc.metamodel.reflection import features, is_attribute
-from robosc.metamodel.xmi.format import XMI, XSI
+from robosc.metamodel.xmi.format import XMI, XSI, a
 from robosc.metamodel.xmi.markup import Element
 from robosc.metamodel.xmi.values import from_text
 
@@ -88,7 +88,7 @@ class _Filling:
         self.markup = markup
         self.element = element
         self.features = features(element.eClass)
-        self.class_name = element.eClass.name
+        self.class_name = a(element.eClass)
         self.given: dict[str, int] = {}
         self.children: list[tuple[Element, Any]] = []
 
@@ -99,17 +99,17 @@ class _Filling:
         for child in self.markup.children:
             self.child(child)
         if self.markup.text.strip():
-            self.document.report(self.markup.span, f"a {self.class_name} holds no text")
+            self.document.report(self.markup.span, f"{self.class_name} holds no text")
         for name, feature in self.features.items():
             # What EMF leaves out has a default: a boolean, a number, the first literal of an enumeration.
             if feature.lowerBound and name not in self.given and (feature.many or getattr(self.element, name) is None):
-                self.document.report(self.markup.span, f"a {self.class_name} needs '{name}'")
+                self.document.report(self.markup.span, f"{self.class_name} needs '{name}'")
 
     def attribute(self, namespace: str, name: str, text: str) -> None:
         span = self.markup.attribute_span(name)
         feature = None if namespace else self.features.get(name)
         if feature is None or (not is_attribute(feature) and feature.containment):
-            self.document.report(span, f"a {self.class_name} has no attribute '{name}'")
+            self.document.report(span, f"{self.class_name} has no attribute '{name}'")
             return
         self.given[name] = 1
         if is_attribute(feature):
@@ -124,11 +124,11 @@ class _Filling:
     def child(self, child: Element) -> None:
         feature = None if child.namespace else self.features.get(child.name)
         if feature is None:
-            self.document.report(child.span, f"a {self.class_name} has no '{child.name}'")
+            self.document.report(child.span, f"{self.class_name} has no '{child.name}'")
             return
         self.given[child.name] = self.given.get(child.name, 0) + 1
         if self.given[child.name] > 1 and not feature.many:
-            self.document.report(child.span, f"a {self.class_name} has only one '{child.name}'")
+            self.document.report(child.span, f"{self.class_name} has only one '{child.name}'")
         elif is_attribute(feature):
             self.set(child.span, feature, child.text)
         elif feature.containment:
@@ -159,7 +159,7 @@ class _Filling:
         if found is None or isinstance(found, EEnum):
             self.document.report(child.attribute_span("xsi:type"), f"there is no class '{written}'")
         elif not issubclass(found.python_class, feature.eType.python_class):
-            message = f"'{feature.name}' wants a {feature.eType.name}, which a {found.name} is not"
+            message = f"'{feature.name}' wants {a(feature.eType)}, which {a(found)} is not"
             self.document.report(child.span, message)
         elif found.abstract:
             self.document.report(child.span, f"{found.name} is abstract", "say what it is with xsi:type")

@@ -9,6 +9,7 @@ from robosc.diagnostics import ModelError, Span
 from robosc.metamodel.reflection import features, is_attribute
 from robosc.metamodel.validity import faults
 from robosc.metamodel.xmi.building import Document, Reference, build
+from robosc.metamodel.xmi.format import a
 from robosc.metamodel.xmi.markup import parse
 
 _FRAGMENT = re.compile(r"/(/@\w+(\.[0-9]{1,9})?)*", re.ASCII)
@@ -100,7 +101,7 @@ class _Loading:
         if target is None:
             document.report(reference.span, f"'{feature.name}' refers to '{shown}', where nothing is")
         elif not isinstance(target, feature.eType.python_class):
-            message = f"'{feature.name}' refers to a {target.eClass.name}, but wants a {feature.eType.name}"
+            message = f"'{feature.name}' refers to {a(target.eClass)}, but wants {a(feature.eType)}"
             document.report(reference.span, message)
         elif not feature.many:
             setattr(element, feature.name, target)

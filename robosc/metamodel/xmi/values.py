@@ -32,7 +32,7 @@ def _integer(text: str) -> int | None:
 
 def _long(text: str) -> int | None:
     value = _integer(text)
-    return value if value in _LONG else None
+    return value if value is not None and value in _LONG else None
 
 
 def _double(text: str) -> float | None:
