@@ -5,7 +5,6 @@ from pathlib import Path
 
 import pytest
 from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from robosc.config import Configuration
 from robosc.diagnostics import Severity, Span
