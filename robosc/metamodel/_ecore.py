@@ -1,6 +1,9 @@
 """Loads the .ecore files once and hands out their classes as Python classes."""
 
+import re
 from functools import cache
+from io import BytesIO
+from pathlib import Path
 from typing import Any
 
 from pyecore.ecore import EClass, EPackage
@@ -11,12 +14,23 @@ from robosc.resources import locate
 PACKAGES = ("expression", "robosc", "sct", "rosgraph")
 
 
+class _Undocumented(URI):  # type: ignore[misc]
+    """A metamodel's file without its documentation: two thirds of its elements, and a program does not read it."""
+
+    def create_instream(self) -> BytesIO:
+        return BytesIO(re.sub(b"<eAnnotations .*?</eAnnotations>", b"", Path(self.plain).read_bytes(), flags=re.DOTALL))
+
+    def close_stream(self) -> None:
+        """Nothing is open."""
+
+
 @cache
-def packages() -> dict[str, EPackage]:
-    """All metamodels by name, their references to each other resolved."""
+def packages(*, documented: bool = False) -> dict[str, EPackage]:
+    """All metamodels by name, their references to each other resolved; documented ones have no instances."""
     resources = ResourceSet()
+    kind = URI if documented else _Undocumented
     loaded = {
-        name: resources.get_resource(URI(str(locate(f"metamodel/{name}.ecore")))).contents[0] for name in PACKAGES
+        name: resources.get_resource(kind(str(locate(f"metamodel/{name}.ecore")))).contents[0] for name in PACKAGES
     }
     for package in loaded.values():
         for classifier in package.eClassifiers:
@@ -32,6 +46,17 @@ def packages() -> dict[str, EPackage]:
 def classes(package: str) -> dict[str, Any]:
     """The classes of one metamodel as Python classes, and its enumerations, by name."""
     return {
-        classifier.name: classifier.python_class if isinstance(classifier, EClass) else classifier
+        classifier.name: _python_class(classifier) if isinstance(classifier, EClass) else classifier
         for classifier in packages()[package].eClassifiers
     }
+
+
+def _python_class(eclass: EClass) -> Any:
+    made = eclass.python_class
+    # Nobody listens to models, and to find out so at every change pyecore would climb to the root, by recursion.
+    made.notify = _nobody_listens
+    return made
+
+
+def _nobody_listens(_element: Any, _notification: Any) -> None:
+    pass

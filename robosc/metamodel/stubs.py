@@ -43,7 +43,7 @@ def _attribute(feature: EStructuralFeature, package: EPackage) -> str:
 
 def stub(name: str) -> str:
     """The text of the stub of one metamodel module."""
-    package = packages()[name]
+    package = packages(documented=True)[name]
     others = [other for other in PACKAGES if other != name and f"{other}.ecore" in _references(package)]
     lines = [
         f'"""Generated from metamodel/{name}.ecore by `python -m robosc.metamodel.stubs`."""',
