@@ -102,7 +102,7 @@ def run() -> NoReturn:
     What is loaded stays until the end, and then the process ends with it: collecting the objects of the metamodels and
     taking them apart one by one would take a third of the time of a short run.
     """
-    gc.set_threshold(100_000, 20, 20)
+    gc.set_threshold(500_000, 20, 20)
     status = ERRORS_FOUND
     try:
         try:

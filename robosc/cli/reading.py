@@ -9,7 +9,7 @@ from robosc.checks import check
 from robosc.cli import CallError
 from robosc.language import read as read_text
 from robosc.metamodel import robosc as rsc
-from robosc.metamodel import rosgraph, sct, xmi
+from robosc.metamodel import rosgraph, sct
 from robosc.models import Models
 
 if TYPE_CHECKING:
@@ -26,6 +26,8 @@ def read(path: str, library_paths: Sequence[str], report: Report) -> Root | None
     None where so little could be read that there is none. Raises ModelError for an XMI file with faults.
     """
     if path.endswith(".xmi"):
+        from robosc.metamodel import xmi
+
         root: Root | None = xmi.load(path)
         findings = []
     else:
