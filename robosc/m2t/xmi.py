@@ -19,18 +19,18 @@ def preconditions(_models: Models, _configuration: Configuration) -> list[Diagno
 
 
 def generate(models: Models, _configuration: Configuration) -> dict[str, str]:
-    """`<robot>.sct.xmi`, and where there are such models `.rosgraph.xmi`, `.robosc.xmi`, and each imported library.
+    """`<robot>.sct.xmi`, and where there are such models `.rosgraph.xmi`, `.robosc.xmi`, `<library>.robosc.xmi`.
 
-    Raises ModelError for what XML can't hold.
+    A library that is called like the robot gets an underscore. Raises ModelError for what XML can't hold.
     """
     name = models.sct.name
     roots: dict[str, Any] = {f"{name}.sct.xmi": models.sct}
     if models.rosgraph is not None:
         roots[f"{name}.rosgraph.xmi"] = models.rosgraph
     if models.robosc is not None:
-        names = Names()
+        names = Names([name])
         roots[f"{name}.robosc.xmi"] = models.robosc
-        roots |= {f"{names.fresh(library.name)}.library.xmi": library for library in _libraries(models.robosc)}
+        roots |= {f"{names.fresh(library.name)}.robosc.xmi": library for library in _libraries(models.robosc)}
     return xmi.to_texts(roots)
 
 
