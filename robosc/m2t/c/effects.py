@@ -56,7 +56,7 @@ class Effects:
         lines = [line for unit in units for line in self._unit(unit, printer)]
         for plant, edges in plants.items():
             lines += self._moves(plant, edges, printer)
-        return lines, bool(old)
+        return lines, any("old." in line for line in lines)
 
     def _units(self, plant: sct.Plant, edges: Edges) -> Iterable[_Unit]:
         """Updates that are the same on all edges, one by one; else by location."""

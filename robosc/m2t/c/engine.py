@@ -251,10 +251,9 @@ class _Engine:
         return [f"{each} /* added by synthesis */" if each in by_synthesis else each for each in terms]
 
     def conditions(self, node: Node) -> list[str]:
-        reduced = self.printer.reduced(node)
-        if self.ranges(reduced).single is None and isinstance(reduced, All):
-            return self.printer.terms(reduced)
-        return [self.printer(reduced)]
+        reduced = self.ranges.reduced(node)
+        joined = self.ranges.joined(reduced) if self.ranges(reduced).single is None else None
+        return self.printer.terms(joined) if joined and joined.neutral else [self.printer(reduced)]
 
     def effect(self, event: sct.Event, effects: Effects) -> dict[str, Any] | None:
         lines, old = effects.statements(self.table.edges[event])

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.expressions import ATOM, PRECEDENCE, ExpressionPrinter
-from robosc.m2t.c.ranges import All, Some, children_of, parts_of
+from robosc.m2t.c.ranges import COMPARISONS, Junction, Not, children_of, is_condition
 from robosc.m2t.c.types import Interval, number, signed, type_name
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
@@ -16,32 +16,10 @@ if TYPE_CHECKING:
     from robosc.m2t.c.names import CNames
     from robosc.m2t.c.ranges import Node, Ranges
 
-_LOGICAL = (ex.Implication, ex.Disjunction, ex.Conjunction, ex.Negation, ex.BooleanLiteral, sct.LocationReference)
-_COMPARISONS = (
-    ex.Equation,
-    ex.Inequation,
-    ex.LessThan,
-    ex.LessOrEqual,
-    ex.GreaterThan,
-    ex.GreaterOrEqual,
-)
 _ARITHMETIC = (ex.Addition, ex.Subtraction, ex.Multiplication, ex.UnaryMinus)
 _CONDITIONAL = 0
 _UNARY = PRECEDENCE[ex.Negation]
-
-
-def is_condition(node: Node) -> bool:
-    """Whether the value is a boolean."""
-    match node:
-        case All() | Some():
-            return True
-        case sct.VariableReference():
-            return isinstance(node.variable.type, ex.BooleanType)
-        case sct.InputReference():
-            return isinstance(node.input.type, ex.BooleanType)
-        case ex.Conditional():
-            return is_condition(node.then)
-    return isinstance(node, (*_LOGICAL, *_COMPARISONS))
+_EQUATION = PRECEDENCE[ex.Equation]
 
 
 def enumeration_of(node: Node) -> ex.Enumeration | None:
@@ -77,8 +55,6 @@ class CPrinter(ExpressionPrinter):
     """Prints expressions over `state->…` and `inputs->…`; variables in `old` are read from `old.…` instead."""
 
     symbols = {  # noqa: RUF012  # ClassVar in the parent
-        ex.Disjunction: "||",
-        ex.Conjunction: "&&",
         ex.Equation: "==",
         ex.Inequation: "!=",
         ex.LessThan: "<",
@@ -88,8 +64,6 @@ class CPrinter(ExpressionPrinter):
         ex.Addition: "+",
         ex.Subtraction: "-",
         ex.Multiplication: "*",
-        ex.Negation: "!",
-        ex.UnaryMinus: "-",
     }
 
     def __init__(self, names: CNames, ranges: Ranges, old: Collection[sct.DiscreteVariable] = ()) -> None:
@@ -99,43 +73,23 @@ class CPrinter(ExpressionPrinter):
 
     def __call__(self, node: Node) -> str:
         """The text, without parentheses around it."""
-        node = self.reduced(node)
+        node = self.ranges.reduced(node)
         constant = self.constant(node)
         if constant is not None:
             return constant
-        parts = self.parts(node)
-        if parts is not None:
-            return f" {'&&' if isinstance(node, (All, ex.Conjunction)) else '||'} ".join(self.terms(node))
+        if isinstance(node, (Not, ex.Negation)):
+            return self.negation(node.operand)
+        joined = self.ranges.joined(node)
+        if joined is not None:
+            return f" {'&&' if joined.neutral else '||'} ".join(self.terms(joined))
         assert isinstance(node, ex.Expression)
         return super().__call__(node)
 
-    def terms(self, node: Node) -> list[str]:
+    def terms(self, joined: Junction) -> list[str]:
         """The conditions of a conjunction or disjunction, each once, in the parentheses that they need in it."""
-        outer = self.precedence(node)
-        parts = self.parts(node)
-        assert parts is not None
-        texts = [self(part) if self.precedence(part) > max(outer, 3) else f"({self(part)})" for part in parts]
+        bound = PRECEDENCE[ex.Conjunction]
+        texts = [self(part) if self.precedence(part) > bound else f"({self(part)})" for part in joined.parts]
         return list(dict.fromkeys(texts))
-
-    def parts(self, node: Node) -> list[Node] | None:
-        """What a conjunction or disjunction is made of, without what is always true or false."""
-        parts = parts_of(node)
-        return None if parts is None else [part for part in parts if self.ranges(part).single is None]
-
-    def reduced(self, node: Node) -> Node:
-        """The part of an expression that decides it, where the rest is constant."""
-        while self.ranges(node).single is None:
-            parts = self.parts(node)
-            match node:
-                case _ if parts is not None and len(parts) == 1:
-                    node = parts[0]
-                case ex.Implication() if self.ranges(node.left).single is not None:
-                    node = node.right
-                case ex.Conditional() if self.ranges(node.condition).single is not None:
-                    node = node.then if self.ranges(node.condition).single else node.otherwise
-                case _:
-                    break
-        return node
 
     def constant(self, node: Node) -> str | None:
         """The text of an expression that has one value only; None of others."""
@@ -149,50 +103,37 @@ class CPrinter(ExpressionPrinter):
 
     def precedence(self, expression: Node) -> int:
         """How tightly the text binds."""
-        node = self.reduced(expression)
+        node = self.ranges.reduced(expression)
         if self.ranges(node).single is not None:
             return _UNARY if not is_condition(node) and self.ranges(node).low < 0 else ATOM
+        joined = self.ranges.joined(node)
+        if joined is not None:
+            return PRECEDENCE[ex.Conjunction if joined.neutral else ex.Disjunction]
         match node:
-            case All():
-                return PRECEDENCE[ex.Conjunction]
-            case Some():
-                return PRECEDENCE[ex.Disjunction]
-            case ex.Implication() if self.ranges(node.right).single is not None:
-                return _UNARY
-            case ex.Implication():
-                return PRECEDENCE[ex.Disjunction]
             case sct.LocationReference():
-                return PRECEDENCE[ex.Equation]
-            case ex.Negation() if isinstance(self.reduced(node.operand), sct.LocationReference):
-                return PRECEDENCE[ex.Equation]
+                return _EQUATION
+            case ex.Negation() | Not():
+                return _EQUATION if isinstance(self.ranges.reduced(node.operand), sct.LocationReference) else _UNARY
             case ex.Conditional():
                 return _CONDITIONAL
         assert isinstance(node, ex.Expression)
         return super().precedence(node)
 
-    def binary(self, expression: ex.BinaryExpression) -> str:
-        """An implication by `!` and `||`, all else as it is."""
-        if not isinstance(expression, ex.Implication):
-            return super().binary(expression)
-        left = self(expression.left)
-        premise = f"!{left}" if self.precedence(expression.left) == ATOM else f"!({left})"
-        if self.ranges(expression.right).single is not None:
-            return premise
-        right = self(expression.right)
-        return f"{premise} || {right if self.precedence(expression.right) > 3 else f'({right})'}"
+    def negation(self, operand: Node) -> str:
+        """A condition denied: the other location where there are two, else `!=` for a location."""
+        inner = self.ranges.reduced(operand)
+        if isinstance(inner, sct.LocationReference):
+            others = [each for each in inner.location.eContainer().locations if each is not inner.location]
+            return self.location(others[0], "==") if len(others) == 1 else self.location(inner.location, "!=")
+        return f"!{self(inner)}" if self.precedence(inner) == ATOM else f"!({self(inner)})"
 
     def unary(self, expression: ex.UnaryExpression) -> str:
-        """`!=` for a location that is not the current one; a minus in a type that holds the result."""
-        operand = self.reduced(expression.operand)
-        if isinstance(expression, ex.Negation) and isinstance(operand, sct.LocationReference):
-            return self.location(operand, "!=")
-        if isinstance(expression, ex.UnaryMinus):
-            return f"-{self.converted(expression, expression.operand)}"
-        return super().unary(expression)
+        """A minus, in a type that holds the result."""
+        return f"-{self.converted(expression, expression.operand)}"
 
     def operand(self, parent: ex.BinaryExpression, child: ex.Expression, *, chain: bool) -> str:
         """An operand: integers in the type in which the parent computes, conditions in parentheses."""
-        if isinstance(parent, (*_ARITHMETIC, *_COMPARISONS)) and enumeration_of(child) is None:
+        if isinstance(parent, (*_ARITHMETIC, *COMPARISONS)) and enumeration_of(child) is None:
             if is_condition(child):
                 text = self(child)
                 return text if self.precedence(child) == ATOM else f"({text})"
@@ -212,7 +153,7 @@ class CPrinter(ExpressionPrinter):
 
     def type(self, node: ex.Expression) -> str:
         """The C type of the text; `int` for all that C makes one."""
-        node = self.reduced(node)  # type: ignore[assignment]
+        node = self.ranges.reduced(node)  # type: ignore[assignment]
         match node:
             case _ if self.ranges(node).single is not None or is_condition(node):
                 return "int"
@@ -231,16 +172,16 @@ class CPrinter(ExpressionPrinter):
             case sct.InputReference():
                 return f"inputs->{self.names.member(expression.input)}"
             case sct.LocationReference():
-                return self.location(expression, "==")
+                return self.location(expression.location, "==")
             case ex.Conditional():
                 return self.choice(expression)
         return super().atom(expression)
 
-    def location(self, reference: sct.LocationReference, operator: str) -> str:
-        """Whether a plant is in a location."""
-        plant = reference.location.eContainer()
+    def location(self, location: sct.Location, operator: str) -> str:
+        """Whether a plant is in a location, or is not."""
+        plant = location.eContainer()
         assert isinstance(plant, sct.Plant)
-        return f"state->{self.names.member(plant)} {operator} {self.names.enumerator(reference.location)}"
+        return f"state->{self.names.member(plant)} {operator} {self.names.enumerator(location)}"
 
     def choice(self, expression: ex.Conditional) -> str:
         """A conditional expression, both of its values of one type."""

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robosc.m2t.c.ranges import All, Node, Some
-from robosc.metamodel import expression as ex
+from robosc.m2t.c.ranges import All, Node, Not, Some
 from robosc.metamodel import sct
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
 
     from robosc.m2t.c.expressions import CPrinter
+    from robosc.metamodel import expression as ex
 
 #: The edges of one event in one plant, by the location they start from.
 Edges = dict[sct.Location, sct.Edge]
@@ -57,7 +57,7 @@ def within(plant: sct.Plant, locations: Collection[sct.Location], possible: Sequ
     others = [each for each in possible if each not in locations]
     if len(locations) <= len(others):
         return Some([sct.LocationReference(location=each) for each in plant.locations if each in locations])
-    return All([ex.Negation(operand=sct.LocationReference(location=each)) for each in others])
+    return All([Not(sct.LocationReference(location=each)) for each in others])
 
 
 def _possible(plant: sct.Plant, edges: Edges, printer: CPrinter) -> Node:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.diagnostics import START, Diagnostic, Severity, Span
-from robosc.m2t.c.expressions import is_condition, working_type
-from robosc.m2t.c.ranges import Ranges, children_of
+from robosc.m2t.c.expressions import working_type
+from robosc.m2t.c.ranges import Ranges, children_of, is_condition
 from robosc.metamodel import expression as ex
 
 if TYPE_CHECKING:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from itertools import product
 from math import prod
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from robosc.m2t.c.types import Interval, interval_of
 from robosc.metamodel import expression as ex
@@ -16,6 +16,11 @@ if TYPE_CHECKING:
 
 #: How many values a variable may have for the conditions on it to be decided by trying them all.
 _TRIED = 1024
+_LOGICAL = (ex.Implication, ex.Disjunction, ex.Conjunction, ex.Negation, ex.BooleanLiteral, sct.LocationReference)
+_REFLEXIVE = (ex.Equation, ex.LessOrEqual, ex.GreaterOrEqual)
+_IRREFLEXIVE = (ex.Inequation, ex.LessThan, ex.GreaterThan)
+COMPARISONS = _REFLEXIVE + _IRREFLEXIVE
+_COMMUTATIVE = (ex.Equation, ex.Inequation, ex.Addition, ex.Multiplication)
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,28 +37,48 @@ class Some:
     parts: Sequence[Node]
 
 
+@dataclass(frozen=True)
+class Not:
+    """A negation."""
+
+    operand: Node
+
+
 #: An expression, or conditions put together from several without moving them out of their model.
-Node = ex.Expression | All | Some
+Node = ex.Expression | All | Some | Not
 #: What an expression reads.
 Cell = sct.Plant | sct.DiscreteVariable | sct.Input
 
 
-def parts_of(node: Node) -> list[Node] | None:
-    """The parts of a conjunction or disjunction, nested ones of the same kind taken apart; None of anything else."""
-    if isinstance(node, (All, ex.Conjunction)):
-        return _flat(node, (All, ex.Conjunction))
-    if isinstance(node, (Some, ex.Disjunction)):
-        return _flat(node, (Some, ex.Disjunction))
+class Junction(NamedTuple):
+    """A conjunction (`neutral` is true) or disjunction (false), and its parts, none of which is of the same kind."""
+
+    neutral: bool
+    parts: list[Node]
+
+
+def junction(node: Node) -> Junction | None:
+    """A node as conjunction or disjunction, an implication as `not left or right`; None of anything else."""
+    match node:
+        case All():
+            return _junction(True, node.parts)
+        case ex.Conjunction():
+            return _junction(True, [node.left, node.right])
+        case Some():
+            return _junction(False, node.parts)
+        case ex.Disjunction():
+            return _junction(False, [node.left, node.right])
+        case ex.Implication():
+            return _junction(False, [Not(node.left), node.right])
     return None
 
 
-def _flat(node: Node, kinds: tuple[type, ...]) -> list[Node]:
-    if not isinstance(node, kinds):
-        return [node]
-    children: Sequence[Node] = (
-        [node.left, node.right] if isinstance(node, ex.BinaryExpression) else node.parts  # type: ignore[union-attr]
+def _junction(neutral: bool, parts: Sequence[Node]) -> Junction:
+    nested = [(part, junction(part)) for part in parts]
+    return Junction(
+        neutral,
+        [each for part, inner in nested for each in (inner.parts if inner and inner.neutral is neutral else [part])],
     )
-    return [part for child in children for part in _flat(child, kinds)]
 
 
 def children_of(node: Node) -> list[Node]:
@@ -63,11 +88,25 @@ def children_of(node: Node) -> list[Node]:
             return list(node.parts)
         case ex.BinaryExpression():
             return [node.left, node.right]
-        case ex.UnaryExpression():
+        case ex.UnaryExpression() | Not():
             return [node.operand]
         case ex.Conditional():
             return [node.condition, node.then, node.otherwise]
     return []
+
+
+def is_condition(node: Node) -> bool:
+    """Whether the value is a boolean."""
+    match node:
+        case All() | Some() | Not():
+            return True
+        case sct.VariableReference():
+            return isinstance(node.variable.type, ex.BooleanType)
+        case sct.InputReference():
+            return isinstance(node.input.type, ex.BooleanType)
+        case ex.Conditional():
+            return is_condition(node.then)
+    return isinstance(node, (*_LOGICAL, *COMPARISONS))
 
 
 class Ranges:
@@ -89,19 +128,98 @@ class Ranges:
         return self._values[node]
 
     def cells(self, node: Node) -> frozenset[Cell]:
-        """What the expression reads."""
+        """What the value of the expression depends on."""
         if node not in self._cells:
-            read = frozenset().union(*(self.cells(child) for child in children_of(node)))
-            own = _cell(node)
-            self._cells[node] = read if own is None else frozenset([own])
+            self._cells[node] = self._read(node)
         return self._cells[node]
 
+    def joined(self, node: Node) -> Junction | None:
+        """A node as conjunction or disjunction, without parts that are always true or always false."""
+        joined = junction(node)
+        if joined is None:
+            return None
+        undecided = [self.reduced(part) for part in joined.parts if self(part).single is None]
+        inner = [(part, self.joined(part)) for part in undecided]
+        return Junction(
+            joined.neutral,
+            [
+                each
+                for part, nested in inner
+                for each in (nested.parts if nested and nested.neutral is joined.neutral else [part])
+            ],
+        )
+
+    def reduced(self, node: Node) -> Node:
+        """The part of an expression that decides it, where the rest is constant."""
+        while self(node).single is None:
+            part = self._deciding(node)
+            if part is None:
+                break
+            node = part
+        return node
+
+    def _deciding(self, node: Node) -> Node | None:
+        joined = self.joined(node)
+        if joined is not None:
+            return joined.parts[0] if len(joined.parts) == 1 else None
+        if isinstance(node, ex.Conditional):
+            condition = self(node.condition).single
+            if condition is not None:
+                return node.then if condition else node.otherwise
+            return node.then if self.same(node.then, node.otherwise) else None
+        if isinstance(node, (Not, ex.Negation)):
+            denied = self.reduced(node.operand)
+            return denied.operand if isinstance(denied, (Not, ex.Negation)) else None
+        if isinstance(node, (ex.Equation, ex.Inequation)) and is_condition(node.left):
+            return self._compared(node)
+        return None
+
+    def _compared(self, node: ex.BinaryExpression) -> Node | None:
+        """What a comparison of conditions comes down to, where one of them is constant."""
+        for side, other in ((node.left, node.right), (node.right, node.left)):
+            value = self(side).single
+            if value is not None:
+                return other if value == isinstance(node, ex.Equation) else Not(other)
+        return None
+
+    def _read(self, node: Node) -> frozenset[Cell]:
+        if self(node).single is not None:
+            return frozenset()
+        node = self.reduced(node)
+        own = _cell(node)
+        if own is not None:
+            return frozenset([own])
+        joined = self.joined(node)
+        children = children_of(node) if joined is None else joined.parts
+        return frozenset().union(*(self.cells(child) for child in children))
+
+    def same(self, one: Node, other: Node) -> bool:
+        """Whether two expressions are written the same once all that is constant has been left out."""
+        single = self(one).single
+        if single is not None:
+            return self(other).single == single
+        one, other = self.reduced(one), self.reduced(other)
+        if type(one) is not type(other) or self(one) != self(other):
+            return False
+        if isinstance(one, sct.LocationReference) and isinstance(other, sct.LocationReference):
+            return one.location is other.location
+        if _cell(one) is not _cell(other):
+            return False
+        mine, theirs = children_of(one), children_of(other)
+        if all(map(self.same, mine, theirs)):
+            return True
+        return isinstance(one, _COMMUTATIVE) and all(map(self.same, mine, reversed(theirs)))
+
     def _decided(self, node: Node, values: Interval) -> Interval:
-        """Narrows what an operator on conditions can be by looking at the conditions on one cell together."""
-        parts = parts_of(node)
-        if parts is None or values.single is not None:
+        """Decides what intervals can't: a comparison of equals, conditions on one cell that contradict each other."""
+        if values.single is not None:
             return values
-        neutral = isinstance(node, (All, ex.Conjunction))
+        if isinstance(node, _REFLEXIVE + _IRREFLEXIVE) and self.same(node.left, node.right):
+            return Interval(1, 1) if isinstance(node, _REFLEXIVE) else Interval(0, 0)
+        joined = self.joined(node)
+        if joined is None:
+            return values
+        neutral, parts = joined
         by_cell: dict[frozenset[Cell], list[Node]] = {}
         for part in parts:
             if len(self.cells(part)) == 1:
@@ -158,14 +276,15 @@ def _truth(can_be_false: bool, can_be_true: bool) -> Interval:
 
 def _evaluate(node: Node, at: Mapping[Cell, int], of: Callable[[Node], Interval]) -> Interval:  # noqa: C901
     """The values of a node, given those of its children, where some cells have one value only."""
-    parts = parts_of(node)
-    if parts is not None:
+    joined = junction(node)
+    if joined is not None:
+        neutral, parts = joined
+        choose = min if neutral else max
         values = [of(part) for part in parts]
-        if isinstance(node, (All, ex.Conjunction)):
-            return Interval(
-                min((each.low for each in values), default=1), min((each.high for each in values), default=1)
-            )
-        return Interval(max((each.low for each in values), default=0), max((each.high for each in values), default=0))
+        return Interval(
+            choose((each.low for each in values), default=int(neutral)),
+            choose((each.high for each in values), default=int(neutral)),
+        )
     match node:
         case ex.BooleanLiteral() | ex.IntegerLiteral():
             return Interval(int(node.value), int(node.value))
@@ -184,7 +303,7 @@ def _evaluate(node: Node, at: Mapping[Cell, int], of: Callable[[Node], Interval]
                 if plant in at
                 else _truth(len(plant.locations) > 1, can_be_true=True)
             )
-        case ex.Negation():
+        case ex.Negation() | Not():
             value = of(node.operand)
             return Interval(1 - value.high, 1 - value.low)
         case ex.UnaryMinus():
@@ -202,8 +321,6 @@ def _evaluate(node: Node, at: Mapping[Cell, int], of: Callable[[Node], Interval]
 
 def _binary(node: ex.BinaryExpression, left: Interval, right: Interval) -> Interval:
     match node:
-        case ex.Implication():
-            return Interval(max(1 - left.high, right.low), max(1 - left.low, right.high))
         case ex.Addition():
             return Interval(left.low + right.low, left.high + right.high)
         case ex.Subtraction():
@@ -211,34 +328,17 @@ def _binary(node: ex.BinaryExpression, left: Interval, right: Interval) -> Inter
         case ex.Multiplication():
             corners = [a * b for a in left for b in right]
             return Interval(min(corners), max(corners))
-    same = _same(node.left, node.right)
     match node:
         case ex.Equation() | ex.Inequation():
-            differ = not same and (left.single is None or left != right)
-            agree = same or (left.low <= right.high and right.low <= left.high)
+            differ = left.single is None or left != right
+            agree = left.low <= right.high and right.low <= left.high
             return _truth(differ, agree) if isinstance(node, ex.Equation) else _truth(agree, differ)
         case ex.LessThan():
-            return _truth(same or left.high >= right.low, not same and left.low < right.high)
+            return _truth(left.high >= right.low, left.low < right.high)
         case ex.LessOrEqual():
-            return _truth(not same and left.high > right.low, same or left.low <= right.high)
+            return _truth(left.high > right.low, left.low <= right.high)
         case ex.GreaterThan():
-            return _truth(same or left.low <= right.high, not same and left.high > right.low)
+            return _truth(left.low <= right.high, left.high > right.low)
         case ex.GreaterOrEqual():
-            return _truth(not same and left.low < right.high, same or left.high >= right.low)
+            return _truth(left.low < right.high, left.high >= right.low)
     raise TypeError(f"an sct model holds no {type(node).__name__}")
-
-
-def _same(one: ex.Expression, other: ex.Expression) -> bool:
-    """Whether two expressions are written the same."""
-    if type(one) is not type(other):
-        return False
-    match one:
-        case ex.BooleanLiteral() | ex.IntegerLiteral():
-            return bool(one.value == other.value)  # type: ignore[attr-defined]
-        case ex.EnumerationLiteralReference():
-            return one.literal is other.literal  # type: ignore[attr-defined]
-        case sct.LocationReference():
-            return one.location is other.location  # type: ignore[attr-defined]
-        case sct.VariableReference() | sct.InputReference():
-            return _cell(one) is _cell(other)
-    return all(_same(a, b) for a, b in zip(children_of(one), children_of(other), strict=True))  # type: ignore[arg-type]
