@@ -40,7 +40,7 @@ def evaluate(expression: ex.Expression, read: Callable[[ex.Expression], Value]) 
         case ex.UnaryMinus():
             return -_number(expression.operand, read)
         case ex.DoubleConversion():
-            return float(_number(expression.operand, read))
+            return as_double(_number(expression.operand, read))
         case ex.Conditional():
             chosen = expression.then if evaluate(expression.condition, read) else expression.otherwise
             return evaluate(chosen, read)
@@ -66,7 +66,9 @@ def _binary(expression: ex.BinaryExpression, read: Callable[[ex.Expression], Val
     if kind in _ORDERED:
         return _ORDERED[kind](left, right)
     if kind is ex.Division:
-        return divide(float(left), float(right))  # type: ignore[arg-type]
+        return divide(as_double(left), as_double(right))
+    if isinstance(left, float) or isinstance(right, float):
+        left, right = as_double(left), as_double(right)
     return _ARITHMETIC[kind](left, right)
 
 
@@ -74,6 +76,15 @@ def _number(expression: ex.Expression, read: Callable[[ex.Expression], Value]) -
     value = evaluate(expression, read)
     assert isinstance(value, (int, float))
     return value
+
+
+def as_double(number: Value) -> float:
+    """The number as a double; infinite where it is an integer too large to be one."""
+    assert isinstance(number, (int, float))
+    try:
+        return float(number)
+    except OverflowError:
+        return math.inf if number > 0 else -math.inf
 
 
 def divide(left: float, right: float) -> float:

@@ -90,10 +90,10 @@ class Instances:
             return within  # A library's text speaks of its own component only.
         return within if component is None else self._of.get(component)
 
-    def occurrence(self, reference: robosc.CommunicationReference, within: Instance | None) -> Occurrence | None:
+    def occurrence(self, reference: robosc.CommunicationReference | None, within: Instance | None) -> Occurrence | None:
         """The communication that a reference means."""
-        instance = self.instance(reference.component, within)
-        if instance is None or reference.communicationType is None:
+        instance = self.instance(reference.component, within) if reference else None
+        if instance is None or reference is None or reference.communicationType is None:
             return None
         return Occurrence(instance, reference.communicationType)
 

@@ -24,44 +24,61 @@ class Data:
 
 
 @dataclass(frozen=True)
-class Needed:
-    """What the supervisor needs, each with the first expression that needs it, in the order in which it was found."""
-
-    variables: dict[InstanceVariable, robosc.Access]
-    data: dict[Data, robosc.Access]
-
-
-@dataclass(frozen=True)
 class Assigned:
-    """An assignment where it stands: in which instance, in which transition."""
+    """An assignment where it stands: in which instance, in which transition, to which variable (None: to none)."""
 
     instance: Instance
     transition: robosc.Transition
     assignment: robosc.Assignment
+    variable: InstanceVariable | None
+
+
+@dataclass(frozen=True)
+class Need:
+    """Why something is needed: what reads it, in the text of which instance (None: the robot's), to compute what.
+
+    `variable` is None where the supervisor itself evaluates what reads it.
+    """
+
+    access: robosc.Access
+    within: Instance | None
+    variable: InstanceVariable | None
+
+
+@dataclass(frozen=True)
+class Needed:
+    """What the supervisor needs, each with the first reason, in the order in which it was found.
+
+    `computations` are the assignments that it performs.
+    """
+
+    variables: dict[InstanceVariable, Need]
+    data: dict[Data, Need]
+    computations: list[Assigned]
 
 
 def needed(instances: Instances) -> Needed:
     """What guards, requirements and conditions of provided data read, and what that was computed from."""
     assignments: dict[InstanceVariable, list[Assigned]] = {}
     for assigned in all_assignments(instances):
-        variable = instances.variable(assigned.assignment.item, assigned.instance)
-        if variable is not None:
-            assignments.setdefault(variable, []).append(assigned)
-    result = Needed({}, {})
+        if assigned.variable is not None:
+            assignments.setdefault(assigned.variable, []).append(assigned)
+    result = Needed({}, {}, [])
     queue: list[InstanceVariable] = []
 
-    def read(expression: ex.Expression | None, within: Instance | None) -> None:
+    def read(expression: ex.Expression | None, within: Instance | None, computed: InstanceVariable | None) -> None:
         for access in accesses(expression):
             variable = instances.variable(access, within)
             if variable is not None and variable not in result.variables:
-                result.variables[variable] = access
+                result.variables[variable] = Need(access, within, computed)
                 queue.append(variable)
 
     for condition, within in conditions(instances):
-        read(condition, within)
+        read(condition, within, None)
     while queue:
         for assigned in assignments.get(queue.pop(0), ()):
-            read(assigned.assignment.value, assigned.instance)
+            result.computations.append(assigned)
+            read(assigned.assignment.value, assigned.instance, assigned.variable)
             _read_data(instances, assigned, result)
     return result
 
@@ -92,21 +109,23 @@ def all_assignments(instances: Instances) -> Iterator[Assigned]:
     for instance in instances:
         for transition, _ in transitions(instance):
             for assignment in transition.assignments:
-                yield Assigned(instance, transition, assignment)
+                variable = instances.variable(assignment.item, instance) if assignment.item else None
+                yield Assigned(instance, transition, assignment, variable)
 
 
 def accesses(expression: ex.Expression | None) -> Iterator[robosc.Access]:
     """Every access in an expression, from left to right."""
-    if isinstance(expression, robosc.Access):
-        yield expression
-    elif isinstance(expression, ex.BinaryExpression):
-        yield from accesses(expression.left)
-        yield from accesses(expression.right)
-    elif isinstance(expression, ex.UnaryExpression):
-        yield from accesses(expression.operand)
-    elif isinstance(expression, robosc.ObjectValue):
-        for each in expression.properties:
-            yield from accesses(each.value)
+    pending = [expression]
+    while pending:
+        match pending.pop():
+            case robosc.Access() as access:
+                yield access
+            case ex.BinaryExpression() as operator:
+                pending += [operator.right, operator.left]
+            case ex.UnaryExpression() as operator:
+                pending.append(operator.operand)
+            case robosc.ObjectValue() as value:
+                pending += [each.value for each in reversed(value.properties)]
 
 
 def property_path(access: robosc.Access) -> tuple[robosc.ObjectProperty, ...] | None:
@@ -125,4 +144,5 @@ def _read_data(instances: Instances, assigned: Assigned, result: Needed) -> None
     for access in accesses(assigned.assignment.value):
         path = property_path(access)
         if access.value and occurrence is not None and path is not None:
-            result.data.setdefault(Data(occurrence, transition.resultType, path), access)
+            data = Data(occurrence, transition.resultType, path)
+            result.data.setdefault(data, Need(access, assigned.instance, assigned.variable))
