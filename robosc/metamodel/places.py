@@ -1,21 +1,17 @@
 """Where the elements of a model stand in the text that they come from."""
 
-import re
 from typing import Any
 
-from robosc.diagnostics import Span
-
-_SOURCE = re.compile(r"(?:(?P<file>.*):)?(\d+):(\d+)-(\d+):(\d+)", re.DOTALL)
-START = Span(1, 1, 1, 1)
+from robosc.diagnostics import START, Span
 
 
 def parse_source(source: str | None) -> tuple[str | None, Span] | None:
     """The file (None where it names none) and the span that a `source` attribute stands for; None without a source."""
-    match = _SOURCE.fullmatch(source or "")
-    if match is None:
+    span = Span.parse(source)
+    if source is None or span is None:
         return None
-    file, *numbers = match.groups()
-    return file, Span(*map(int, numbers))
+    file = source.rsplit(":", 3)[:-3]
+    return (file[0] if file else None), span
 
 
 def place(element: Any) -> tuple[str, Span]:
