@@ -170,3 +170,18 @@ def test_the_shipped_schema_is_up_to_date_and_agrees(golden: Callable[[Path, str
     assert list(validator.iter_errors(EVERYTHING)) == []
     for wrong in ({"colour": 1}, {"controlLoop": {"periodMs": 0}}, {"qos": {"scan": {"depth": "1"}}}):
         assert list(validator.iter_errors(wrong))
+
+
+def test_every_key_is_explained() -> None:
+    manual = (Path(__file__).parent.parent / "docs" / "cli.md").read_text()
+
+    def keys(values: dict[str, object], before: str = "") -> list[str]:
+        below = [(f"{before}{name}", value) for name, value in values.items()]
+        maps = ("frameId", "qos", "watchdogMs", "supervisor.controller.run", "supervisor.controller.launch")
+        return [
+            key
+            for name, value in below
+            for key in (keys(value, f"{name}.") if isinstance(value, dict) and name not in maps else [name])
+        ]
+
+    assert [key for key in keys(EVERYTHING) if f"`{key}`" not in manual and f"`{key}.<topic>`" not in manual] == []
