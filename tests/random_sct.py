@@ -78,7 +78,8 @@ def _sketches(draw: st.DrawFn, name: str) -> _Sketch:
 @st.composite
 def _types(draw: st.DrawFn, size: int) -> str:
     minimum = draw(st.integers(-4, 3))
-    return draw(st.sampled_from(("bool", "E", "F", f"{minimum}..{minimum + draw(st.integers(0, size - 1))}")))
+    numbers = f"{minimum}..{minimum + draw(st.integers(0, size - 1))}"
+    return draw(st.sampled_from(("bool", "bool", "E", "E", "F", *[numbers] * 5)))
 
 
 def _plant(draw: st.DrawFn, sketch: _Sketch, sketches: Sequence[_Sketch], scope: _Scope):
@@ -124,7 +125,11 @@ def _edge(draw: st.DrawFn, sketch: _Sketch, declaring: _Sketch, event: str, scop
         f"{declaring.name}.{event}",
         to=draw(st.sampled_from(sketch.locations)),
         when=_boolean(draw, scope, 2) if draw(st.integers(0, 2)) == 0 else None,
-        do={name: _value(draw, kind, with_inputs, 2) for name, kind in sketch.variables.items() if draw(st.booleans())},
+        do={
+            name: _value(draw, kind, with_inputs, 2)
+            for name, kind in sketch.variables.items()
+            if draw(st.integers(0, 3)) < 3
+        },
     )
 
 

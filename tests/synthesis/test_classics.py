@@ -160,3 +160,22 @@ def test_large_ranges_are_no_trouble():
     values, wrecks = 10045 + 1 + 30000, (10045 - 9000) + 2
     assert (synthesis.uncontrolled_states, synthesis.controlled_states) == (2 * values + wrecks, 2 * values - wrecks)
     assert guards(synthesis) == {"R.go": (None, "R.n >= -9000 and R.n <= 29998")}
+
+
+@pytest.mark.parametrize(
+    ("value", "reached"),
+    [
+        ("n + 1", [0, 1, 2, 3]),
+        ("n - 1", [0, -1, -2]),
+        ("n * 4 - 3", [0, -2]),
+        ("-n + 3", [0, 3]),
+        ("5 - 2 * n", [0, 3, -1]),
+    ],
+)
+def test_integers_saturate_at_both_bounds(value, reached):
+    counter = plant("C", {"only": [edge("u", do={"n": value})]}, uncontrollable=["u"], variables={"n": "-2..3 = 0"})
+    counted = model([counter, lamp()], [needs("light", " or ".join(f"C.n == {each}" for each in reached))])
+    synthesis = synthesize(counted)
+    assert synthesis.uncontrolled_states == len(set(reached))
+    assert guards(synthesis) == {}
+    check(counted, synthesis)
