@@ -18,14 +18,13 @@ class Ros:
     environment: dict[str, str]
     python: str
     build: list[str]
-    executables: str
 
     def built(self, workspace: Path) -> str:
         """Builds the packages below `src` of a workspace; what the build said. Fails where the build does."""
         done = subprocess.run(
             self.build,
             cwd=workspace,
-            env=self.environment,
+            env={**self.environment, "CXXFLAGS": "-Wconversion", "CFLAGS": "-Wconversion"},
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             text=True,
@@ -34,10 +33,6 @@ class Ros:
         )
         assert done.returncode == 0, done.stdout[-4000:]
         return done.stdout
-
-    def executable(self, workspace: Path, name: str) -> Path:
-        """A program of the package of the same name in a built workspace."""
-        return workspace / self.executables.format(name=name) / name
 
 
 @dataclass
@@ -66,7 +61,7 @@ def find_ros1() -> Found:
     found.missing += [f"no {each}" for each in ("catkin_make", "cmake", "g++") if not _has(each, environment)]
     if not found.missing:
         build = ["catkin_make", f"-DPYTHON_EXECUTABLE={python}"]
-        found.ros = Ros(1, environment, python, build, "devel/lib/{name}")
+        found.ros = Ros(1, environment, python, build)
     return found
 
 
@@ -83,10 +78,11 @@ def find_ros2() -> Found:
         environment = sourced[0]
     found.missing += [f"no {each}" for each in ("colcon", "cmake", "g++") if not _has(each, environment)]
     if not found.missing:
-        environment |= {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST", "ROS_LOCALHOST_ONLY": "1"}
+        old = environment.get("ROS_DISTRO") in ("foxy", "galactic", "humble")
+        environment |= {"ROS_LOCALHOST_ONLY": "1"} if old else {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
         python = shutil.which("python3", path=environment["PATH"]) or "python3"
         build = ["colcon", "build", "--event-handlers", "console_cohesion+", "--cmake-args", "-DBUILD_TESTING=OFF"]
-        found.ros = Ros(2, environment, python, build, "install/{name}/lib/{name}")
+        found.ros = Ros(2, environment, python, build)
     return found
 
 
@@ -116,5 +112,5 @@ def _sourced(package: str) -> tuple[dict[str, str], Path] | None:
                 ["bash", "-c", script], env=_plain_environment(), capture_output=True, text=True, check=True
             )
             pairs = (each.split("=", 1) for each in shown.stdout.split("\0") if "=" in each)
-            return {name: value for name, value in pairs}, setup.parent
+            return dict(pairs), setup.parent
     return None

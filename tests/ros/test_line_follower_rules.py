@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
+
 from tests.ros.line_follower_rules import HALT, MOVE, commands_in, late_moves, violations
 
 

@@ -67,11 +67,11 @@ class CppPrinter(ExpressionPrinter):
     def binary(self, expression: ex.BinaryExpression) -> str:
         """A comparison with NaN is false, `!=` too; no whole number overflows in the compiler's own `int`."""
         if isinstance(expression, ex.Implication):
-            return f"(!{self._tight(expression.left)} || {self._tight(expression.right)})"
+            return f"(!{self.tight(expression.left)} || {self.tight(expression.right)})"
         if isinstance(expression, ex.Inequation) and is_double(expression.left):
             return f"differ({self(expression.left)}, {self(expression.right)})"
         if isinstance(expression, _ARITHMETIC) and not is_double(expression) and is_constant(expression):
-            return f"Integer({self(expression.left)}) {self.symbols[type(expression)]} {self._tight(expression.right)}"
+            return f"Integer({self(expression.left)}) {self.symbols[type(expression)]} {self.tight(expression.right)}"
         return super().binary(expression)
 
     def atom(self, expression: ex.Expression) -> str:
@@ -88,7 +88,7 @@ class CppPrinter(ExpressionPrinter):
             case ex.DoubleConversion():
                 return f"double({self(expression.operand)})"
             case ex.Conditional():
-                tight = map(self._tight, (expression.condition, expression.then, expression.otherwise))
+                tight = map(self.tight, (expression.condition, expression.then, expression.otherwise))
                 return "({} ? {} : {})".format(*tight)
         return self._reference(expression)
 
@@ -123,14 +123,13 @@ class CppPrinter(ExpressionPrinter):
 
     def integer(self, expression: ex.Expression, kind: ex.IntegerType) -> str:
         """A whole number as an `Integer`, within the bounds of its type."""
-        text = self(expression)
-        if is_constant(expression) or self.precedence(expression) != ATOM:
-            text = f"Integer({text})"
-        if kind.minimum is None or kind.maximum is None:
-            return text
-        return f"{text}.within({kind.minimum}, {kind.maximum})"
+        bounds = "" if kind.minimum is None or kind.maximum is None else f".within({kind.minimum}, {kind.maximum})"
+        if is_constant(expression):
+            return f"Integer({self(expression)}){bounds}"
+        return f"{self.tight(expression)}{bounds}" if bounds else self(expression)
 
-    def _tight(self, expression: ex.Expression) -> str:
+    def tight(self, expression: ex.Expression) -> str:
+        """The text, in parentheses where it is not a single operand."""
         text = self(expression)
         return text if self.precedence(expression) == ATOM else f"({text})"
 

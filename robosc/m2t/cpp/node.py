@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from robosc.expressions import PRECEDENCE
 from robosc.m2t.c.types import type_name
 from robosc.m2t.cpp import reports
-from robosc.m2t.cpp.expressions import CppPrinter, parts, reads_elements
+from robosc.m2t.cpp.expressions import CppPrinter, is_double, parts, reads_elements
 from robosc.m2t.cpp.names import CppNames
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
@@ -65,17 +66,17 @@ class Alternative:
 
     condition: str
     fields: list[tuple[str, str]]
-    data: reports.EventData | None
 
 
 @dataclass(frozen=True)
 class Message:
-    """A message that the node sends."""
+    """A message that the node sends; it may fail where a double could be no finite number."""
 
     word: str
     event: str
     requirements: list[str]
     alternatives: list[Alternative]
+    may_fail: bool
     reaction: Happening | None
 
 
@@ -191,11 +192,17 @@ class Node:
             self._names.conversion(conversion),
             self._type(ex.EnumerationType(enumeration=conversion.enumeration)),
             [
-                Rule(printer(each.condition), self._names.literal(each.literal), reads_elements(each.condition))
+                Rule(self._tested(each, printer), self._names.literal(each.literal), reads_elements(each.condition))
                 for each in conversion.rules
             ],
             self._names.literal(conversion.default),
         )
+
+    @staticmethod
+    def _tested(rule: rosgraph.ConversionRule, printer: CppPrinter) -> str:
+        """A rule's condition, fit to stand before `&& read.complete()`."""
+        loose = printer.precedence(rule.condition) < PRECEDENCE[ex.Conjunction] and reads_elements(rule.condition)
+        return printer.tight(rule.condition) if loose else printer(rule.condition)
 
     # What comes in
 
@@ -290,15 +297,15 @@ class Node:
             word,
             self._names.c.enumerator(sending.event),
             [each.text for each in self._graph.model.requirements if each.event == sending.event and each.text],
-            [self._alternative(each, f"{word}_message_") for each in sending.alternatives],
+            [self._alternative(each) for each in sending.alternatives],
+            any(is_double(field.value) for each in sending.alternatives for field in each.fields),
             self._happening(sending.event) if self._reactions(sending.event) else None,
         )
 
-    def _alternative(self, provided: rosgraph.ProvidedData, message: str) -> Alternative:
+    def _alternative(self, provided: rosgraph.ProvidedData) -> Alternative:
         return Alternative(
             self._names.is_in(provided.location),
             [(".".join(each.path), self._field(each)) for each in provided.fields],
-            reports.sent(provided, message, self._names),
         )
 
     def _field(self, assignment: rosgraph.FieldAssignment) -> str:

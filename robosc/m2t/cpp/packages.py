@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 from robosc.m2t.c import engine
 from robosc.m2t.cpp.definition import definition_text
 from robosc.m2t.cpp.rendering import fold, node_environment
-from robosc.naming import controller_name
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -46,8 +45,8 @@ def package(
     target: Target, graph: rosgraph.RosGraph, node: Node, configuration: Configuration, values: Mapping[str, Any]
 ) -> dict[str, str]:
     """The files of a package by their path in it; `values` is what only this target's templates read."""
-    name = configuration.package.name or controller_name(graph)
-    headers = ["data.hpp", "json.hpp", "parameters.hpp"]
+    name = configuration.package_name(graph)
+    headers = ["data.hpp", "fields.hpp", "json.hpp", "parameters.hpp"]
     if configuration.publish_state_information:
         headers.append("definition.hpp")
     if any(has_defaults(each.interface) for each in node.publishers):

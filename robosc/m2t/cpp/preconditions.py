@@ -19,10 +19,12 @@ if TYPE_CHECKING:
 
 RULE = "precondition"
 
-_PACKAGE = re.compile(r"[a-z][a-z0-9_]*[a-z0-9]")
+_PACKAGE = re.compile(r"[a-z]([a-z0-9]|_(?!_))*[a-z0-9]")
 _TYPE = re.compile(r"[A-Z][A-Za-z0-9]*")
 _FIELD = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
-_TOPIC = re.compile(r"(~?/)?[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*")
+_TOPIC = re.compile(r"(/_*)?[A-Za-z][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*")
+#: What would end a string, or mean something in it, where the build tools copy it into CMake code.
+_RISKY = re.compile(r'["\\$;\n\r]')
 
 
 def preconditions(models: Models, configuration: Configuration) -> list[Diagnostic]:
@@ -31,7 +33,7 @@ def preconditions(models: Models, configuration: Configuration) -> list[Diagnost
     if graph is None:
         message = "there is no ROS graph beside this model: generate from the .rscd or the .rosgraph.xmi"
         return [Diagnostic(models.sct.name, START, Severity.ERROR, RULE, message)]
-    return [*_clients(graph), *_names(graph), *_settings(configuration)]
+    return [*_clients(graph), *_names(graph), *_settings(graph, configuration)]
 
 
 def _error(element: ex.Located, message: str, hint: str | None = None) -> Diagnostic:
@@ -49,14 +51,14 @@ def _clients(graph: rosgraph.RosGraph) -> Iterator[Diagnostic]:
 def _names(graph: rosgraph.RosGraph) -> Iterator[Diagnostic]:
     """Names that stand in code as they are, and that ROS itself would refuse otherwise."""
     for each in graph.interfaces:
-        if not _PACKAGE.fullmatch(each.package) or "__" in each.package:
+        if not _PACKAGE.fullmatch(each.package):
             yield _error(each, f'"{each.package}" is no name of a ROS package')
         if not _TYPE.fullmatch(each.type):
             yield _error(each, f'"{each.type}" is no name of a ROS type')
     topics: list[rosgraph.Subscription | rosgraph.Publisher] = [*graph.subscriptions, *graph.publishers]
     for topic in topics:
         if not _TOPIC.fullmatch(topic.topic):
-            hint = "letters, digits and underscores, with single slashes between them"
+            hint = "write letters, digits and underscores, with single slashes between them"
             yield _error(topic, f'"{topic.topic}" is no name of a ROS topic', hint)
     for element, name in _fields(graph):
         if not _FIELD.fullmatch(name):
@@ -71,7 +73,13 @@ def _fields(graph: rosgraph.RosGraph) -> Iterator[tuple[ex.Located, str]]:
             yield element, element.name
 
 
-def _settings(configuration: Configuration) -> Iterator[Diagnostic]:
+def _settings(graph: rosgraph.RosGraph, configuration: Configuration) -> Iterator[Diagnostic]:
+    name = configuration.package_name(graph)
+    if not _PACKAGE.fullmatch(name):
+        yield _error(graph, f'"{name}" is no name of a ROS package', 'set "package.name" in controller-config.json')
+    if _RISKY.search(configuration.package.maintainer):
+        hint = 'leave out ", \\, $ and ;'
+        yield configuration.error(("package", "maintainer"), "the maintainer would break the package's build", hint)
     unfinished = {
         "watchdogMs": configuration.watchdog_ms,
         "watchdogStops": configuration.watchdog_stops,

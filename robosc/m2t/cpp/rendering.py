@@ -16,7 +16,8 @@ if TYPE_CHECKING:
     from jinja2 import Environment
 
 _WIDTH = 116
-_LITERAL_OR_BLANK = re.compile(r"""\"(?:\\.|[^"\\])*"|'(?:\\.|[^'\\])*'| """)
+_TOKEN = re.compile(r"""\"(?:\\.|[^"\\])*"|'(?:\\.|[^'\\])*'|[][(){}]| (?!\()|(?<=\))(?=\.)""")
+_OPENING, _CLOSING = "([{", ")]}"
 
 
 def node_environment(target: str) -> Environment:
@@ -50,19 +51,30 @@ def raw_literal(json: str) -> str:
 
 
 def fold(code: str, width: int = 120) -> str:
-    """C++ code with lines that are too long broken at blanks outside of literals; comments and directives stay."""
+    """C++ code with long lines broken, at blanks outside of literals and before the calls of a chain.
+
+    A line breaks where the least brackets are open, at the last of these places that fits; comments and directives
+    stay as they are.
+    """
     return "".join(_folded(line, width) for line in code.splitlines(keepends=True))
 
 
 def _folded(line: str, width: int, continued: str = "") -> str:
     code = line.lstrip()
     margin = line[: len(line) - len(code)]
-    blanks = [each.start() for each in _LITERAL_OR_BLANK.finditer(line) if each[0] == " "]
-    fitting = [each for each in blanks if len(margin) < each <= width]
-    if len(line.rstrip()) <= width or not fitting or code.startswith(("//", "#")):
+    if len(line.rstrip()) <= width or code.startswith(("//", "#")):
         return line
+    depth = 0
+    places: list[tuple[int, int]] = []
+    for token in _TOKEN.finditer(line, len(margin)):
+        depth += (token[0] in _OPENING) - (token[0] in _CLOSING) if token[0] else 0
+        if not token[0].strip() and token.start() <= width:
+            places.append((-depth, token.start()))
+    if not places:
+        return line
+    at = max(places)[1]
     continued = continued or margin + "    "
-    return line[: fitting[-1]] + "\n" + _folded(continued + line[fitting[-1] + 1 :], width, continued)
+    return line[:at] + "\n" + _folded(continued + line[at:].lstrip(), width, continued)
 
 
 def shift(text: str, indent: int) -> str:

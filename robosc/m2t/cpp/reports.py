@@ -52,21 +52,7 @@ def received(values: Sequence[ex.Expression], names: CppNames) -> EventData | No
     if list(found) == [("data",)]:
         found = {(): found["data",]}
     texts = {path: _json(printer(part), kind, names) for path, (part, kind) in found.items()}
-    return EventData(_member("value", texts), any(reads_elements(part) for part, _ in found.values()))
-
-
-def sent(provided: rosgraph.ProvidedData, message: str, names: CppNames) -> EventData | None:
-    """The fields that a provide statement sets, as they stand in the message."""
-    if not provided.fields:
-        return None
-    fields = {tuple(each.path): (f"{message}.{'.'.join(each.path)}", each.type) for each in provided.fields}
-    if list(fields) == [("data",)]:
-        fields = {(): fields["data",]}
-    texts = {}
-    for path, (place, kind) in fields.items():
-        conversion = {ex.BooleanType: "bool", ex.IntegerType: "Integer", ex.DoubleType: "double"}.get(type(kind))
-        texts[path] = _json(f"{conversion}({place})" if conversion else place, kind, names)
-    return EventData(_member("value", texts), reads_elements=False)
+    return EventData(_nested(texts), any(reads_elements(part) for part, _ in found.values()))
 
 
 def component(plant: sct.Plant, variables: Sequence[rosgraph.NodeVariable], names: CppNames) -> Component:
@@ -79,13 +65,17 @@ def component(plant: sct.Plant, variables: Sequence[rosgraph.NodeVariable], name
         string_literal(plant.origin or plant.name),
         state,
         [
-            *((string_literal(each.name), _json(names.state(each), each.type, names)) for each in plant.variables),
+            *((string_literal(each.name), _json(_state(each, names), each.type, names)) for each in plant.variables),
             *(
                 (string_literal(each.name), _json(f"data_.{names.variable(each)}", each.type, names))
                 for each in variables
             ),
         ],
     )
+
+
+def _state(variable: sct.DiscreteVariable, names: CppNames) -> str:
+    return f"Integer({names.state(variable)})" if isinstance(variable.type, ex.IntegerType) else names.state(variable)
 
 
 def _json(value: str, kind: ex.Type | None, names: CppNames) -> str:
@@ -102,15 +92,13 @@ def _path(access: ex.Expression) -> _Path:
     )
 
 
-def _member(name: str, texts: Mapping[_Path, str]) -> str:
-    return f"Json::object(){_add(name, texts)}"
-
-
-def _add(name: str, texts: Mapping[_Path, str]) -> str:
+def _nested(texts: Mapping[_Path, str]) -> str:
     if () in texts:
-        return f".add({string_literal(name)}, {texts[()]})"
-    inner = "".join(
-        _add(head, {path[1:]: text for path, text in texts.items() if path[0] == head})
+        return texts[()]
+    inner = {
+        head: {path[1:]: text for path, text in texts.items() if path[0] == head}
         for head in dict.fromkeys(path[0] for path in texts)
+    }
+    return "Json::object()" + "".join(
+        f".add({string_literal(head)}, {_nested(below)})" for head, below in inner.items()
     )
-    return f".add({string_literal(name)}, Json::object(){inner})"

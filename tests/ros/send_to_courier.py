@@ -1,0 +1,96 @@
+"""Sends messages to the courier one by one, and writes down for each what the node then reports and sends.
+
+python3 send_to_courier.py 1|2 FILE
+"""
+
+import json
+import math
+import sys
+import time
+from pathlib import Path
+
+from topics import connect, plain
+
+SENT = {
+    "target": "geometry_msgs/PoseStamped",
+    "sum": "std_msgs/UInt8",
+    "ratio": "std_msgs/Float32",
+    "report": "std_msgs/String",
+    "busy": "std_msgs/Bool",
+}
+PATIENCE = 30.0
+
+
+def scan(ranges, angle_min=0.0):
+    return "scan", {"ranges": ranges, "angle_min": angle_min}
+
+
+#: Name of the step, topic and fields, and an event of the batch that the node makes of it.
+STEPS = [
+    ("no angle", *scan([3.0, 0.5, 3.0, 7.0], math.nan)),
+    ("ahead", *scan([0.5, 3.0, 3.0, 7.0], 1.0)),
+    ("short", *scan([0.625])),
+    ("infinite", *scan([0.5, 3.0, 3.0, math.inf])),
+    ("empty", *scan([])),
+    ("left", *scan([3.0, 0.5, 3.0, 1.0], 2.0)),
+    ("swapped", *scan([0.5, 3.0, 3.0, 1.0])),
+    ("high count", "count", {"data": 30000}),
+    ("low count", "count", {"data": -32768}),
+    ("division by zero", "count", {"data": 299}),
+    ("word", "word", {"data": 'idle "ü" \\ \n'}),
+    ("idle", "word", {"data": "idle"}),
+]
+EVENTS = {"scan": "detail", "count": "size", "word": "word"}
+
+
+class Session:
+    def __init__(self, version):
+        self.topics = connect(version, "client")
+        self.reports = []
+        self.sent = {}
+        self.topics.listen("/courier_controller/state", "std_msgs/String", self.report)
+        for topic, kind in SENT.items():
+            self.topics.listen(topic, kind, lambda message, topic=topic: self.sent.update({topic: plain(message)}))
+        self.senders = {
+            "scan": self.topics.publisher("/scan", "sensor_msgs/LaserScan"),
+            "count": self.topics.publisher("count", "std_msgs/Int16"),
+            "word": self.topics.publisher("word", "std_msgs/String"),
+        }
+
+    def report(self, message):
+        self.reports.append(json.loads(message.data))
+
+    def wait(self, condition):
+        until = time.monotonic() + PATIENCE
+        while not condition():
+            if time.monotonic() > until:
+                raise TimeoutError(f"nothing within {PATIENCE} s; the last report was {self.reports[-1:]}")
+            self.topics.receive(0.02)
+
+    def rest(self):
+        """What is reported and sent in the next ticks."""
+        count = len(self.reports)
+        self.wait(lambda: len(self.reports) >= count + 2)
+        self.sent.clear()
+        self.wait(lambda: len(self.reports) >= count + 5)
+        return {"components": self.reports[-1]["components"], "sent": dict(self.sent)}
+
+    def step(self, topic, fields):
+        start = len(self.reports)
+        event = f"message_{EVENTS[topic]}.u_response"
+        self.senders[topic](**fields)
+        self.wait(lambda: any(event in each["transitions"] for each in self.reports[start:]))
+        return self.rest()
+
+
+def main(version, path):
+    session = Session(version)
+    session.wait(lambda: session.topics.heard() and session.reports)
+    results = {"start": session.rest()}
+    for name, topic, fields in STEPS:
+        results[name] = session.step(topic, fields)
+    Path(path).write_text(json.dumps(results), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

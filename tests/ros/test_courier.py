@@ -1,0 +1,137 @@
+"""Data on its way through a generated node: conversions, assignments, ranges, defaults; what is not there or no number.
+
+The model is `tests/m2t/cpp/courier.rscd`, the steps are those of `send_to_courier.py`.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+if TYPE_CHECKING:
+    from tests.ros.conftest import Courier
+
+NOTHING = '"nothing" ??/ */ \\'
+
+
+def variables(courier: Courier, step: str, component: str) -> dict[str, Any]:
+    values: dict[str, Any] = courier.steps[step]["components"][component]["variables"]
+    return values
+
+
+def sent(courier: Courier, step: str, topic: str) -> Any:
+    return courier.steps[step]["sent"][topic]["data"]
+
+
+def position(courier: Courier, step: str) -> tuple[float, float, float]:
+    point = courier.steps[step]["sent"]["target"]["pose"]["position"]
+    return point["x"], point["y"], point["z"]
+
+
+def test_starts_with_the_initial_values_of_the_model(courier: Courier) -> None:
+    assert variables(courier, "start", "Scanner") == {"seen": "nothing", "first": -1.5, "before": 0, "fourth": 0.25}
+    assert variables(courier, "start", "Counter") == {
+        "limited": 0,
+        "total": 0,
+        "capped": 3,
+        "class": "small",
+        "text": NOTHING,
+    }
+    assert sent(courier, "start", "report") == NOTHING
+    assert "target" not in courier.steps["start"]["sent"]
+
+
+def test_sends_the_default_where_no_statement_provides_data(courier: Courier) -> None:
+    # A comparison with NaN is false, `!=` too; a rule that reads past the end does not match.
+    assert variables(courier, "no angle", "Scanner")["seen"] == "far"
+    assert position(courier, "no angle") == (0, 0, 0)
+
+
+def test_stamps_headers_and_sends_quaternions_of_length_one(courier: Courier) -> None:
+    target = courier.steps["no angle"]["sent"]["target"]
+    assert target["header"]["frame_id"] == "map"
+    assert target["pose"]["orientation"] == {"x": 0, "y": 0, "z": 0, "w": 1}
+    stamp = target["header"]["stamp"]
+    assert stamp not in ("0", {"sec": 0, "nanosec": 0})
+
+
+def test_assigns_all_at_once(courier: Courier) -> None:
+    assert position(courier, "ahead") == (0.5, 3.0, 13.0)
+    assert variables(courier, "swapped", "Scanner") == {"seen": "ahead", "first": 3.0, "before": 0.5, "fourth": 1.0}
+    assert courier.steps["left"]["components"]["Scanner"]["state"] == "turning"
+    assert courier.steps["swapped"]["components"]["Scanner"]["state"] == "looking"
+    assert position(courier, "swapped") == (3.0, 0.5, 1.0)
+
+
+def test_skips_what_reads_past_the_end_and_says_so(courier: Courier) -> None:
+    assert variables(courier, "short", "Scanner") == {"seen": "ahead", "first": 0.625, "before": 0.5, "fourth": 7.0}
+    assert variables(courier, "empty", "Scanner")["seen"] == "far"
+    assert variables(courier, "empty", "Scanner")["first"] == 0.5
+    assert "/scan: there is no element 3 in an array of 1" in courier.node_output
+
+
+def test_withholds_what_is_not_finite_and_says_so(courier: Courier) -> None:
+    assert variables(courier, "infinite", "Scanner")["seen"] == "ahead"
+    assert variables(courier, "infinite", "Scanner")["fourth"] is None
+    assert "target" not in courier.steps["infinite"]["sent"]
+    assert "target is withheld: its pose.position.z would not be finite" in courier.node_output
+    assert variables(courier, "division by zero", "Counter")["capped"] == 0
+    assert "ratio" not in courier.steps["division by zero"]["sent"]
+
+
+def test_saturates_at_ranges_and_wire_types(courier: Courier) -> None:
+    high = {"limited": 200, "total": 60000, "capped": -300, "class": "large", "text": NOTHING}
+    assert variables(courier, "high count", "Counter") == high
+    assert sent(courier, "high count", "sum") == 255
+    assert sent(courier, "high count", "ratio") == pytest.approx(-200)
+    low = {"limited": -5, "total": -5536, "capped": 300, "class": "negative", "text": NOTHING}
+    assert variables(courier, "low count", "Counter") == low
+    assert sent(courier, "low count", "sum") == 0
+
+
+def test_holds_back_what_a_requirement_forbids(courier: Courier) -> None:
+    assert not {"target", "report"} & set(courier.steps["high count"]["sent"])
+    assert {"target", "report"} <= set(courier.steps["low count"]["sent"])
+
+
+def test_stores_and_sends_any_text(courier: Courier) -> None:
+    # The node still counts more than 100 here: the report waits, the text is stored.
+    assert variables(courier, "word", "Counter")["text"] == 'idle "ü" \\ \n'
+
+
+def test_evaluates_booleans(courier: Courier) -> None:
+    assert sent(courier, "high count", "busy") is True
+    assert sent(courier, "low count", "busy") is False
+    assert sent(courier, "word", "busy") is True
+    assert sent(courier, "idle", "busy") is False
+
+
+def test_reacts_to_what_it_sends(courier: Courier) -> None:
+    reports = [variables(courier, step, "Office")["reports"] for step in ("start", "ahead", "high count", "low count")]
+    assert reports == sorted(reports)
+    assert reports[0] < reports[1] < reports[3]
+
+
+def test_logs_events_with_their_data(courier: Courier) -> None:
+    words = [each["data"]["value"] for each in courier.log if each["event"] == "message_word.u_response"]
+    assert words == ['idle "ü" \\ \n', "idle"]
+    sides = [each["data"] for each in courier.log if each["event"] == "message_side.u_response"]
+    assert sides[:3] == [{"value": "far"}, {"value": "ahead"}, {"value": "ahead"}]
+    details = [each.get("data") for each in courier.log if each["event"] == "message_detail.u_response"]
+    assert details[:4] == [
+        {"value": {"ranges": {"0": 3.0, "3": 7.0}}},
+        {"value": {"ranges": {"0": 0.5, "3": 7.0}}},
+        None,
+        {"value": {"ranges": {"0": 0.5, "3": None}}},
+    ]
+    targets = [each.get("data") for each in courier.log if each["event"] == "message_target.c_trigger"]
+    assert {"value": {"pose": {"position": {"x": 0.5, "y": 3.0, "z": 13.0}}}} in targets
+    assert {"value": {}} in targets
+    assert {"data_target.c_d1", "component_Scanner.c_tau1"} < {
+        each["event"] for each in courier.log if each["direction"] == "internal"
+    }
+    times = [each["time"] for each in courier.log]
+    assert times == sorted(times)
+    assert not math.isnan(times[0])

@@ -1,0 +1,86 @@
+"""Topics of ROS 1 or ROS 2 for the scripts that tests run under a ROS installation's own Python."""
+# ruff: noqa: PLC0415  # which of the two is there is known when it is asked for
+
+import importlib
+import time
+
+
+def connect(version, name):
+    """The topics of ROS 1 or 2, for a node of that name."""
+    return Ros1(name) if version == "1" else Ros2(name)
+
+
+def type_of(name):
+    """The Python class of a type such as `std_msgs/Int16`."""
+    package, kind = name.split("/")
+    return getattr(importlib.import_module(f"{package}.msg"), kind)
+
+
+def fill(message, fields):
+    """Sets fields of a message, in nested dicts."""
+    for name, value in fields.items():
+        if isinstance(value, dict):
+            fill(getattr(message, name), value)
+        else:
+            setattr(message, name, value)
+    return message
+
+
+def plain(value):
+    """A message as nested dicts."""
+    if hasattr(value, "__slots__"):
+        names = (each.lstrip("_") for each in value.__slots__ if each != "_check_fields")
+        return {each: plain(getattr(value, each)) for each in names}
+    return value if isinstance(value, (bool, int, float, str)) else str(value)
+
+
+class Ros1:
+    def __init__(self, name):
+        import rospy
+
+        self.rospy = rospy
+        rospy.init_node(name, anonymous=True)
+        self.publishers = []
+
+    def listen(self, topic, kind, callback, latched=False):  # noqa: ARG002
+        self.rospy.Subscriber(topic, type_of(kind), callback, queue_size=1000)
+
+    def publisher(self, topic, kind):
+        publisher = self.rospy.Publisher(topic, type_of(kind), queue_size=100)
+        self.publishers.append(publisher)
+        return lambda **fields: publisher.publish(fill(type_of(kind)(), fields))
+
+    def heard(self):
+        return all(each.get_num_connections() > 0 for each in self.publishers)
+
+    def receive(self, seconds):
+        time.sleep(seconds)
+
+
+class Ros2:
+    def __init__(self, name):
+        import rclpy
+
+        self.rclpy = rclpy
+        rclpy.init()
+        self.node = rclpy.create_node(name)
+        self.publishers = []
+
+    def listen(self, topic, kind, callback, latched=False):
+        from rclpy.qos import DurabilityPolicy, QoSProfile
+
+        durability = DurabilityPolicy.TRANSIENT_LOCAL if latched else DurabilityPolicy.VOLATILE
+        self.node.create_subscription(type_of(kind), topic, callback, QoSProfile(depth=1000, durability=durability))
+
+    def publisher(self, topic, kind):
+        publisher = self.node.create_publisher(type_of(kind), topic, 100)
+        self.publishers.append(publisher)
+        return lambda **fields: publisher.publish(fill(type_of(kind)(), fields))
+
+    def heard(self):
+        return all(each.get_subscription_count() > 0 for each in self.publishers)
+
+    def receive(self, seconds):
+        until = time.monotonic() + seconds
+        while time.monotonic() < until:
+            self.rclpy.spin_once(self.node, timeout_sec=max(0.0, until - time.monotonic()))
