@@ -15,10 +15,10 @@ from robosc.metamodel import sct
 from robosc.synthesis.decoding import Ranges, codes, complement, cost, is_one_of, pick
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
 
     from robosc.synthesis.bdd import Diagram
-    from robosc.synthesis.encoding import Domain, Encoding
+    from robosc.synthesis.encoding import Domain, Element, Encoding
 
 #: For each element that a product speaks of, the codes it may have.
 Product: TypeAlias = "dict[Domain, Ranges]"
@@ -74,7 +74,7 @@ class _Cover:
             for domain, free in sorted(product.items(), key=lambda each: each[0].rank)
         }
 
-    def _grown(self, state: dict) -> Product:  # type: ignore[type-arg]
+    def _grown(self, state: Mapping[Element, int]) -> Product:
         """The state's product without the elements that need not be spoken of."""
         literals = [(each, [(state[each.element],) * 2]) for each in self._domains]
         rest = [self._encoding.diagrams.true]

@@ -19,6 +19,9 @@ if TYPE_CHECKING:
     from robosc.synthesis.fixpoint import SupervisedStates
     from robosc.synthesis.paths import Move, Path
 
+#: How many plants a sentence names.
+_NAMED = 4
+
 
 @dataclass(frozen=True)
 class Reason:
@@ -28,7 +31,8 @@ class Reason:
     controllable one whose requirement stands between the robot and its marked states; None where the plants alone reach
     no marked state. `unmarked` are the plants that can't be in a marked location any more once the event happened, or
     at all; none if each can be but never all at once. `trace` is a shortest one from the initial state, the event
-    last; `state` is where it ends: every plant's location, every variable's value.
+    last; `state` is where it ends, before an event that a requirement forbids: every plant's location, if it has several,
+    and every variable's value.
     """
 
     message: str
@@ -136,11 +140,15 @@ class EmptySupervisor:
         codes: Mapping[Element, int],
     ) -> Reason:
         """The reason with its sentence completed by who is in the way, and the state by name."""
-        where = ", ".join(
+        named = [
             f"{plant.name} (in {plant.locations[codes[plant]].name})" if len(plant.locations) > 1 else plant.name
-            for plant in unmarked
-        )
-        who = f"never in a marked location: {where}" if unmarked else "each plant can be marked, but never all at once"
+            for plant in unmarked[:_NAMED]
+        ]
+        if len(unmarked) > _NAMED:
+            named.append(f"and {len(unmarked) - _NAMED} more")
+        who = "each plant can be marked, but never all at once"
+        if named:
+            who = f"never in a marked location: {', '.join(named)}"
         state: dict[str, Value] = {}
         for plant in self._encoding.layout.plants:
             if len(plant.locations) > 1:
