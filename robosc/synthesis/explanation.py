@@ -31,8 +31,8 @@ class Reason:
     controllable one whose requirement stands between the robot and its marked states; None where the plants alone reach
     no marked state. `unmarked` are the plants that can't be in a marked location any more once the event happened, or
     at all; none if each can be but never all at once. `trace` is a shortest one from the initial state, the event
-    last; `state` is where it ends, before an event that a requirement forbids: every plant's location, if it has several,
-    and every variable's value.
+    last; `state` is where it ends, before an event that a requirement forbids: the location of every plant with several
+    of them, and the value of every variable.
     """
 
     message: str
