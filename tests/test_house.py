@@ -12,11 +12,25 @@ import robosc
 PACKAGE = Path(robosc.__file__).parent
 
 #: What every room stands on. What is not named in this file is on the ground, too, and may import nothing but ground.
-ROOMS = {"language", "checks", "m2m", "synthesis", "engine", "diagrams", "m2t", "targets", "cli", "__main__", ""}
+ROOMS = {
+    "language",
+    "checks",
+    "m2m",
+    "synthesis",
+    "engine",
+    "diagrams",
+    "m2t",
+    "supervision",
+    "targets",
+    "cli",
+    "__main__",
+    "",
+}
 #: Rooms that see more than the ground, and what: the root is the public API, the command line is on top.
 ALLOWED = {
     "": ROOMS - {"cli", "__main__"},
     "__main__": {"cli"},
+    "supervision": {"synthesis"},
     "cli": ROOMS - {"__main__"},
 }
 #: Pieces that generators share, each with what it may use of the others.
@@ -25,7 +39,8 @@ SHARED = {"templates": set(), "c": {"templates"}, "cpp": {"c", "templates"}}
 LIBRARIES = {
     "arpeggio": {"language"},
     "click": {"cli"},
-    "jinja2": {"m2t"},
+    "jinja2": {"diagrams", "m2t"},
+    "networkx": {"diagrams"},
     "oxidd": {"synthesis"},
     "pydantic": {"config"},
     "pyecore": {"metamodel"},

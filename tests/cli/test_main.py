@@ -115,3 +115,27 @@ def test_an_interruption(door: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     raising(KeyboardInterrupt(), monkeypatch)
     answer = CliRunner().invoke(main, ["check", str(door)])
     assert answer.exit_code == 130
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no /dev/full on this system")
+def test_an_output_that_can_not_be_written(door: Path) -> None:
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run(
+            [sys.executable, "-m", "robosc", "synthesize", door],
+            check=False,
+            stdout=full,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+    assert done.returncode == 2
+    assert "No space left on device" in done.stderr
+
+
+def test_a_reader_that_has_read_enough(door: Path) -> None:
+    with subprocess.Popen(
+        [sys.executable, "-m", "robosc", "synthesize", door], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    ) as process:
+        assert process.stdout is not None
+        assert process.stderr is not None
+        process.stdout.close()
+        assert process.stderr.read() == ""
