@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from robosc.expressions import ATOM, PRECEDENCE, ExpressionPrinter
 from robosc.m2t.c.ranges import COMPARISONS, Junction, Not, children_of, is_condition
-from robosc.m2t.c.types import Interval, number, signed, type_name
+from robosc.m2t.c.types import Interval, index_type, number, signed, type_name
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 
@@ -159,8 +159,10 @@ class CPrinter(ExpressionPrinter):
                 return "int"
             case sct.VariableReference(variable=declaration) | sct.InputReference(input=declaration):
                 return type_name(declaration.type)
-            case ex.Conditional():
-                return "int32_t" if working_type(node, self.ranges) == "int" else working_type(node, self.ranges)
+            case ex.Conditional() if (enumeration := enumeration_of(node)) is not None:
+                return index_type(len(enumeration.literals) - 1)
+            case ex.Conditional() if working_type(node, self.ranges) == "int":
+                return "int32_t"
         return working_type(node, self.ranges)
 
     def atom(self, expression: ex.Expression) -> str:
@@ -188,22 +190,16 @@ class CPrinter(ExpressionPrinter):
         condition = self(expression.condition)
         if self.precedence(expression.condition) <= _CONDITIONAL:
             condition = f"({condition})"
-        enumeration = enumeration_of(expression)
+        branches = (expression.then, expression.otherwise)
         if is_condition(expression):
-            values = [
-                self(each) if self.precedence(each) > _CONDITIONAL else f"({self(each)})"
-                for each in (expression.then, expression.otherwise)
-            ]
-        elif enumeration is not None:
-            kind = type_name(ex.EnumerationType(enumeration=enumeration))
-            values = [self.cast(kind, each) for each in (expression.then, expression.otherwise)]
+            values = [self(each) if self.precedence(each) > _CONDITIONAL else f"({self(each)})" for each in branches]
         else:
-            working = working_type(expression, self.ranges)
-            kind = "int32_t" if working == "int" else working
-            values = [self.cast(kind, each) for each in (expression.then, expression.otherwise)]
+            values = [self.cast(self.type(expression), each) for each in branches]
         return f"{condition} ? {values[0]} : {values[1]}"
 
     def cast(self, kind: str, node: ex.Expression) -> str:
-        """The value converted to a type."""
+        """The value converted to a type, unless it is of that type."""
         text = self(node)
+        if self.type(node) == kind:
+            return text if self.precedence(node) > _CONDITIONAL else f"({text})"
         return f"({kind}){text if self.precedence(node) == ATOM else f'({text})'}"

@@ -1,0 +1,173 @@
+"""What the control loop promises, whatever the robot and whatever happens to it."""
+
+from itertools import combinations
+from random import Random
+
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from robosc.engine import ControlLoop, Hooks, Settings
+from robosc.metamodel import expression as ex
+from robosc.metamodel import sct
+from robosc.roles import event_name, plant_of
+from tests.engine.robots import robots
+
+_SETTINGS = st.builds(
+    Settings,
+    events_per_tick=st.sampled_from((0, 1, 2)),
+    reactions_per_tick=st.sampled_from((0, 2, 10)),
+    react_immediately=st.booleans(),
+)
+
+
+class Observed:
+    """A loop under random data; remembers each operation with what happened in it and what was enabled after each."""
+
+    def __init__(self, model: sct.SupervisoryControlModel, chosen: Settings, seed: int) -> None:
+        self.loop = ControlLoop(model, chosen, Hooks(after=self._after, livelock=self._livelock))
+        self.settings = chosen
+        self.roles = self.loop.engine.roles
+        self.queued = [event_name(each) for each in (*self.roles.cancels, *self.roles.triggers)]
+        self.silent = {event_name(each) for each in self.roles.silent}
+        self.data = {event_name(each) for events in self.roles.data for each in events}
+        self.operations: list[tuple[str, list[str]]] = []
+        #: Of each moment: the operation, what happened, and which cancels and triggers are enabled then.
+        self.moments: list[tuple[int, str, set[str]]] = []
+        self.performed: list[str] = []
+        random = Random(seed)  # noqa: S311
+        for _ in range(60):
+            self._random_operation(random)
+
+    def _random_operation(self, random: Random) -> None:
+        if random.random() < 0.5:
+            self._operate("tick")
+            return
+        self._operate("begin")
+        possible = [each for each in self.roles.incoming if self.loop.enabled(event_name(each))]
+        self.performed = []
+        self.operations.append(("batch", []))
+        for event in random.choices(possible, k=random.randint(0, 3)) if possible else ():
+            data = {each.name: self._value(each.type, random) for each in event.inputs}
+            if self.loop.perform(event_name(event), data):
+                self.performed.append(event_name(event))
+        assert self.operations[-1][1] == self.performed, "nothing else happens inside a batch"
+        self._operate("end")
+
+    def _operate(self, operation: str) -> None:
+        self.operations.append((operation, []))
+        getattr(self.loop, operation)()
+        if operation != "begin":
+            resting = not any(map(self.loop.enabled, self.silent))
+            assert resting or "livelock" in {each for _, happened in self.operations for each in happened}
+
+    def _after(self, event: str) -> None:
+        self.operations[-1][1].append(event)
+        self.moments.append((len(self.operations), event, {each for each in self.queued if self.loop.enabled(each)}))
+
+    def _livelock(self) -> None:
+        self.operations[-1][1].append("livelock")
+
+    @staticmethod
+    def _value(kind: ex.Type, random: Random) -> bool | int | str:
+        match kind:
+            case ex.EnumerationType():
+                return random.choice([each.name for each in kind.enumeration.literals])
+            case ex.IntegerType():
+                return random.choice((kind.minimum, kind.maximum, random.randint(kind.minimum, min(kind.maximum, 9))))
+        return random.random() < 0.5
+
+    def rounds(self, *kinds: str) -> list[list[str]]:
+        """The cancels and triggers of each operation of these kinds."""
+        return [
+            [each for each in happened if each in self.queued] for kind, happened in self.operations if kind in kinds
+        ]
+
+
+_observed = st.builds(Observed, robots(), _SETTINGS, st.integers(0, 2**32))
+_some = settings(
+    max_examples=25,
+    deadline=None,
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much, HealthCheck.data_too_large],
+)
+
+
+@_some
+@given(_observed)
+def test_rounds(seen: Observed) -> None:
+    topics = {
+        event_name(each): plant_of(each).topic.strip("/")
+        for each in seen.roles.triggers
+        if plant_of(each).kind == sct.PlantKind.message
+    }
+    for sent in seen.rounds("tick", "end"):
+        assert len(sent) == len(set(sent)), "each event at most once"
+        on = [topics[each] for each in sent if each in topics]
+        assert len(on) == len(set(on)), "at most one message on a topic"
+        cancels = [each.endswith("c_cancel") for each in sent]
+        assert cancels == sorted(cancels, reverse=True), "cancels first"
+    limit = seen.settings.events_per_tick
+    assert all(not limit or len(sent) <= limit for sent in seen.rounds("tick"))
+
+
+@_some
+@given(_observed)
+def test_reactions(seen: Observed) -> None:
+    once = {event_name(each) for each in seen.roles.once_per_tick}
+    reactions, started, ticked = 0, [], False
+    for operation, happened in seen.operations:
+        sent = [each for each in happened if each in seen.queued]
+        if operation == "tick":
+            reactions, started, ticked = 0, [], True
+        elif operation == "end":
+            reactions += len(sent)
+        started += [each for each in sent if each in once]
+        assert len(started) == len(set(started)), "a service or action starts once between two ticks"
+        assert operation in ("tick", "end") or not sent
+        allowed = seen.settings.reactions_per_tick if ticked and seen.settings.react_immediately else 0
+        assert reactions <= allowed
+
+
+@_some
+@given(_observed)
+def test_settling(seen: Observed) -> None:
+    bound = seen.roles.settling_bound
+    for _, happened in seen.operations:
+        row = 0
+        for event in happened:
+            row = row + 1 if event in seen.silent else row if event in seen.data or event == "livelock" else 0
+            assert row <= bound
+            assert event != "livelock" or row == bound
+
+
+@_some
+@given(_observed)
+def test_data_rests_at_the_first_statement_whose_condition_holds(seen: Observed) -> None:
+    engine = seen.loop.engine
+    for events in seen.roles.data:
+        plant = plant_of(events[0])
+        wanted = next(each for each in events if engine.enabled(event_name(each)))
+        assert engine.state[plant.name] == wanted.name.removeprefix("c_")
+
+
+@_some
+@given(_observed)
+def test_no_enabled_event_waits_while_another_runs_in_two_ticks(seen: Observed) -> None:
+    """Queues are fair: what stays enabled runs before anything else of its kind runs a second time, tick by tick.
+
+    Of messages on one topic this holds among themselves: they share its turn in each round. Reactions are no rounds:
+    there an event waits for the tick unless the batch concerns it.
+    """
+    ticks = {number for number, (kind, _) in enumerate(seen.operations, 1) if kind == "tick"}
+    shared = {event_name(each): number for number, group in enumerate(seen.roles.shared_topics) for each in group}
+    runs = [
+        place for place, (operation, event, _) in enumerate(seen.moments) if operation in ticks and event in seen.queued
+    ]
+    for first, second in combinations(runs, 2):
+        event = seen.moments[first][1]
+        if seen.moments[second][1] == event:
+            between = seen.moments[first:second]
+            waited = set.intersection(*(enabled for _, _, enabled in between)) - {each for _, each, _ in between}
+            for each in waited:
+                assert each.endswith("c_cancel") != event.endswith("c_cancel") or (
+                    each in shared and shared[each] != shared.get(event)
+                )
