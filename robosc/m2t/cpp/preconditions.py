@@ -6,6 +6,7 @@ import re
 from typing import TYPE_CHECKING
 
 from robosc.diagnostics import START, Diagnostic, Severity
+from robosc.m2t.c.preconditions import preconditions as engine_preconditions
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph
 from robosc.metamodel.places import place
@@ -33,7 +34,12 @@ def preconditions(models: Models, configuration: Configuration) -> list[Diagnost
     if graph is None:
         message = "there is no ROS graph beside this model: generate from the .rscd or the .rosgraph.xmi"
         return [Diagnostic(models.sct.name, START, Severity.ERROR, RULE, message)]
-    return [*_clients(graph), *_names(graph), *_settings(graph, configuration)]
+    return [
+        *engine_preconditions(models.sct),
+        *_clients(graph),
+        *_names(graph),
+        *_settings(graph, configuration),
+    ]
 
 
 def _error(element: ex.Located, message: str, hint: str | None = None) -> Diagnostic:

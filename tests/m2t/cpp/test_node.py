@@ -1,0 +1,31 @@
+"""What the templates print, where no model that the language accepts leads there yet."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import robosc
+from robosc.m2t.cpp.node import Node
+from robosc.metamodel import expression as ex
+from robosc.metamodel import rosgraph
+
+
+def test_what_a_trigger_changes_is_done_after_its_data_is_made() -> None:
+    robot = robosc.load(Path(__file__).parent / "courier.rscd")
+    robosc.to_sct(robot)
+    graph = robosc.to_rosgraph(robot)
+    variable = next(each for each in graph.variables if each.name == "total")
+    (sending,) = (each for topic in graph.publishers for each in topic.sendings if each.name == "sum")
+    plant = next(each for each in graph.model.plants if each.name == "component_Scanner")
+    graph.reactions.append(
+        rosgraph.Reaction(
+            event=sending.event,
+            locations=plant.locations[:1],
+            assignments=[rosgraph.NodeAssignment(variable=variable, value=ex.IntegerLiteral(value=7))],
+        )
+    )
+    message = next(each for topic in Node(graph).publishers for each in topic.messages if each.word == "sum")
+    assert message.reaction is not None
+    (reaction,) = message.reaction.reactions
+    assert reaction.condition == "supervisor_.state.component_Scanner == courier_component_Scanner_looking"
+    assert [(each.target, each.value) for each in reaction.assignments] == [("data_.Counter.total", "Integer(7)")]

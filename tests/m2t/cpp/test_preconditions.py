@@ -1,0 +1,98 @@
+"""What keeps a model from becoming a node, each with the place where it must change."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+import robosc
+from robosc import config
+from robosc.m2t.cpp.preconditions import preconditions
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+ROBOT = """\
+robot %(robot)s {
+  interface odometry use %(type)s from %(package)s
+  datatype object Odometry { %(field)s: double }
+
+  component Base {
+    outgoing message where with identifier: "%(topic)s", type: Odometry links odometry
+    %(more)s
+
+    behaviour {
+      variable x: double
+      initial marked state on { on response from where do x := value.%(field)s }
+    }
+  }
+}
+"""
+GOOD = {
+    "robot": "Cart",
+    "type": "Odometry",
+    "package": "nav_msgs",
+    "field": "x",
+    "topic": "/base/odometry",
+    "more": "",
+}
+
+
+def found(tmp_path: Path, settings: str = "{}", **changes: str) -> list[str]:
+    path = tmp_path / "cart.rscd"
+    path.write_text(ROBOT % (GOOD | changes), encoding="utf-8")
+    robot = robosc.load(path)
+    model = robosc.to_sct(robot)
+    robosc.synthesize(model)
+    file = tmp_path / "controller-config.json"
+    file.write_text(settings, encoding="utf-8")
+    findings = preconditions(robosc.Models(model, robosc.to_rosgraph(robot), robot), config.read(file))
+    return [f"{each.file.rpartition('/')[2]}:{each.span.line}: {each.message}" for each in findings]
+
+
+def test_nothing_against_a_good_model(tmp_path: Path) -> None:
+    assert found(tmp_path) == []
+
+
+@pytest.mark.parametrize(
+    ("changes", "expected"),
+    [
+        ({"package": "NavMsgs"}, 'cart.rscd:2: "NavMsgs" is no name of a ROS package'),
+        ({"package": "nav__msgs"}, 'cart.rscd:2: "nav__msgs" is no name of a ROS package'),
+        ({"type": "odometry"}, 'cart.rscd:2: "odometry" is no name of a ROS type'),
+        ({"topic": "/base/"}, 'cart.rscd:6: "/base/" is no name of a ROS topic'),
+        ({"topic": "/base odometry"}, 'cart.rscd:6: "/base odometry" is no name of a ROS topic'),
+        ({"topic": "/base//odometry"}, 'cart.rscd:6: "/base//odometry" is no name of a ROS topic'),
+        ({"topic": "/base/1"}, 'cart.rscd:6: "/base/1" is no name of a ROS topic'),
+        ({"topic": '/b\\n\\"); exit(1); (\\"'}, 'cart.rscd:6: "/b\n"); exit(1); ("" is no name of a ROS topic'),
+        ({"field": "_x"}, 'cart.rscd:11: "_x" is no name of a field in ROS'),
+        ({"robot": "_Cart"}, 'cart.rscd:1: "_cart_controller" is no name of a ROS package'),
+        (
+            {"more": "service reset with request: none, response: none"},
+            "cart.rscd:7: the service reset can't be generated for ROS yet: messages only",
+        ),
+    ],
+)
+def test_names_and_kinds(tmp_path: Path, changes: dict[str, str], expected: str) -> None:
+    assert found(tmp_path, **changes) == [expected]
+
+
+@pytest.mark.parametrize(
+    ("settings", "expected"),
+    [
+        ('{\n "watchdogMs": {"/scan": 5}}', 'controller-config.json:2: "watchdogMs" can\'t be generated for ROS yet'),
+        ('{\n "watchdogStops": true}', 'controller-config.json:2: "watchdogStops" can\'t be generated for ROS yet'),
+        ('{\n\n "onShutdown": ["halt"]}', 'controller-config.json:3: "onShutdown" can\'t be generated for ROS yet'),
+        (
+            '{"package": {\n "maintainer": "A\\") execute_process(COMMAND id) (\\""}}',
+            "controller-config.json:2: the maintainer would break the package's build",
+        ),
+    ],
+)
+def test_settings(tmp_path: Path, settings: str, expected: str) -> None:
+    assert found(tmp_path, settings) == [expected]
+
+
+def test_a_name_in_the_configuration_repairs_the_robot_s(tmp_path: Path) -> None:
+    assert found(tmp_path, '{"package": {"name": "wheels"}}', robot="_Cart") == []
