@@ -150,9 +150,8 @@ def generate(target: str, models: Models, configuration: Configuration | None = 
         raise ValueError("the sct model has no supervisor yet: synthesize gives it one")
     if TARGETS[target].needs_graph and models.rosgraph is None:
         raise ValueError(f"{target} needs the ROS graph")
-    generator = TARGETS[target].generator()
     configuration = configuration or Configuration()
-    findings = generator.preconditions(models, configuration)
+    findings = TARGETS[target].findings(models, configuration)
     if has_errors(findings):
         raise ModelError(findings)
-    return generator.generate(models, configuration)
+    return TARGETS[target].generator().generate(models, configuration)

@@ -2,7 +2,8 @@
 
 import json
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar
@@ -173,11 +174,29 @@ class Configuration(_Settings):
         return self.package.name or controller_name(robot)
 
     def error(self, key: Key, message: str, hint: str | None = None) -> Diagnostic:
-        """An error at a key of the file that this was read from, such as `("onShutdown", 0)`.
+        """An error at a key of the file that this was read from, such as `("onShutdown", 0)` or `("qos", "scan")`.
 
-        Where the file does not have the key, the error stands at the innermost object around it.
+        Where the file does not have the key, the error stands at the innermost one around it.
         """
         return Diagnostic(self._file, _span(self._text, key), Severity.ERROR, RULE, message, hint)
+
+    def unknown_names(self, topics: Sequence[str], messages: Sequence[str]) -> list[Diagnostic]:
+        """Warnings about settings for what the robot does not have.
+
+        `topics` are its topics, services and actions without a `/` in front, `messages` the names of its messages.
+        """
+        named: list[tuple[Key, str, Sequence[str]]] = []
+        for setting, values in (("frameId", self.frame_id), ("qos", self.qos), ("watchdogMs", self.watchdog_ms)):
+            named += (((setting, name), name, topics) for name in values)
+        named += ((("onShutdown", place), name, messages) for place, name in enumerate(self.on_shutdown))
+        return [
+            replace(
+                self.error(key, f'"{key[0]}": the robot has no {name}', _repair(name, known)),
+                severity=Severity.WARNING,
+            )
+            for key, name, known in named
+            if name not in known
+        ]
 
 
 def find(folder: Path) -> Path | None:
@@ -247,14 +266,17 @@ def _explained(file: str, text: str, fault: Any) -> Diagnostic:
     span = _span(text, key)
     if fault["type"] == "extra_forbidden":
         known = _keys_at(key[:-1])
-        close = get_close_matches(str(key[-1]), known, n=1)
-        hint = f'did you mean "{close[0]}"?' if close else f"known here: {', '.join(known)}"
-        return _error(file, f'unknown key "{name}"', span, hint)
+        return _error(file, f'unknown key "{name}"', span, _repair(str(key[-1]), known))
     if fault["type"] == "missing":
         return _error(file, f'the key "{name}" is missing', span)
     reason = _WRONG_TYPE.get(fault["type"]) or re.sub("^(Input|String|Value error,) (should )?", "", fault["msg"])
     reason = f"must {reason}" if fault["msg"].startswith(("Input", "String")) else reason
     return _error(file, f'"{name}" {reason}' if name else f"the file {reason}", span)
+
+
+def _repair(name: str, known: Sequence[str]) -> str:
+    close = get_close_matches(name, sorted(known), n=1)
+    return f'did you mean "{close[0]}"?' if close else f"known here: {', '.join(known)}"
 
 
 def _keys_at(key: Key) -> list[str]:
@@ -277,7 +299,7 @@ def _span(text: str, key: Key) -> Span:
     """Where a key of a JSON text stands; of one that is not there, the innermost key around it."""
     start = end = inside = _skip(text, 0)
     for name in key:
-        entry = next((each for each in _entries(text, inside) if each[0] == name), None)
+        entry = next((each for each in _entries(text, inside) if each[0] in (name, f"/{name}")), None)
         if entry is None:
             break
         _, start, end, inside = entry

@@ -19,7 +19,7 @@ class Generator(Protocol):
         """What keeps the target from these models, or is doubtful about them."""
 
     def generate(self, models: Models, configuration: Configuration) -> dict[str, str]:
-        """The files: POSIX path in the target's folder to text. The models have a supervisor, the preconditions hold."""
+        """Files: POSIX path in the target's folder to text. The models have a supervisor; the preconditions hold."""
 
 
 @dataclass(frozen=True)
@@ -43,6 +43,17 @@ class Target:
         ROS packages stand beside those of other robots in one folder, so that this can be a workspace's `src`.
         """
         return f"{self._folder}/{configuration.package_name(models.sct)}" if self.location else self._folder
+
+    def findings(self, models: Models, configuration: Configuration) -> list[Diagnostic]:
+        """What keeps the target from these models and settings, and what is doubtful about them."""
+        found = self.generator().preconditions(models, configuration)
+        graph = models.rosgraph
+        if not self.needs_graph or graph is None:
+            return found
+        topics = [each.topic for each in graph.subscriptions] + [each.topic for each in graph.publishers]
+        topics += [each.identifier for each in graph.serviceClients] + [each.identifier for each in graph.actionClients]
+        messages = [each.name for publisher in graph.publishers for each in publisher.sendings]
+        return [*found, *configuration.unknown_names([each.removeprefix("/") for each in topics], messages)]
 
     def generator(self) -> Generator:
         """The module that generates it; loaded when it is asked for."""

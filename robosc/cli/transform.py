@@ -73,7 +73,7 @@ def command(
             with progress("synthesizing the supervisor"):
                 supervise(models.sct)
         for target in targets:
-            report.add(target.generator().preconditions(models, configuration))
+            report.add(target.findings(models, configuration))
         report.stop_on_errors()
         folder = Path(output or f"build/{models.sct.name}")
         trees = _trees(folder, Path(model).parent, targets, models, configuration)

@@ -145,6 +145,15 @@ def test_a_configuration_with_errors(run: Run, door: Path) -> None:
     assert run("transform", door, "--to", "cif", "--config", "missing.json").exit_code == 2
 
 
+def test_a_setting_for_a_topic_that_the_robot_does_not_have(run: Run, door: Path) -> None:
+    Path("controller-config.json").write_text('{"qos": {"opne": {"depth": 3}, "open": {"depth": 3}}}')
+    answer = run("transform", door, "--to", "ros1,ros2", "-o", "out")
+    assert answer.exit_code == 0, answer.output
+    assert answer.stdout.count("controller-config.json:1:10: warning: ") == 1
+    assert 'did you mean "open"?' in answer.stdout
+    assert run("transform", door, "--to", "cif", "-o", "out").stdout == ""
+
+
 def test_copies_of_the_packages(run: Run, door: Path) -> None:
     (door.parent / "controller-config.json").write_text(
         '{"output": {"ros1ControllerNodeLocation": "workspace/src/door", "ros2ControllerNodeLocation": "two"}}'
