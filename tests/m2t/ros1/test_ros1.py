@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 from xml.etree import ElementTree
@@ -60,3 +62,13 @@ def test_every_text_is_ends_with_a_line(files: dict[str, str]) -> None:
     for path, text in files.items():
         assert text.endswith("\n"), path
         assert not any(line != line.rstrip() for line in text.split("\n")), path
+
+
+def test_the_platform_s_linter_is_content(files: dict[str, str], tmp_path: Path) -> None:
+    package = tmp_path / "courier_controller"
+    for path, text in files.items():
+        (package / path).parent.mkdir(parents=True, exist_ok=True)
+        (package / path).write_text(text, encoding="utf-8")
+    command = [sys.executable, "-m", "catkin_lint", "-W2", "--strict", package]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout) == (0, ""), done.stderr

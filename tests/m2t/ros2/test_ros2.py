@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import ast
+import subprocess
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 from xml.etree import ElementTree
@@ -91,3 +93,12 @@ def test_every_text_ends_with_a_line(files: dict[str, str]) -> None:
     for path, text in files.items():
         assert text.endswith("\n"), path
         assert not any(line != line.rstrip() for line in text.split("\n")), path
+
+
+def test_the_platform_s_linter_is_content(files: dict[str, str], tmp_path: Path) -> None:
+    # As ament_lint_cmake calls it.
+    filters = "--filter=-convention/filename,-package/consistency,-package/stdargs"
+    (tmp_path / "CMakeLists.txt").write_text(files["CMakeLists.txt"], encoding="utf-8")
+    command = [sys.executable, "-m", "cmakelint.main", filters, "--linelength=140", tmp_path / "CMakeLists.txt"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout
