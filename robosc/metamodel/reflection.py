@@ -6,6 +6,8 @@ from typing import Any
 
 from pyecore.ecore import EAttribute, EClass
 
+from robosc.metamodel._ecore import packages
+
 
 @cache
 def features(metaclass: EClass) -> Mapping[str, Any]:
@@ -40,3 +42,13 @@ def tree(root: Any) -> Iterator[tuple[str, Any]]:
         path, element = pending.pop()
         yield path, element
         pending += [(f"{path}/{step}", child) for step, child in reversed(list(contents(element)))]
+
+
+def metamodel(name: str) -> Any:
+    """The package that an .ecore file declares, with its documentation. Raises KeyError where there is no such file."""
+    return packages(documented=True)[name]
+
+
+def documentation(element: Any) -> str:
+    """What the .ecore file says of a package, class or feature."""
+    return str(element.eAnnotations[0].details["documentation"])

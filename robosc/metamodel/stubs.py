@@ -5,6 +5,7 @@ from pathlib import Path
 from pyecore.ecore import EClass, EPackage, EStructuralFeature
 
 from robosc.metamodel._ecore import PACKAGES, packages
+from robosc.metamodel.reflection import documentation
 
 _TYPES = {
     "EString": "str",
@@ -14,10 +15,6 @@ _TYPES = {
     "EBigInteger": "int",
     "EDouble": "float",
 }
-
-
-def _documentation(element: EClass | EPackage) -> str:
-    return str(element.eAnnotations[0].details["documentation"])
 
 
 def _type(feature: EStructuralFeature, package: EPackage) -> str:
@@ -54,7 +51,7 @@ def stub(name: str) -> str:
     ]
     lines += [f"from robosc.metamodel import {', '.join(others)}", ""] if others else []
     for classifier in package.eClassifiers:
-        doc = f'    """{_documentation(classifier)}"""'
+        doc = f'    """{documentation(classifier)}"""'
         if not isinstance(classifier, EClass):
             lines += [f"class {classifier.name}:", doc, "    name: str"]
             lines += [f"    {literal.name}: ClassVar[{classifier.name}]" for literal in classifier.eLiterals]

@@ -1,0 +1,88 @@
+"""What a class diagram of a metamodel shows."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from robosc.metamodel.reflection import documentation, is_attribute, metamodel
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+_TYPES = {"EString": "String", "EBoolean": "Boolean", "EDouble": "Double"} | dict.fromkeys(
+    ("ELong", "ELongObject", "EBigInteger"), "Integer"
+)
+
+
+@dataclass(frozen=True)
+class Feature:
+    """An attribute, or a reference if `reference`; `own` says that its type is of the same metamodel."""
+
+    name: str
+    type: str
+    multiplicity: str
+    reference: bool
+    containment: bool
+    own: bool
+
+
+@dataclass(frozen=True)
+class Class:
+    """A class, or an enumeration if it has literals. Parents of other metamodels are named with the metamodel."""
+
+    name: str
+    abstract: bool
+    documentation: str
+    parents: Sequence[str]
+    foreign_parents: Sequence[str]
+    features: Sequence[Feature]
+    literals: Sequence[str]
+
+
+@dataclass(frozen=True)
+class ClassDiagram:
+    """The classes of a metamodel, in the order of its .ecore file."""
+
+    name: str
+    documentation: str
+    classes: Sequence[Class]
+
+    @classmethod
+    def of(cls, name: str) -> ClassDiagram:
+        """The diagram of a metamodel."""
+        package = metamodel(name)
+        return cls(name, documentation(package), [_class(each, package) for each in package.eClassifiers])
+
+
+def _class(classifier: Any, package: Any) -> Class:
+    if hasattr(classifier, "eLiterals"):
+        literals = [each.name for each in classifier.eLiterals]
+        return Class(classifier.name, False, documentation(classifier), (), (), (), literals)
+    own = [each.ePackage.name == package.name for each in classifier.eSuperTypes]
+    parents = list(zip(classifier.eSuperTypes, own, strict=True))
+    return Class(
+        name=classifier.name,
+        abstract=classifier.abstract,
+        documentation=documentation(classifier),
+        parents=[each.name for each, near in parents if near],
+        foreign_parents=[f"{each.ePackage.name}.{each.name}" for each, near in parents if not near],
+        features=[_feature(each, package) for each in classifier.eStructuralFeatures],
+        literals=(),
+    )
+
+
+def _feature(feature: Any, package: Any) -> Feature:
+    target = feature.eType
+    plain = target.name in _TYPES
+    own = not plain and target.ePackage.name == package.name
+    upper = "*" if feature.upperBound < 0 else str(feature.upperBound)
+    lower = str(feature.lowerBound)
+    return Feature(
+        name=feature.name,
+        type=_TYPES[target.name] if plain else target.name if own else f"{target.ePackage.name}.{target.name}",
+        multiplicity=lower if lower == upper else f"{lower}..{upper}",
+        reference=not is_attribute(feature),
+        containment=not is_attribute(feature) and feature.containment,
+        own=own,
+    )
