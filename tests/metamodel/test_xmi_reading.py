@@ -1,6 +1,7 @@
 """XMI files to models: the same model comes back, and whatever is wrong with a file is said, in its place."""
 
 import os
+import re
 from pathlib import Path
 from typing import Any
 
@@ -9,6 +10,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from robosc.diagnostics import Diagnostic, ModelError
+from robosc.diagnostics.rules import page
 from robosc.metamodel.xmi import load, to_texts
 from robosc.resources import locate
 
@@ -313,3 +315,16 @@ def test_no_damage_makes_anything_but_findings(folder: Path, texts: dict[str, st
             lines = Path(each.file).read_text().split("\n")
             assert 1 <= each.span.column <= len(lines[each.span.line - 1]) + 1
     (folder / name).write_text(texts[name])
+
+
+@pytest.mark.parametrize(("heading", "rules"), [("Wrong", ["xmi", "xmi"]), ("Right", [])])
+def test_the_page_of_the_rule(write: Any, heading: str, rules: list[str]) -> None:
+    text = page("xmi")
+    assert text is not None
+    example = re.search(rf"^## {heading}\n\n```xml\n(.*?)^```$", text, flags=re.MULTILINE | re.DOTALL)
+    assert example
+    path = write(example.group(1))
+    if rules:
+        assert [each.rule for each in findings(path)] == rules
+    else:
+        assert load(path).name == "Lamp"

@@ -6,13 +6,18 @@ from pathlib import Path
 import pytest
 from hypothesis import given, settings
 
+from robosc.checks import check
 from robosc.config import Configuration
 from robosc.diagnostics import Severity, Span
+from robosc.diagnostics.rules import page
+from robosc.language import read
+from robosc.m2m import robosc_to_sct
 from robosc.m2t import cif
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 from robosc.metamodel.reflection import tree
 from robosc.models import Models
+from robosc.synthesis import synthesize
 from tests.m2t.cif.differences import differences
 from tests.m2t.cif.rebuilding import rebuild
 from tests.random_sct import sct_models
@@ -149,6 +154,19 @@ def test_every_model_keeps_its_meaning(given: sct.SupervisoryControlModel) -> No
     text = generated(given)["robot.cif"]
     assert differences(given, rebuild(text)) == []
     assert not re.search(r"[-*]", re.sub("//.*", "", text))
+
+
+ROOT = HERE.parents[2]
+MODELS = [ROOT / "tests" / "metamodel" / "warehouse.rscd", *sorted((ROOT / "examples").glob("*/*.rscd"))]
+
+
+@pytest.mark.parametrize("path", MODELS, ids=[each.stem for each in MODELS])
+def test_whole_robots_keep_their_meaning(path: Path) -> None:
+    given = robosc_to_sct.transform(read(path).base)[0]
+    given.supervisor = synthesize(given).supervisor
+    assert given.supervisor is not None
+    for text in generated(given).values():
+        assert differences(given, rebuild(text)) == []
 
 
 def expression(text: str, **kinds: str) -> sct.SupervisoryControlModel:
@@ -313,3 +331,16 @@ def test_nothing_breaks_out_of_its_place(text: str) -> None:
         if isinstance(element, ex.NamedElement):
             element.name = text
     assert len(cif.preconditions(Models(named), Configuration())) == 4
+
+
+@pytest.mark.parametrize(("heading", "rules"), [("Wrong", ["cif"]), ("Right", [])])
+def test_the_page_of_the_rule(heading: str, rules: list[str], tmp_path: Path) -> None:
+    text = page("cif")
+    assert text is not None
+    found = re.search(rf"^## {heading}\n\n```robosc\n(.*?)^```$", text, flags=re.MULTILINE | re.DOTALL)
+    assert found
+    (tmp_path / "model.rscd").write_text(found.group(1))
+    robot = read(tmp_path / "model.rscd").base
+    assert check(robot) == []
+    models = Models(robosc_to_sct.transform(robot)[0])
+    assert [each.rule for each in cif.preconditions(models, Configuration())] == rules
