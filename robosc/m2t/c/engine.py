@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from robosc.m2t.c.comments import comment, comment_text, string_literal
@@ -17,7 +18,7 @@ from robosc.metamodel import sct
 from robosc.roles import Roles, event_name, plant_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
     from pathlib import Path
 
     from robosc.config import ControlLoop
@@ -40,6 +41,27 @@ def generate(
     }
 
 
+@dataclass(frozen=True)
+class _Case:
+    """A part of a `switch`: its events, a comment on them, its lines, and whether they read a copy of the state."""
+
+    events: list[str]
+    comment: str
+    lines: list[str]
+    old: bool = False
+
+
+def _merged(cases: Iterable[_Case]) -> list[_Case]:
+    """Neighbours with the same lines as one, where the second has no comment."""
+    merged: list[_Case] = []
+    for case in cases:
+        if merged and merged[-1].lines == case.lines and not case.comment:
+            merged[-1].events.extend(case.events)
+        else:
+            merged.append(case)
+    return merged
+
+
 class _Engine:
     def __init__(self, model: sct.SupervisoryControlModel, settings: ControlLoop) -> None:
         self.model = model
@@ -57,8 +79,7 @@ class _Engine:
 
     def prepared(self) -> dict[str, Any]:
         effects = Effects(self.names, self.ranges)
-        executed = [each for event in self.events if (each := self.effect(event, effects)) is not None]
-        guarded = [each for event in self.events if (each := self.guard(event)) is not None]
+        executed, guarded = self.effects(effects), self.guards()
         arrived = [self.arrived(event) for events in self.roles.data for event in events]
         return {
             "p": self.names.prefix,
@@ -97,9 +118,9 @@ class _Engine:
                 for each in plant.inputs
             ],
             "guards": guarded,
-            "guards_read_state": any("state->" in line for each in guarded for line in each["lines"]),
+            "guards_read_state": any("state->" in line for each in guarded for line in each.lines),
             "effects": executed,
-            "effects_read_inputs": any("inputs->" in line for each in executed for line in each["lines"]),
+            "effects_read_inputs": any("inputs->" in line for each in executed for line in each.lines),
             "helpers": sorted(effects.helpers),
             "arrived": [each for each in arrived if each is not None],
             "moved": self.moved(),
@@ -229,35 +250,42 @@ class _Engine:
 
     # The source
 
-    def guard(self, event: sct.Event) -> dict[str, Any] | None:
-        """The lines of the condition of an event; None where nothing forbids it and there is nothing to tell."""
-        unforced = All([self.table.possible(event, self.printer), self.table.required(event)])
-        added = self.table.added(event)
-        whole = All([unforced, added])
-        told = self.requirements(event)
-        if self.ranges(whole).single == 1 and not told:
-            return None
-        return {
-            "event": self.names.enumerator(event),
-            "comment": comment(told, _INDENT) if told else "",
-            "lines": self.lines(whole, unforced, added),
-        }
+    def guards(self) -> list[_Case]:
+        """The conditions of the events, but of those that nothing forbids and that there is nothing to tell about."""
+        cases = []
+        for event in self.events:
+            unforced = All([self.table.possible(event, self.printer), self.table.required(event)])
+            added = self.table.added(event)
+            told = self.requirements(event)
+            if told or self.ranges(All([unforced, added])).single != 1:
+                lines = self.lines(unforced, added)
+                cases.append(_Case([self.names.enumerator(event)], comment(told, _INDENT), lines))
+        return _merged(cases)
 
-    def lines(self, whole: All, unforced: All, added: All) -> list[str]:
-        """A conjunction, one condition a line."""
-        terms = self.conditions(whole)
-        plain = self.conditions(unforced)
-        by_synthesis = [each for each in self.conditions(added) if each not in plain] if len(terms) > 1 else []
-        return [f"{each} /* added by synthesis */" if each in by_synthesis else each for each in terms]
+    def lines(self, unforced: All, added: All) -> list[str]:
+        """A condition, one part a line."""
+        operator, terms = self.conditions(All([unforced, added]))
+        plain, by_synthesis = self.conditions(unforced)[1], self.conditions(added)[1]
+        told = [each for each in by_synthesis if each not in plain] if operator == "&&" else []
+        marked = [f"{each} /* added by synthesis */" if each in told else each for each in terms]
+        return [marked[0], *(f"{operator} {each}" for each in marked[1:])]
 
-    def conditions(self, node: Node) -> list[str]:
+    def conditions(self, node: Node) -> tuple[str, list[str]]:
+        """The outermost operator of a condition, and its operands."""
         reduced = self.ranges.reduced(node)
         joined = self.ranges.joined(reduced) if self.ranges(reduced).single is None else None
-        return self.printer.terms(joined) if joined and joined.neutral else [self.printer(reduced)]
+        if joined is None:
+            return "&&", [self.printer(reduced)]
+        return "&&" if joined.neutral else "||", self.printer.terms(joined)
 
-    def effect(self, event: sct.Event, effects: Effects) -> dict[str, Any] | None:
-        lines, old = effects.statements(self.table.edges[event])
-        return {"event": self.names.enumerator(event), "lines": lines, "old": old} if lines else None
+    def effects(self, effects: Effects) -> list[_Case]:
+        """The statements of the events that change something."""
+        cases = []
+        for event in self.events:
+            lines, old = effects.statements(self.table.edges[event])
+            if lines:
+                cases.append(_Case([self.names.enumerator(event)], "", lines, old))
+        return _merged(cases)
 
     def data_starts(self) -> list[str]:
         """The first event of each data plant, and the one behind the last."""
