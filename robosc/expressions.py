@@ -8,6 +8,7 @@ from typing import Any, ClassVar, TypeVar
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc, sct
 from robosc.metamodel.reflection import features, is_attribute
+from robosc.naming import written
 
 _Kind = TypeVar("_Kind", bound=ex.Expression)
 
@@ -117,8 +118,8 @@ class RoboscPrinter(ExpressionPrinter):
         """A name with the steps into its data, or a literal."""
         match expression:
             case robosc.Access():
-                name = "value" if expression.item is None else expression.item.name
-                owner = f"{expression.component.name}." if expression.component else ""
+                name = "value" if expression.item is None else written(expression.item.name)
+                owner = f"{written(expression.component.name)}." if expression.component else ""
                 return owner + name + "".join(map(_step, expression.segments))
             case ex.BooleanLiteral():
                 return "true" if expression.value else "false"
@@ -131,7 +132,7 @@ class RoboscPrinter(ExpressionPrinter):
 
 def _step(segment: robosc.AccessSegment) -> str:
     if isinstance(segment, robosc.PropertySegment):
-        return f".{segment.property.name}"
+        return f".{written(segment.property.name)}"
     assert isinstance(segment, robosc.IndexSegment)
     return f"[{segment.index}]"
 

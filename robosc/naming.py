@@ -10,6 +10,14 @@ if TYPE_CHECKING:
 
     from robosc.metamodel import expression as ex
 
+#: The words of RoboSC that a name in an expression has a `^` before.
+ROBOSC_KEYWORDS = frozenset(
+    {"action", "and", "array", "behaviour", "boolean", "cancel", "component", "datatype", "default", "disables", "do"}
+    | {"double", "enum", "error", "false", "feedback", "from", "goto", "identifier", "if", "import", "incoming"}
+    | {"initial", "integer", "interface", "library", "links", "marked", "message", "needs", "none", "object", "on"}
+    | {"or", "outgoing", "provide", "request", "requirement", "response", "robot", "service", "state", "string", "to"}
+    | {"transition", "true", "type", "use", "value", "variable", "with"}
+)
 _WORD = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
 
 
@@ -36,6 +44,11 @@ def escape(name: str, keywords: Collection[str]) -> str:
     stem = name.rstrip("_")
     longest = max((len(each) for each in keywords if each.rstrip("_") == stem), default=None)
     return name if longest is None else name + "_" * (longest - len(stem) + 1)
+
+
+def written(name: str) -> str:
+    """A name as a RoboSC text has it where a keyword could stand."""
+    return f"^{name}" if name in ROBOSC_KEYWORDS else name
 
 
 class Names:

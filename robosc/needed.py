@@ -7,11 +7,16 @@ from typing import TYPE_CHECKING
 
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc
+from robosc.typing import received_data
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from robosc.instances import Instance, Instances, InstanceVariable, Occurrence
+
+#: A comparison of doubles is tabulated over the integers that it is computed from, up to so many valuations: a larger
+#: table would be larger than any model that it is part of.
+LARGEST_TABLE = 1 << 16
 
 
 @dataclass(frozen=True)
@@ -134,6 +139,18 @@ def property_path(access: robosc.Access) -> tuple[robosc.ObjectProperty, ...] | 
     if not all(isinstance(each, robosc.PropertySegment) and each.property is not None for each in segments):
         return None
     return tuple(each.property for each in segments if isinstance(each, robosc.PropertySegment))
+
+
+def read_type(assigned: Assigned, access: robosc.Access) -> robosc.DataType | None:
+    """The declared type of what an assignment reads of its event's data; None where that is not known."""
+    segments = list(access.segments)
+    if not segments:
+        transition = assigned.transition
+        if not isinstance(transition, robosc.ResultTransition) or transition.communicationType is None:
+            return None
+        return received_data(transition.communicationType.communicationType, transition.resultType)
+    last = segments[-1]
+    return last.property.type if isinstance(last, robosc.PropertySegment) and last.property else None
 
 
 def _read_data(instances: Instances, assigned: Assigned, result: Needed) -> None:

@@ -94,6 +94,33 @@ def declared_type(data_type: rsc.DataType | None) -> Type:
     return UNKNOWN if data_type is None else _BASIC[type(data_type)]
 
 
+def events(communication: rsc.CommunicationType | None) -> tuple[str, ...]:
+    """The events of a communication that a transition may name."""
+    match communication:
+        case rsc.Message():
+            return ("request",) if str(communication.direction) == "incoming" else ("response",)
+        case rsc.Service():
+            return "request", "response", "error"
+        case rsc.Action():
+            return "request", "response", "error", "feedback", "cancel"
+    return ()
+
+
+def received_data(
+    communication: rsc.CommunicationType | None, result_type: rsc.ResultType | None
+) -> rsc.DataType | None:
+    """The declared type of the data that an event of a communication carries to the component; None where none."""
+    event = str(result_type)
+    match communication:
+        case rsc.Message() if event == "response":
+            return communication.type
+        case rsc.Service() | rsc.Action() if event == "response":
+            return communication.responseType
+        case rsc.Action() if event == "feedback":
+            return communication.feedbackType
+    return None
+
+
 def event_data_type(communication: rsc.CommunicationType | None, result_type: rsc.ResultType) -> Type | None:
     """The type of the data that an event of a communication carries to the component, which `value` reads.
 
@@ -101,20 +128,9 @@ def event_data_type(communication: rsc.CommunicationType | None, result_type: rs
     not have (the rule `result-type`) and where the communication is unresolved.
     """
     event = str(result_type)
-    match communication:
-        case rsc.Message():
-            if event == "request" and str(communication.direction) == "incoming":
-                return None
-            return declared_type(communication.type) if event == "response" else UNKNOWN
-        case rsc.Service():
-            if event in {"request", "error"}:
-                return None
-            return declared_type(communication.responseType) if event == "response" else UNKNOWN
-        case rsc.Action():
-            if event in {"request", "error", "cancel"}:
-                return None
-            return declared_type(communication.responseType if event == "response" else communication.feedbackType)
-    return UNKNOWN
+    if event in events(communication) and event in {"request", "error", "cancel"}:
+        return None
+    return declared_type(received_data(communication, result_type)) if event in events(communication) else UNKNOWN
 
 
 def provided_data_type(communication: rsc.CommunicationType | None) -> Type:
@@ -210,6 +226,8 @@ def infer(expression: ex.Expression | None, value: Type | None = None) -> Type:
     match expression:
         case rsc.Access():
             return access_types(expression, value)[-1]
+        case ex.BinaryExpression() if isinstance(expression, (*LOGICAL, *EQUALITY, *ORDERING)):
+            return BOOLEAN
         case ex.BinaryExpression():
             return operator_type(expression, infer(expression.left, value), infer(expression.right, value))
         case ex.Negation() | ex.UnaryMinus():

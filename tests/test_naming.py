@@ -1,3 +1,4 @@
+import re
 from keyword import kwlist
 
 import pytest
@@ -5,7 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robosc.metamodel import sct
-from robosc.naming import Names, controller_name, escape, snake_case
+from robosc.naming import ROBOSC_KEYWORDS, Names, controller_name, escape, snake_case, written
+from robosc.resources import locate
 
 KEYWORDS = [*kwlist, "if__", "_", "x_y"]
 
@@ -60,3 +62,15 @@ def test_fresh_names_differ(names: list[str]) -> None:
     assert len(set(given_out)) == len(names)
     assert not set(given_out) & {"a", "b_"}
     assert all(out.startswith(name) for name, out in zip(names, given_out, strict=True))
+
+
+def test_the_keywords_are_the_grammars() -> None:
+    grammar = locate("grammar/robosc.tx").read_text(encoding="utf-8")
+    reserved = re.search(r"UnreservedName:\s*/\(\?!\(\?:([a-z|]+)\)", grammar)
+    assert reserved
+    assert set(reserved[1].split("|")) == ROBOSC_KEYWORDS
+
+
+def test_a_name_is_written_so_that_it_is_no_keyword() -> None:
+    assert written("state") == "^state"
+    assert written("states") == "states"

@@ -9,6 +9,8 @@ from robosc.metamodel import robosc as rsc
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from robosc.metamodel import expression as ex
+
 
 def components(base: rsc.Base) -> Iterator[tuple[rsc.Component, rsc.LocalComponent]]:
     """The components that the base itself defines, in the order of the text."""
@@ -42,3 +44,25 @@ def transitions(automaton: rsc.Automaton) -> Iterator[rsc.Transition]:
             yield from definition.transitions
         elif isinstance(definition, rsc.Transition):
             yield definition
+
+
+def sends_message(transition: rsc.Transition) -> bool:
+    """Whether a transition happens when the controller sends its component a message."""
+    if not isinstance(transition, rsc.ResultTransition) or str(transition.resultType) != "request":
+        return False
+    communication = transition.communicationType.communicationType if transition.communicationType else None
+    return isinstance(communication, rsc.Message) and str(communication.direction) == "incoming"
+
+
+def assigned_variable(assignment: rsc.Assignment) -> rsc.Variable | None:
+    """The variable of the own component that an assignment means; None for anything else."""
+    item = assignment.item.item if assignment.item else None
+    own = isinstance(item, rsc.Variable) and _component(item) is _component(assignment)
+    return item if own and isinstance(item, rsc.Variable) else None
+
+
+def _component(element: ex.Located) -> rsc.Component | None:
+    around = element
+    while around is not None and not isinstance(around, rsc.Component):
+        around = around.eContainer()
+    return around

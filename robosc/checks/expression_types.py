@@ -11,12 +11,14 @@ from robosc.expressions import RoboscPrinter
 from robosc.instances import Instances
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
+from robosc.naming import written
 from robosc.typing import (
     BOOLEAN,
     DOUBLE,
     EQUALITY,
     INTEGER,
     LOGICAL,
+    NONE,
     STRING,
     UNKNOWN,
     ArrayType,
@@ -71,6 +73,8 @@ class ExpressionCheck:
 
     def provided(self, value: ex.Expression | None, wanted: Type, what: str) -> None:
         """Demands that provided data has this type; of an object value each property has its own."""
+        if isinstance(wanted, EnumType) or wanted == NONE:
+            wanted = UNKNOWN  # That no such data goes out is the matter of `data-type` and of `data-provisioning`.
         if not isinstance(value, rsc.ObjectValue):
             self.expect(value, wanted, what)
             return
@@ -172,7 +176,7 @@ class ExpressionCheck:
                 "store it in a variable by `on response from … do variable := value`, and read the variable",
             )
         if isinstance(item, rsc.Component):
-            members = [f"`{item.name}.{each}`" for each in _members(item)]
+            members = [f"`{written(item.name)}.{written(each)}`" for each in _members(item)]
             return (
                 f"component `{item.name}` has no value of its own, expected one of its states or variables",
                 f"write {' or '.join(members[:3])}" if members else f"`{item.name}` has neither: leave it out",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robosc.checks.automata import behaviours, transitions
+from robosc.checks.automata import assigned_variable, behaviours, sends_message, transitions
 from robosc.checks.expression_types import CONSTANT, ENUM_RULE, ExpressionCheck, Place
 from robosc.checks.rule import Finding, rule
 from robosc.metamodel import robosc as rsc
@@ -63,13 +63,14 @@ def _transition(transition: rsc.Transition) -> Iterator[Finding]:
     place = _SILENT
     if isinstance(transition, rsc.TauTransition):
         yield from _boolean(transition.guard, "a guard", _GUARD)
+    elif sends_message(transition):
+        place = Place(UNKNOWN)  # That nothing can be assigned there is the matter of `assignment-on-message-to-node`.
     elif isinstance(transition, rsc.ResultTransition):
         place = Place(value_type_in(transition), f"the event `{transition.resultType}` carries no data to a component")
     for assignment in transition.assignments:
-        # Any other target is the matter of `assignment-scope`.
-        variable = assignment.item.item if assignment.item else None
+        variable = assigned_variable(assignment)
         check = ExpressionCheck(place)
-        if isinstance(variable, rsc.Variable):
+        if variable is not None:
             check.type(assignment.item)
             wanted = UNKNOWN if assignment.item.segments else _variable_type(variable)
             check.expect(assignment.value, wanted, f"a value for `{variable.name}`")

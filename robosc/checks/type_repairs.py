@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from robosc.expressions import RoboscPrinter
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
+from robosc.naming import written
 from robosc.typing import (
     BOOLEAN,
     DOUBLE,
@@ -74,7 +75,7 @@ def literal_repair(expression: ex.Expression, found: Type, wanted: Type) -> str 
         case ex.StringLiteral(), BasicType.BOOLEAN if inner.value in {"true", "false"}:
             text = inner.value
         case ex.StringLiteral(), EnumType() if inner.value in _values(wanted):
-            text = inner.value
+            text = written(inner.value)
     return f"write `{text}`" if text is not None and found != wanted else None
 
 
@@ -101,13 +102,19 @@ def _part(whole: ex.Expression, found: Type, wanted: Type) -> str:
     properties = list(found.definition.properties)
     fitting = [each for each in properties if declared_type(each.type) == wanted] or properties
     return (
-        f"read one of its properties, such as `{_text(whole)}.{fitting[0].name}`" if fitting else "it has none to read"
+        f"read one of its properties, such as `{_text(whole)}.{written(fitting[0].name)}`"
+        if fitting
+        else "it has none to read"
     )
 
 
 def _conversion(expression: ex.Expression, found: Type, wanted: Type) -> str:
     if wanted == BOOLEAN and isinstance(found, EnumType):
-        return f"compare it, such as `{_text(expression)} = {_values(found)[0]}`" if _values(found) else "compare it"
+        return (
+            f"compare it, such as `{_text(expression)} = {written(_values(found)[0])}`"
+            if _values(found)
+            else "compare it"
+        )
     if wanted == BOOLEAN and found in _COMPARISON:
         return f"compare it, such as `{_text(expression)} {_COMPARISON[found]}`"
     if (found, wanted) == (INTEGER, DOUBLE):
@@ -121,7 +128,7 @@ def _conversion(expression: ex.Expression, found: Type, wanted: Type) -> str:
 
 
 def _alternatives(enum: EnumType) -> str:
-    return ", ".join(f"`{each}`" for each in _values(enum))
+    return ", ".join(f"`{written(each)}`" for each in _values(enum))
 
 
 def _values(enum: EnumType) -> list[str]:
@@ -136,4 +143,6 @@ def _text(expression: ex.Expression) -> str:
     while around is not None and not isinstance(around, rsc.Component):
         around = around.eContainer()
     text = RoboscPrinter()(expression)
-    return text.removeprefix(f"{around.name}.") if around is not None and around is expression.component else text
+    return (
+        text.removeprefix(f"{written(around.name)}.") if around is not None and around is expression.component else text
+    )

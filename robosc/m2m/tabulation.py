@@ -10,12 +10,10 @@ from robosc.expressions import conjunction, disjunction
 from robosc.m2m.constants import literal
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
+from robosc.needed import LARGEST_TABLE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
-
-#: More valuations than this are refused: the table would be larger than any model that it is part of.
-LIMIT = 1 << 16
 
 
 class TooLargeError(Exception):
@@ -40,7 +38,7 @@ def tabulate(
     count = 1
     for each in ranges:
         count *= len(each)
-    if count > LIMIT:
+    if count > LARGEST_TABLE:
         raise TooLargeError(count)
     keys = [_key(each) for each in references]
 

@@ -7,9 +7,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robosc.evaluation import evaluate
-from robosc.m2m.tabulation import LIMIT, TooLargeError, tabulate
+from robosc.m2m.tabulation import TooLargeError, tabulate
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
+from robosc.needed import LARGEST_TABLE
 
 VARIABLES = [sct.DiscreteVariable(name=name) for name in ("x", "y")]
 COMPARISONS = [ex.Equation, ex.Inequation, ex.LessThan, ex.LessOrEqual, ex.GreaterThan, ex.GreaterOrEqual]
@@ -55,4 +56,4 @@ def test_equal_for_every_value(kind, left, right, low, high):
 def test_too_many_valuations_are_refused():
     comparison = ex.GreaterThan(left=reference(0), right=ex.DoubleLiteral(value=0.5))
     with pytest.raises(TooLargeError):
-        tabulate(comparison, [reference(0)], [range(LIMIT + 1)], copy)
+        tabulate(comparison, [reference(0)], [range(LARGEST_TABLE + 1)], copy)

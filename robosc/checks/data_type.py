@@ -1,0 +1,127 @@
+"""`data-type`: types that no ROS data has, or that there is no way back to."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robosc.checks.declarations import carried_types, communications, sent_type
+from robosc.checks.rule import Finding, rule
+from robosc.metamodel import robosc as rsc
+from robosc.typing import NONE, ArrayType, EnumType, declared_type
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+
+@rule("data-type")
+def data_type(base: rsc.Base) -> Iterator[Finding]:
+    """Arrays stand in objects, enums are over data, objects are finite, and no enum goes out of the controller."""
+    for definition in base.definitions:
+        if isinstance(definition, rsc.EnumDataType):
+            yield from _base_of(definition)
+    yield from _endless(base)
+    for _, communication in communications(base):
+        for each in carried_types(communication):
+            if isinstance(each, rsc.Array):
+                yield Finding(
+                    each,
+                    f"the data of `{communication.name}` is an array, expected one in an object only: a ROS message"
+                    " has fields, and an array is one of them",
+                    f"declare `datatype object … {{ data: {_text(each)} }}` and use that",
+                )
+        sent = sent_type(communication)
+        path = _enum_in(sent, set())
+        if sent is not None and path is not None:
+            through = f" in its property `{'.'.join(path)}`" if path else ""
+            yield Finding(
+                sent,
+                f"`{communication.name}` sends an enum{through}, expected the type of the ROS data: there is no way"
+                " back from an enum value to the data that it stands for",
+                "write the type that the enum is from, and provide a value of that type"
+                if not path
+                else "declare an object without the enum for what is sent",
+            )
+
+
+def _base_of(enum: rsc.EnumDataType) -> Iterator[Finding]:
+    found = declared_type(enum.type)
+    repair = None
+    if isinstance(found, EnumType):
+        repair = f"declare it from the type that `{found.definition.name}` is from"
+    elif isinstance(found, ArrayType):
+        repair = "declare it from the object that has the array, and read elements by `value.….[0]`"
+    elif found == NONE:
+        repair = "declare it from `boolean`, `integer`, `double`, `string` or an object"
+    if repair:
+        what = {EnumType: "another enum", ArrayType: "an array"}.get(type(found), "no data")
+        yield Finding(
+            enum.type,
+            f"enum `{enum.name}` is from {what}, expected boolean, integer, double, string or an object",
+            repair,
+        )
+
+
+def _endless(base: rsc.Base) -> Iterator[Finding]:
+    """Each property that leads back to an object that it is a part of; of several in one circle the last one."""
+    open_types: set[rsc.ComplexDataType] = set()
+    done: set[rsc.ComplexDataType] = set()
+    for start in base.definitions:
+        if not isinstance(start, rsc.ObjectDataType) or start in done:
+            continue
+        open_types.add(start)
+        path = [(start, iter(list(start.properties)))]
+        while path:
+            current, remaining = path[-1]
+            each = next(remaining, None)
+            if each is None:
+                path.pop()
+                open_types.discard(current)
+                done.add(current)
+                continue
+            inner = _object_of(each.type)
+            if inner is not None and inner in open_types:
+                yield Finding(
+                    each,
+                    f"property `{each.name}` makes object `{inner.name}` contain itself, expected data of finite size",
+                    "leave the property out, or give it a type that does not contain the object",
+                )
+            elif inner is not None and inner not in done and inner.eContainer() is base:
+                open_types.add(inner)
+                path.append((inner, iter(list(inner.properties))))
+
+
+def _object_of(declared: rsc.DataType | None) -> rsc.ObjectDataType | None:
+    """The object whose data a property holds, in arrays and as what an enum is from too."""
+    seen = set()
+    while declared is not None:
+        while isinstance(declared, rsc.Array):
+            declared = declared.type
+        named = declared.type if isinstance(declared, rsc.ComplexDataTypeReference) else None
+        if not isinstance(named, rsc.EnumDataType) or named in seen:
+            return named if isinstance(named, rsc.ObjectDataType) else None
+        seen.add(named)
+        declared = named.type
+    return None
+
+
+def _enum_in(declared: rsc.DataType | None, seen: set[rsc.ObjectDataType]) -> list[str] | None:
+    """The names of the properties on the way to the first enum in data of a type; None where there is no enum.
+
+    Objects that were `seen` have none; all that is looked into becomes one of them.
+    """
+    while isinstance(declared, rsc.Array):
+        declared = declared.type
+    named = declared.type if isinstance(declared, rsc.ComplexDataTypeReference) else None
+    if isinstance(named, rsc.EnumDataType):
+        return []
+    if isinstance(named, rsc.ObjectDataType) and named not in seen:
+        seen.add(named)
+        for each in named.properties:
+            rest = _enum_in(each.type, seen)
+            if rest is not None:
+                return [each.name, *rest]
+    return None
+
+
+def _text(declared: rsc.DataType) -> str:
+    return str(declared_type(declared)).replace("object ", "").replace("enum ", "")

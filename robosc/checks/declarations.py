@@ -1,0 +1,71 @@
+"""What a text declares to carry data, and the types that it names for it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robosc.checks.automata import behaviours, components
+from robosc.metamodel import robosc as rsc
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+
+def communications(base: rsc.Base) -> Iterator[tuple[rsc.Component, rsc.CommunicationType]]:
+    """The messages, services and actions that the base itself defines, each with its component."""
+    for component, local in components(base):
+        for definition in local.definitions:
+            if isinstance(definition, rsc.CommunicationType):
+                yield component, definition
+
+
+def variables(base: rsc.Base) -> Iterator[tuple[rsc.Component, rsc.Variable]]:
+    """The variables that the base itself defines, each with its component."""
+    for component, behaviour in behaviours(base):
+        for definition in behaviour.automaton.definitions:
+            if isinstance(definition, rsc.Variable):
+                yield component, definition
+
+
+def carried_types(communication: rsc.CommunicationType) -> list[rsc.DataType]:
+    """The types of all data of a communication, in the order of the text."""
+    types: list[rsc.DataType | None] = []
+    match communication:
+        case rsc.Message():
+            types = [communication.type]
+        case rsc.Service():
+            types = [communication.requestType, communication.responseType]
+        case rsc.Action():
+            types = [communication.requestType, communication.responseType, communication.feedbackType]
+    return [each for each in types if each is not None]
+
+
+def sent_type(communication: rsc.CommunicationType | None) -> rsc.DataType | None:
+    """The type of the data that goes out of the controller; None where none goes out."""
+    match communication:
+        case rsc.Message() if str(communication.direction) == "incoming":
+            return communication.type
+        case rsc.Service() | rsc.Action():
+            return communication.requestType
+    return None
+
+
+def data_types(base: rsc.Base) -> Iterator[rsc.DataType]:
+    """Every type that stands in the text of a base, those within arrays too."""
+    for each in _outermost(base):
+        around: rsc.DataType | None = each
+        while around is not None:
+            yield around
+            around = around.type if isinstance(around, rsc.Array) else None
+
+
+def _outermost(base: rsc.Base) -> Iterator[rsc.DataType | None]:
+    for definition in base.definitions:
+        if isinstance(definition, rsc.EnumDataType):
+            yield definition.type
+        elif isinstance(definition, rsc.ObjectDataType):
+            yield from (each.type for each in definition.properties)
+    for _, communication in communications(base):
+        yield from carried_types(communication)
+    for _, variable in variables(base):
+        yield variable.type

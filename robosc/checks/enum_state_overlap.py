@@ -1,0 +1,69 @@
+"""`enum-state-overlap` (thesis 4.5.13)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robosc.checks.automata import states
+from robosc.checks.libraries import imports, reachable
+from robosc.checks.rule import Finding, rule
+from robosc.checks.unique_enum_value import enum_values
+from robosc.instances import Instance, Instances
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from robosc.metamodel import robosc as rsc
+
+
+@rule("enum-state-overlap")
+def enum_state_overlap(base: rsc.Base) -> Iterator[Finding]:
+    """No enum value has the name of a state, in a robot or library and what it imports."""
+    libraries = reachable(base)
+    homes = {value: home for home in [base, *libraries] for value in enum_values(home)}
+    named: dict[str, list[tuple[Instance, rsc.State]]] = {}
+    for instance in Instances(base):
+        for state in states(instance.automaton) if instance.automaton else ():
+            named.setdefault(state.name, []).append((instance, state))
+    # What a library has together with its own imports, it has the finding of.
+    together = [_overlaps(each) for each in libraries]
+    reported = set()
+    for value, home in homes.items():
+        for instance, state in named.get(value.name, ()):
+            if any((value, state) in each for each in together):
+                continue
+            place = value if home is base else state if instance.home is base else _import(base, instance, home)
+            if place not in reported:
+                reported.add(place)
+                yield Finding(
+                    place,
+                    f"value `{value.name}` of enum `{value.eContainer().eContainer().name}`{_of(home, base)} has the"
+                    f" name of the state `{instance.name}.{state.name}`, expected names that differ",
+                    _repair(value, state, home is base, instance.home is base),
+                )
+
+
+def _overlaps(library: rsc.Library) -> set[tuple[rsc.EnumValue, rsc.State]]:
+    values = [value for home in [library, *reachable(library)] for value in enum_values(home)]
+    found = [each for instance in Instances(library) if instance.automaton for each in states(instance.automaton)]
+    return {(value, state) for value in values for state in found if value.name == state.name}
+
+
+def _import(base: rsc.Base, instance: Instance, home: rsc.Base) -> rsc.Component:
+    """The later one of the two imports that bring the state and the value."""
+    for component, library in reversed(list(imports(base))):
+        if component is instance.component or home in [library, *reachable(library)]:
+            return component
+    return instance.component
+
+
+def _of(home: rsc.Base, seen_from: rsc.Base) -> str:
+    return "" if home is seen_from else f" in library `{home.name}`"
+
+
+def _repair(value: rsc.EnumValue, state: rsc.State, own_value: bool, own_state: bool) -> str:
+    if own_value:
+        return f"rename the value, such as `{value.name}_{value.eContainer().eContainer().name.lower()}`"
+    if own_state:
+        return f"rename the state, such as `is_{state.name}`"
+    return "import only one of these libraries: names that come from libraries can't be changed here"

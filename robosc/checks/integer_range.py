@@ -1,0 +1,126 @@
+"""`integer-range` (thesis 4.5.3): what becomes finite in the supervisor says how far it goes, and keeps to it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robosc.checks.automata import assigned_variable, behaviours, sends_message, transitions
+from robosc.checks.declarations import data_types, sent_type, variables
+from robosc.checks.rule import Finding, rule
+from robosc.checks.supervised import Fault, data_reads, supervised_faults
+from robosc.checks.tabulation import table_faults
+from robosc.evaluation import evaluate
+from robosc.metamodel import robosc as rsc
+from robosc.needed import Need, Needed, accesses, read_type
+from robosc.typing import INTEGER, infer
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from robosc.instances import Instances
+    from robosc.metamodel import expression as ex
+
+
+@rule("integer-range")
+def integer_range(base: rsc.Base) -> Iterator[Finding]:
+    """Integers that the supervisor needs have a range, ranges are not empty, and constants keep to them."""
+    yield from supervised_faults(base, _without_range)
+    yield from supervised_faults(base, table_faults)
+    for declared in data_types(base):
+        if isinstance(declared, rsc.IntegerDataType) and _is_reversed(declared):
+            yield Finding(
+                declared,
+                f"the range {_text(declared)} is empty, expected the lower bound first",
+                f"write `integer({declared.maximum}..{declared.minimum})`",
+            )
+    for constant, kind, name in _constants(base):
+        yield from _outside(constant, kind, name)
+
+
+# Ranges that are missing
+
+
+def _without_range(_: Instances, result: Needed) -> Iterator[Fault]:
+    for owned, need in result.variables.items():
+        if _is_unbounded(owned.variable.type):
+            name = f"{owned.instance.name}.{owned.variable.name}"
+            yield Fault(
+                owned.variable,
+                need,
+                f"variable `{name}` has no range, and the supervisor needs it, expected one: its states are finitely"
+                " many",
+                f"write a range, such as `variable {owned.variable.name}: integer(0..100)`",
+            )
+    for assigned, access in data_reads(result):
+        declared = read_type(assigned, access)
+        if _is_unbounded(declared):
+            assert assigned.variable is not None
+            assert declared is not None
+            field = declared.eContainer()
+            yield Fault(
+                field if isinstance(field, rsc.ObjectProperty) else declared,
+                Need(access, assigned.instance, assigned.variable),
+                f"`{field.name}` carries an integer without range to the supervisor, which needs"
+                f" `{assigned.variable.variable.name}`, expected a range: its inputs have finitely many values",
+                "write a range, such as `integer(0..100)`: what lies outside becomes the nearest bound",
+            )
+
+
+def _is_unbounded(declared: rsc.DataType | None) -> bool:
+    return isinstance(declared, rsc.IntegerDataType) and (declared.minimum is None or declared.maximum is None)
+
+
+def _is_reversed(declared: rsc.IntegerDataType) -> bool:
+    return declared.minimum is not None and declared.maximum is not None and declared.minimum > declared.maximum
+
+
+# Constants outside their range
+
+
+def _constants(base: rsc.Base) -> Iterator[tuple[ex.Expression | None, rsc.DataType | None, str]]:
+    """Every expression that becomes the value of something, with the type and the name of that."""
+    for _, variable in variables(base):
+        yield variable.initial, variable.type, variable.name
+    for _, behaviour in behaviours(base):
+        for transition in transitions(behaviour.automaton):
+            for assignment in transition.assignments if not sends_message(transition) else ():
+                assigned = assigned_variable(assignment)
+                if assigned is not None:
+                    yield assignment.value, assigned.type, assigned.name
+    for statement in base.definitions:
+        if isinstance(statement, rsc.ProvideStatement) and statement.communicationType:
+            communication = statement.communicationType.communicationType
+            if communication is not None:
+                yield from _provided(statement.data, sent_type(communication), communication.name)
+
+
+def _provided(
+    data: ex.Expression | None, declared: rsc.DataType | None, name: str
+) -> Iterator[tuple[ex.Expression | None, rsc.DataType | None, str]]:
+    if not isinstance(data, rsc.ObjectValue):
+        yield data, declared, name
+        return
+    for each in data.properties:
+        if each.property is not None:
+            yield from _provided(each.value, each.property.type, each.property.name)
+
+
+def _outside(constant: ex.Expression | None, declared: rsc.DataType | None, name: str) -> Iterator[Finding]:
+    if constant is None or not isinstance(declared, rsc.IntegerDataType) or _is_reversed(declared):
+        return
+    low, high = declared.minimum, declared.maximum
+    if low is None or high is None or infer(constant) != INTEGER or next(accesses(constant), None) is not None:
+        return
+    value = evaluate(constant, lambda each: each)
+    assert isinstance(value, int)
+    if not low <= value <= high:
+        nearest = low if value < low else high
+        yield Finding(
+            constant,
+            f"{value} is not in the range {_text(declared)} of `{name}`, expected a value that is",
+            f"write `{nearest}`, or widen the range of `{name}`",
+        )
+
+
+def _text(declared: rsc.IntegerDataType) -> str:
+    return f"{declared.minimum}..{declared.maximum}"

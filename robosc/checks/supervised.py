@@ -1,0 +1,86 @@
+"""What the supervisor needs of a robot or library, and where in its text to say that it can't have it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+from robosc.checks.libraries import reachable
+from robosc.checks.rule import Finding
+from robosc.instances import Instances
+from robosc.metamodel import robosc as rsc
+from robosc.needed import Need, Needed, accesses, needed
+from robosc.typing import BOOLEAN, INTEGER, UNKNOWN, EnumType, declared_type
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from robosc.metamodel import expression as ex
+    from robosc.needed import Assigned
+
+
+@dataclass(frozen=True)
+class Fault:
+    """An element that the supervisor needs and that has to change, and what it is needed for."""
+
+    element: ex.Located
+    need: Need
+    message: str
+    hint: str
+
+
+#: Finds the faults of one kind among what is needed of some instances.
+Search: TypeAlias = "Callable[[Instances, Needed], Iterator[Fault]]"
+
+
+def supervised_faults(base: rsc.Base, search: Search) -> Iterator[Finding]:
+    """A finding for each fault of a base that is not one of a library by itself.
+
+    It stands at the element where the base's text has it, else at the reference in this text that makes it needed.
+    """
+    of_libraries = {fault.element for library in reachable(base) for fault in _faults(library, search)}
+    reported = set()
+    instances = Instances(base)
+    result = needed(instances)
+    for fault in search(instances, result):
+        if fault.element in of_libraries:
+            continue
+        home = _root(fault.element)
+        place = fault.element if home is base else _reference(base, fault.need, result)
+        if (place, fault.element) not in reported:
+            reported.add((place, fault.element))
+            hint = fault.hint if home is base else f"in library `{home.name}`, {fault.hint}"
+            yield Finding(place, fault.message, hint)
+
+
+def can_be_needed(variable: rsc.Variable) -> bool:
+    """Whether the supervisor can hold values of the variable's type, or the type is not known."""
+    found = declared_type(variable.type)
+    return found in {BOOLEAN, INTEGER, UNKNOWN} or isinstance(found, EnumType)
+
+
+def data_reads(result: Needed) -> Iterator[tuple[Assigned, rsc.Access]]:
+    """Every reading of an event's data that a needed variable is computed from, where the variable itself is fine."""
+    for assigned in result.computations:
+        if assigned.variable is not None and can_be_needed(assigned.variable.variable):
+            for access in accesses(assigned.assignment.value):
+                if access.value and isinstance(assigned.transition, rsc.ResultTransition):
+                    yield assigned, access
+
+
+def _faults(base: rsc.Base, search: Search) -> Iterator[Fault]:
+    instances = Instances(base)
+    return search(instances, needed(instances))
+
+
+def _reference(base: rsc.Base, need: Need, result: Needed) -> rsc.Access:
+    while need.within is not None and need.within.home is not base and need.variable is not None:
+        need = result.variables[need.variable]
+    return need.access
+
+
+def _root(element: ex.Located) -> Any:
+    around = element
+    while around.eContainer() is not None:
+        around = around.eContainer()
+    return around
