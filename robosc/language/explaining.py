@@ -92,6 +92,10 @@ def hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) -> str
     ]
     if token.text in _FOREIGN:
         return f"write `{_FOREIGN[token.text]}`"
+    if token.text == ":" and tokens[block.first].is_keyword("provide"):
+        return "the properties of an object stand in braces"
+    if before.is_name and before.text in wanted and is_reserved(before.text):
+        return f"is a name missing before `{before.text}`?"
     if token.text == ";":
         return "leave it out: nothing ends with a semicolon"
     if before.is_keyword(",") and token.kind is Kind.SYMBOL:
@@ -117,6 +121,7 @@ def _word_hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) 
         return "a name is made of the letters a to z and A to Z, of digits and of `_`"
     if token.text == "if" and tokens[block.first].is_keyword("on"):
         return "a transition with an event has no condition; use a variable, or a `transition if` from the next state"
-    if index < block.after and "UnreservedName" in wanted and is_reserved(token.text):
+    goes_on = tokens[index + 1].kind is not Kind.WORD or is_reserved(tokens[index + 1].text)
+    if index < block.after and "UnreservedName" in wanted and is_reserved(token.text) and goes_on:
         return f"write `^{token.text}` where a keyword is used as a name"
     return f"did you mean `{close[0]}`?" if close else None

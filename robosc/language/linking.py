@@ -6,6 +6,7 @@ from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from robosc.language.scopes import File, Names, Scope
+from robosc.language.unread import Declared
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
 from robosc.typing import (
@@ -49,6 +50,7 @@ class _Linker:
         self.findings: list[Diagnostic] = []
         self._file = file
         self._scope: Scope
+        self._definitions: dict[ex.Located, ex.Located] = {}
 
     def imports(self) -> None:
         """The components that are imported: all other names may look into them."""
@@ -67,9 +69,11 @@ class _Linker:
     def _declaration(self, element: ex.Located, names: Mapping[str, Name]) -> None:
         match element:
             case rsc.CommunicationType():
-                element.interface = self._definition(rsc.Interface, "interface", names["interface"])
+                name = names["interface"]
+                element.interface = self._definition(rsc.Interface, "interface", Declared.INTERFACE, name)
             case rsc.ComplexDataTypeReference():
-                found = self._definition(rsc.ComplexDataType, "object or enum", names["type"])
+                name = names["type"]
+                found = self._definition(rsc.ComplexDataType, "object or enum", Declared.DATA_TYPE, name)
                 if found is not None:
                     element.type = found
 
@@ -98,14 +102,14 @@ class _Linker:
         components, name = library.declared[rsc.Component], names["definition"]
         if name.text in components:
             element.definition = components[name.text]
-        elif not library.may_declare(name.text, imported=False):
+        elif not library.may_declare(name.text, Declared.COMPONENT, imported=False):
             self._missing(name, f"library `{library.base.name}` has no component", components)
 
-    def _definition(self, kind: type[_Element], what: str, name: Name) -> _Element | None:
+    def _definition(self, kind: type[_Element], what: str, declared: Declared, name: Name) -> _Element | None:
         found = self._scope.find(kind, name.text)
         if len(found) > 1:
             self._ambiguous(what, name, [file for file, _ in found])
-        elif not found and not self._file.may_declare(name.text, imported=True):
+        elif not found and not self._file.may_declare(name.text, declared):
             self._missing(name, f"there is no {what}", self._scope.usable(kind))
         return found[0][1] if len(found) == 1 else None
 
@@ -115,10 +119,10 @@ class _Linker:
         self._report(name, message, f"declare `{name.text}` in this file")
 
     def _remapping(self, remapping: rsc.TopicRemapping, name: Name) -> None:
-        component = _around(remapping, rsc.Component)
+        component = self._around(remapping, rsc.Component)
         communications = self._scope.communications(component) if component else None
         if component is not None and communications is not None:
-            found = self._member(communications, name, component, "communication")
+            found = self._member(communications, name, component, Declared.COMMUNICATION)
             remapping.communicationType = found
 
     # Communication
@@ -131,7 +135,7 @@ class _Linker:
             if component is not None:
                 reference.component = component
             if component is not None and communications is not None:
-                reference.communicationType = self._member(communications, name, component, "communication")
+                reference.communicationType = self._member(communications, name, component, Declared.COMMUNICATION)
             return
         found = self._bare_communication(reference, name)
         if found is not None:
@@ -140,19 +144,19 @@ class _Linker:
     def _bare_communication(
         self, reference: rsc.CommunicationReference, name: Name
     ) -> tuple[rsc.Component, rsc.CommunicationType] | None:
-        own = _around(reference, rsc.Component)
+        own = self._around(reference, rsc.Component)
         if own is not None:
             communications = self._scope.communications(own) or {}
             if name.text in communications:
                 return own, communications[name.text]
             if isinstance(self._file.base, rsc.Library):
-                if not self._file.may_declare(name.text, imported=False):
+                if not self._file.may_declare(name.text, Declared.COMMUNICATION, imported=False):
                     message = f"component `{own.name}` has no communication"
                     self._missing(name, message, communications, "a library's component speaks of its own members only")
                 return None
         found = self._scope.communicating(name.text)
         if not found:
-            if not self._file.may_declare(name.text, imported=True):
+            if not self._file.may_declare(name.text, Declared.COMMUNICATION):
                 self._missing(name, "there is no communication", self._scope.all_communications())
             return None
         if len({communication for _, communication in found}) < len(found):
@@ -163,30 +167,31 @@ class _Linker:
 
     def _component(self, name: Name) -> rsc.Component | None:
         component: rsc.Component | None = self._scope.components.get(name.text)
-        if component is None and not self._file.may_declare(name.text, imported=False):
+        if component is None and not self._file.may_declare(name.text, Declared.COMPONENT, imported=False):
             self._missing(name, "there is no component", self._scope.components)
         return component
 
-    def _member(self, members: Names, name: Name, component: rsc.Component, what: str) -> Any:
+    def _member(self, members: Names, name: Name, component: rsc.Component, declared: Declared) -> Any:
         found = members.get(name.text)
-        if found is None and not self._file.may_declare(name.text, imported=True):
+        if found is None and not self._file.may_declare(name.text, declared):
+            what = "communication" if declared is Declared.COMMUNICATION else "variable or state"
             self._missing(name, f"component `{component.name}` has no {what}", members)
         return found
 
     def _target(self, transition: rsc.Transition, name: Name) -> None:
-        own = _around(transition, rsc.Component)
+        own = self._around(transition, rsc.Component)
         members = self._scope.members(own) if own is not None else None
         states = {each: member for each, member in (members or {}).items() if isinstance(member, rsc.State)}
         if name.text in states:
             transition.target = states[name.text]
-        elif own is not None and not self._file.may_declare(name.text, imported=False):
+        elif own is not None and not self._file.may_declare(name.text, Declared.MEMBER, imported=False):
             self._missing(name, f"component `{own.name}` has no state", states)
 
     # Expressions
 
     def _access(self, access: rsc.Access, names: Mapping[str, Name]) -> None:
         first = names.get("component", names["item"])
-        if _around(access, rsc.EnumDataType) is not None:
+        if self._around(access, rsc.EnumDataType) is not None:
             self._enum_value(access, first)
         elif "component" in names and first.text in self._scope.components:
             self._qualified(access, self._scope.components[first.text], names["item"])
@@ -200,11 +205,11 @@ class _Linker:
         access.component = component
         members = self._scope.members(component)
         if members is not None:
-            access.item = self._member(members, name, component, "variable or state")
+            access.item = self._member(members, name, component, Declared.MEMBER)
 
     def _bare(self, access: rsc.Access, name: Name, *, qualifies: bool) -> None:
         """A component, a variable of the own component, a state of the own component, an enum value, in this order."""
-        own = _around(access, rsc.Component)
+        own = self._around(access, rsc.Component)
         members = (self._scope.members(own) if own is not None else None) or {}
         if name.text in self._scope.components:
             access.item = self._scope.components[name.text]
@@ -217,11 +222,11 @@ class _Linker:
             self._ambiguous("enum value", name, [file for file, _ in values])
         elif values:
             access.item = values[0][1]
-        elif self._file.may_declare(name.text, imported=not qualifies):
+        elif self._file.may_declare(name.text, Declared.COMPONENT, Declared.MEMBER, imported=False):
             return
         elif qualifies:
             self._missing(name, "there is no component or variable", [*self._scope.components, *members])
-        else:
+        elif not self._file.may_declare(name.text, Declared.ENUM_VALUE):
             known = [*self._scope.components, *members, *self._scope.usable(rsc.EnumValue)]
             self._missing(name, "there is no component, variable, state or enum value", known, self._elsewhere(name))
 
@@ -240,7 +245,7 @@ class _Linker:
             self._ambiguous("enum value", name, [file for file, _ in values])
         elif values:
             access.item = values[0][1]
-        elif not self._file.may_declare(name.text, imported=True):
+        elif not self._file.may_declare(name.text, Declared.ENUM_VALUE):
             hint = "an enum's rules see only `value`, literals and enum values"
             self._missing(name, "there is no enum value", self._scope.usable(rsc.EnumValue), hint)
 
@@ -272,7 +277,7 @@ class _Linker:
             element.property = found
 
     def _property(self, of: Type, name: Name) -> rsc.ObjectProperty | None:
-        if of == UNKNOWN or self._file.may_declare(name.text, imported=True):
+        if of == UNKNOWN:
             return None
         if not isinstance(of, ObjectType):
             what = (
@@ -285,8 +290,21 @@ class _Linker:
             if each.name == name.text:
                 return each
         known = [each.name for each in of.definition.properties]
-        self._missing(name, f"object `{of.definition.name}` has no property", known)
+        if not self._file.may_declare(name.text, Declared.PROPERTY):
+            self._missing(name, f"object `{of.definition.name}` has no property", known)
         return None
+
+    def _around(self, element: ex.Located, kind: type[_Element]) -> _Element | None:
+        """The component or enum that contains the element, if it is of that kind."""
+        path: list[ex.Located] = []
+        around = element
+        # What is between two names of a long expression is climbed once.
+        while around is not None and around not in self._definitions and not isinstance(around, rsc.Definition):
+            path.append(around)
+            around = around.eContainer()
+        definition = self._definitions.get(around, around)
+        self._definitions.update(dict.fromkeys(path, definition))
+        return definition if isinstance(definition, kind) else None
 
     # Findings
 
@@ -295,12 +313,5 @@ class _Linker:
         self._report(name, f"{message} `{name.text}`", f"did you mean `{close[0]}`?" if close and not hint else hint)
 
     def _report(self, name: Name, message: str, hint: str | None = None) -> None:
-        self.findings.append(self._file.text.error(RULE, name.start, name.end, message, hint))
-
-
-def _around(element: ex.Located, kind: type[_Element]) -> _Element | None:
-    """The nearest element of a kind that contains the element."""
-    around = element.eContainer()
-    while around is not None and not isinstance(around, kind):
-        around = around.eContainer()
-    return around
+        if not self._file.unread.is_doubtful(name.start):
+            self.findings.append(self._file.text.error(RULE, name.start, name.end, message, hint))

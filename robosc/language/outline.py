@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from robosc.language.grammar import is_reserved
 from robosc.language.tokens import Kind, Token
+from robosc.language.unread import Declared
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -23,13 +24,15 @@ if TYPE_CHECKING:
 class Level:
     """What stands inside a kind of braces: items of a rule of the grammar, in words a `noun`.
 
-    `starters` are the keywords that an item begins with, `bodies` what its braces hold, by such a keyword.
+    `starters` are the keywords that an item begins with, `bodies` what its braces hold, by such a keyword, and `unknown`
+    what they hold most likely where the keyword can't be told.
     """
 
     rule: str
     noun: str
     starters: frozenset[str] = frozenset()
     bodies: Mapping[str, Level] = field(default_factory=dict)
+    unknown: Level | None = None
 
     def starter(self, token: Token) -> str | None:
         """The keyword that a token is or, misspelt, was meant to be."""
@@ -46,26 +49,37 @@ AUTOMATON = Level(
     "variable, state or transition",
     frozenset({"variable", "initial", "marked", "state", "on", "transition"}),
     {"initial": TRANSITIONS, "marked": TRANSITIONS, "state": TRANSITIONS},
+    unknown=TRANSITIONS,
 )
 COMPONENT = Level(
     "ComponentDefinition",
     "message, service, action or behaviour",
     frozenset({"incoming", "outgoing", "message", "service", "action", "behaviour"}),
     {"behaviour": AUTOMATON},
+    unknown=AUTOMATON,
 )
-DATA_TYPES = {"object": PROPERTIES, "enum": RULES}
+_DATA_TYPES = {"object": PROPERTIES, "enum": RULES}
 DEFINITIONS = Level(
     "Definition",
     "definition",
     frozenset({"interface", "component", "datatype", "requirement", "provide"}),
     {"component": COMPONENT},
+    unknown=COMPONENT,
 )
+#: What an item declares, by the keyword that it begins with.
+DECLARED = {
+    "component": Declared.COMPONENT,
+    "interface": Declared.INTERFACE,
+    "datatype": Declared.DATA_TYPE,
+    **dict.fromkeys(("incoming", "outgoing", "message", "service", "action"), Declared.COMMUNICATION),
+    **dict.fromkeys(("variable", "initial", "marked", "state"), Declared.MEMBER),
+}
 #: Keywords that begin an item together with the one before them.
 _CONTINUED = {"message": ("incoming", "outgoing")} | dict.fromkeys(
     ("state", "initial", "marked"), ("initial", "marked")
 )
 #: Keywords and braces that follow the one that an item begins with.
-_SECOND = {"message", "object", "enum", "{"}
+_SECOND = {"message", "object", "enum", "state", "{"}
 
 
 @dataclass(frozen=True)
@@ -133,31 +147,45 @@ class Outline:
         return tuple(items)
 
     def _item(self, levels: tuple[Level, ...]) -> Block:
-        level, first = levels[-1], self._at
-        body = self._body_level(level)
+        level, first, mended = levels[-1], self._at, len(self.braces)
+        starter = level.starter(self._tokens[first])
+        body = self._body_level(level, starter)
         items: tuple[Block, ...] = ()
-        if self._is("{"):
-            self._skip(levels)
-        else:
+        if not self._is("{"):
             self._at += 1
-        while not self._ended() and not self._is("}"):
-            if body is not None and self._opens(body):
+        unopened = False
+        while not self._ended():
+            if self._is("}"):
+                if not unopened:
+                    break
+                unopened = False
+            elif body is not None and self._opens(body):
                 items = self._body((*levels, body))
                 break
-            if any(self._starts(each) for each in levels):
+            elif any(self._starts(each) for each in levels):
                 break
-            if self._is("{"):
+            elif self._is("{"):
                 self._skip(levels)
-            else:
-                self._at += 1
+                continue
+            # A property outside of braces: the brace before it is missing, and the one that would close it is there.
+            unopened = unopened or (starter == "provide" and self._tokens[self._at + 1].is_keyword(":"))
+            self._at += 1
+        if starter is None and level.starters:
+            # Nothing is known of what it holds, so nothing can be wrong with it.
+            items = ()
+            del self.braces[mended:]
         return Block(level, first, self._at, self._tokens[first].start, self._end(), items, levels)
 
     def _opens(self, body: Level) -> bool:
         """Whether the braces of an item open here; passes the brace, or notes that it is missing."""
         if self._is("{") and not self._tokens[self._at - 1].is_keyword("with"):
             self._at += 1
+            while self._is("{"):
+                self.braces.append(Brace("{", self._at, surplus=True))
+                self._at += 1
             return True
-        if self._starts(body):
+        begins = body is RULES and self._tokens[self._at - 1].is_keyword("to")
+        if begins or self._starts(body):
             self._missing("{")
             return True
         return False
@@ -175,12 +203,11 @@ class Outline:
         self._missing("}", opened)
         return items
 
-    def _body_level(self, level: Level) -> Level | None:
-        starter = level.starter(self._tokens[self._at])
-        if starter != "datatype":
-            return level.bodies.get(starter or "")
-        kind = self._tokens[self._at + 1].text
-        return DATA_TYPES.get(next(iter(get_close_matches(kind, sorted(DATA_TYPES), n=1)), ""))
+    def _body_level(self, level: Level, starter: str | None) -> Level | None:
+        if starter == "datatype":
+            kind = self._tokens[self._at + 1].text
+            return _DATA_TYPES.get(next(iter(get_close_matches(kind, sorted(_DATA_TYPES), n=1)), ""))
+        return level.bodies.get(starter) if starter else level.unknown
 
     def _skip(self, levels: tuple[Level, ...]) -> None:
         """Passes braces that hold no items of their own, with what they hold."""
@@ -200,11 +227,19 @@ class Outline:
         named = tokens[at + 1].is_keyword(":")
         if level is PROPERTIES:
             return tokens[at].kind is Kind.WORD and named
-        if level is RULES and tokens[at - 2].is_keyword("->") and not self._is("}"):
-            return True
+        if level is RULES and tokens[at - 2].is_keyword("->") and tokens[at - 1].kind is Kind.WORD:
+            return not self._is("}") and not tokens[at].is_keyword(*DEFINITIONS.starters)
         if named or not (tokens[at].is_keyword(*level.starters) or self._misspelt(level)):
             return False
-        return not tokens[at - 1].is_keyword(*_CONTINUED.get(tokens[at].text, ()))
+        if tokens[at].text == "message" and not tokens[at].is_first:
+            return False
+        return not self._continues(level, _CONTINUED.get(tokens[at].text, ()))
+
+    def _continues(self, level: Level, starters: tuple[str, ...]) -> bool:
+        """Whether the token before the current one is one of these keywords, if misspelt then in the same line."""
+        token, before = self._tokens[self._at], self._tokens[self._at - 1]
+        misspelt = before.is_first and not token.is_first and level.starter(before) in starters
+        return before.is_keyword(*starters) or misspelt
 
     def _misspelt(self, level: Level) -> bool:
         """Whether a line begins with what looks like a starter and a name: no line of an item goes on so."""

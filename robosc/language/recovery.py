@@ -12,9 +12,10 @@ from typing import TYPE_CHECKING, Any
 
 from robosc.language.building import Builder
 from robosc.language.explaining import expected, found, hint
-from robosc.language.grammar import Failure, parse
-from robosc.language.outline import DEFINITIONS, Block, Brace, Outline
+from robosc.language.grammar import Failure, is_reserved, parse
+from robosc.language.outline import DECLARED, DEFINITIONS, PROPERTIES, RULES, Block, Brace, Outline
 from robosc.language.tokens import DEEPEST, Kind, Token, Tokens, too_deep
+from robosc.language.unread import Declared, Unread
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -32,14 +33,14 @@ _DECLARING_NOTHING = ("requirement", "provide", "on", "transition")
 class Parsed:
     """The model of a text, its names not linked.
 
-    `base` is None where nothing could be read. `references`: the names by element and feature; `unread`: names that
-    skipped text seems to declare.
+    `base` is None where nothing could be read. `references`: the names by element and feature; `unread`: what was
+    skipped.
     """
 
     base: rsc.Base | None
     references: Mapping[Any, Mapping[str, Name]] = field(default_factory=dict)
     findings: list[Diagnostic] = field(default_factory=list)
-    unread: frozenset[str] = frozenset()
+    unread: Unread = field(default_factory=Unread)
 
 
 def parse_file(text: Text) -> Parsed:
@@ -64,7 +65,7 @@ class _Recovery:
         for each in tokens:
             self._content[each.start : each.end] = each.text
         self._findings: list[Diagnostic] = []
-        self._unread: set[str] = set()
+        self._unread = Unread()
         self._is_library = tokens[0].text == "library"
 
     def parse(self) -> Parsed:
@@ -87,17 +88,19 @@ class _Recovery:
         builder = Builder(self._text)
         base = self._base(root, builder)
         findings = sorted([*self._findings, *builder.findings], key=lambda each: each.span)
-        return Parsed(base, builder.references, findings, frozenset(self._unread))
+        return Parsed(base, builder.references, findings, self._unread)
 
     # Braces
 
     def _mend(self, braces: Iterable[Brace]) -> None:
         tokens = self._tokens
         at_end = tokens[len(tokens) - 1].kind is Kind.OPEN_COMMENT
+        why: str | None
         for each in braces:
             token = tokens[each.index]
             if each.surplus:
-                self._report(each.index, "this `}` is one too many: what follows belongs inside", "leave it out")
+                why = "what follows belongs inside" if each.text == "}" else "one stands before it"
+                self._report(each.index, f"this `{each.text}` is one too many: {why}", "leave it out")
                 self._blank(token.start, token.end)
                 continue
             # Of the braces that are missing at the end, the innermost is reported.
@@ -153,12 +156,13 @@ class _Recovery:
             self._skip_block(block)
             return
         # The item itself is whole, and something follows that may be an item with a fault, or nothing known.
+        self._unread.doubtful.append((block.start, block.end))
         outline = Outline(self._tokens, index, block.after)
         following, *others = outline.items(block.levels)
         self._mend(outline.braces)
         self._skip(outline.after, block.after)
         fault = self._failure(following)
-        if fault is not None and self._at(following, fault) == index:
+        if fault is not None and not index < self._at(following, fault) < following.after:
             self._explain(block, index, failure)
             for item in following.items:
                 self._check(item)
@@ -225,12 +229,13 @@ class _Recovery:
         """Blanks an item out, and notes the names that it seems to declare."""
         at = block.first
         for item in (*block.items, None):
-            until = item.first if item else block.after
-            self._skip(at, until, declares=not self._starts(block, *_DECLARING_NOTHING))
+            self._skip(at, item.first if item else block.after, declares=not self._starts(block, *_DECLARING_NOTHING))
             if item:
                 self._skip_block(item)
                 at = item.after
         self._blank(block.start, block.end)
+        self._unread.ranges.append((block.start, block.end))
+        self._note_nameless(block)
 
     def _skip(self, first: int, after: int, *, declares: bool = True) -> None:
         tokens = self._tokens
@@ -238,9 +243,28 @@ class _Recovery:
             token = tokens[index]
             named = token.is_name and not tokens[index - 1].is_keyword("goto") and not token.text.startswith("^")
             if token.kind is Kind.WORD and (declares or named):
-                self._unread.add(token.text.removeprefix("^"))
+                self._unread.names.add(token.text.removeprefix("^"))
         if first < after:
             self._blank(tokens[first].start, tokens[after - 1].end)
+
+    def _note_nameless(self, block: Block) -> None:
+        """Notes what a skipped item declares where its names can't be seen in it."""
+        tokens, first = self._tokens, self._tokens[block.first]
+        words = [tokens[index] for index in range(block.first, block.items[0].first if block.items else block.after)]
+        starter = block.level.starter(first) if block.level else None
+        # A keyword where a name belongs is the one that comes after a name that is missing.
+        named = any(each.is_name and not is_reserved(each.text) for each in words)
+        if block.level is PROPERTIES:
+            unseen = {Declared.PROPERTY} if first.kind is not Kind.WORD else set()
+        elif block.level is RULES:
+            unseen = {Declared.ENUM_VALUE} if not named or first.is_keyword("->") else set()
+        else:
+            unseen = {DECLARED[starter]} if starter in DECLARED and not named else set()
+        if (starter == "component" and not block.items) or any(each.is_keyword("import") for each in words):
+            # What a library would have brought.
+            unseen |= {Declared.COMMUNICATION, Declared.MEMBER, Declared.INTERFACE, Declared.DATA_TYPE}
+            unseen |= {Declared.ENUM_VALUE, Declared.PROPERTY}
+        self._unread.nameless |= unseen
 
     def _blank(self, start: int, end: int) -> None:
         self._content[start:end] = [each if each == "\n" else " " for each in self._content[start:end]]

@@ -7,6 +7,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from robosc.instances import Instance, Instances
+from robosc.language.unread import Declared, Unread
 from robosc.metamodel import robosc as rsc
 
 if TYPE_CHECKING:
@@ -34,8 +35,7 @@ class File:
     text: Text
     base: rsc.Base | None
     references: Mapping[Any, Mapping[str, Name]]
-    #: Names that text with a syntax error seems to declare: of these nothing is known, so nothing is said.
-    unread: frozenset[str] = frozenset()
+    unread: Unread = field(default_factory=Unread)
     #: The files of the libraries that it imports from, by the libraries' names; None: none that can be used.
     libraries: dict[str, File | None] = field(default_factory=dict)
 
@@ -50,12 +50,15 @@ class File:
             rsc.EnumValue: by_name(rule.value for each in enums for rule in each.rules if rule.value),
         }
 
-    def may_declare(self, name: str, *, imported: bool) -> bool:
-        """Whether text that could not be read may declare a name, here or, if `imported`, in a library."""
-        if name in self.unread:
+    def may_declare(self, name: str, *kinds: Declared, imported: bool = True) -> bool:
+        """Whether a name that is not found may be declared by text that could not be read.
+
+        That is text of this file or, if `imported`, of a library that it imports from.
+        """
+        if self.unread.may_declare(name, kinds):
             return True
         libraries = self.libraries.values() if imported else ()
-        return any(each is None or each.may_declare(name, imported=True) for each in libraries)
+        return any(each is None or each.may_declare(name, *kinds) for each in libraries)
 
 
 class Scope:
