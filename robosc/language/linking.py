@@ -9,6 +9,7 @@ from robosc.language.scopes import File, Names, Scope
 from robosc.language.unread import Declared
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
+from robosc.naming import written
 from robosc.typing import (
     UNKNOWN,
     ArrayType,
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
 
 _Element = TypeVar("_Element")
 RULE = "unresolved-reference"
+OWN_MEMBERS = "a library's component speaks of its own members only"
 
 
 def link(file: File) -> list[Diagnostic]:
@@ -51,6 +53,7 @@ class _Linker:
         self._file = file
         self._scope: Scope
         self._definitions: dict[ex.Located, ex.Located] = {}
+        self._is_library = isinstance(file.base, rsc.Library)
 
     def imports(self) -> None:
         """The components that are imported: all other names may look into them."""
@@ -130,7 +133,7 @@ class _Linker:
     def _communication(self, reference: rsc.CommunicationReference, names: Mapping[str, Name]) -> None:
         name = names["communicationType"]
         if "component" in names:
-            component = self._component(names["component"])
+            component = self._component(reference, names["component"])
             communications = self._scope.communications(component) if component else None
             if component is not None:
                 reference.component = component
@@ -149,27 +152,33 @@ class _Linker:
             communications = self._scope.communications(own) or {}
             if name.text in communications:
                 return own, communications[name.text]
-            if isinstance(self._file.base, rsc.Library):
+            if self._is_library:
                 if not self._file.may_declare(name.text, Declared.COMMUNICATION, imported=False):
-                    message = f"component `{own.name}` has no communication"
-                    self._missing(name, message, communications, "a library's component speaks of its own members only")
+                    self._missing(name, f"component `{own.name}` has no communication", communications, OWN_MEMBERS)
                 return None
         found = self._scope.communicating(name.text)
         if not found:
-            if not self._file.may_declare(name.text, Declared.COMMUNICATION):
+            if not self._scope.incomplete and not self._file.may_declare(name.text, Declared.COMMUNICATION):
                 self._missing(name, "there is no communication", self._scope.all_communications())
             return None
         if len({communication for _, communication in found}) < len(found):
-            candidates = " or ".join(f"`{component.name}.{name.text}`" for component, _ in found)
+            candidates = " or ".join(f"`{written(component.name)}.{written(name.text)}`" for component, _ in found)
             self._report(name, f"`{name.text}` is ambiguous: it may be {candidates}", f"write {candidates}")
             return None
         return found[0]
 
-    def _component(self, name: Name) -> rsc.Component | None:
-        component: rsc.Component | None = self._scope.components.get(name.text)
+    def _component(self, reference: rsc.CommunicationReference, name: Name) -> rsc.Component | None:
+        components = self._components(reference)
+        component: rsc.Component | None = components.get(name.text)
         if component is None and not self._file.may_declare(name.text, Declared.COMPONENT, imported=False):
-            self._missing(name, "there is no component", self._scope.components)
+            hint = OWN_MEMBERS if name.text in self._scope.components else None
+            self._missing(name, "there is no component", components, hint)
         return component
+
+    def _components(self, element: ex.Located) -> Names:
+        """The components that can be mentioned where an element stands: in a library each mentions itself only."""
+        own = self._around(element, rsc.Component)
+        return {own.name: own} if own is not None and self._is_library else self._scope.components
 
     def _member(self, members: Names, name: Name, component: rsc.Component, declared: Declared) -> Any:
         found = members.get(name.text)
@@ -191,10 +200,11 @@ class _Linker:
 
     def _access(self, access: rsc.Access, names: Mapping[str, Name]) -> None:
         first = names.get("component", names["item"])
+        components = self._components(access)
         if self._around(access, rsc.EnumDataType) is not None:
             self._enum_value(access, first)
-        elif "component" in names and first.text in self._scope.components:
-            self._qualified(access, self._scope.components[first.text], names["item"])
+        elif "component" in names and first.text in components:
+            self._qualified(access, components[first.text], names["item"])
             return
         else:
             self._bare(access, first, qualifies="component" in names)
@@ -211,8 +221,9 @@ class _Linker:
         """A component, a variable of the own component, a state of the own component, an enum value, in this order."""
         own = self._around(access, rsc.Component)
         members = (self._scope.members(own) if own is not None else None) or {}
-        if name.text in self._scope.components:
-            access.item = self._scope.components[name.text]
+        components = self._components(access)
+        if name.text in components:
+            access.item = components[name.text]
             return
         if name.text in members:
             access.component, access.item = own, members[name.text]
@@ -225,15 +236,17 @@ class _Linker:
         elif self._file.may_declare(name.text, Declared.COMPONENT, Declared.MEMBER, imported=False):
             return
         elif qualifies:
-            self._missing(name, "there is no component or variable", [*self._scope.components, *members])
+            hint = OWN_MEMBERS if name.text in self._scope.components else None
+            self._missing(name, "there is no component or variable", [*components, *members], hint)
         elif not self._file.may_declare(name.text, Declared.ENUM_VALUE):
-            known = [*self._scope.components, *members, *self._scope.usable(rsc.EnumValue)]
-            self._missing(name, "there is no component, variable, state or enum value", known, self._elsewhere(name))
+            known = [*components, *members, *self._scope.usable(rsc.EnumValue)]
+            hint = OWN_MEMBERS if self._is_library and self._elsewhere(name) else self._elsewhere(name)
+            self._missing(name, "there is no component, variable, state or enum value", known, hint)
 
     def _elsewhere(self, name: Name) -> str | None:
         """What to write for a bare name that some component has as a variable or a state."""
         having = [
-            f"`{each.name}.{name.text}`"
+            f"`{written(each.name)}.{written(name.text)}`"
             for each in self._scope.components.values()
             if name.text in (self._scope.members(each) or {})
         ]
@@ -310,7 +323,8 @@ class _Linker:
 
     def _missing(self, name: Name, message: str, known: Iterable[str], hint: str | None = None) -> None:
         close = get_close_matches(name.text, sorted(set(known)), n=1)
-        self._report(name, f"{message} `{name.text}`", f"did you mean `{close[0]}`?" if close and not hint else hint)
+        meant = f"did you mean `{written(close[0])}`?" if close else None
+        self._report(name, f"{message} `{name.text}`", hint or meant)
 
     def _report(self, name: Name, message: str, hint: str | None = None) -> None:
         if not self._file.unread.is_doubtful(name.start):

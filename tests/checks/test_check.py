@@ -94,6 +94,59 @@ def test_what_a_library_repeats_is_its_own_matter(tmp_path: Path) -> None:
     ]
 
 
+def test_a_librarys_component_mentions_itself_only(tmp_path: Path) -> None:
+    robot = """
+        robot House {
+          component Lock from Doors import Lock
+        }
+    """
+    doors = """
+        library Doors {
+          component Door {
+            outgoing message opened with type: none
+            behaviour { variable wide: boolean initial marked state shut { } }
+          }
+          component Lock {
+            behaviour {
+              variable locked: boolean
+              initial marked state idle {
+                transition if Door.shut and
+                  Lock.locked do locked := Door.wide
+                on response from Door.opened
+              }
+            }
+          }
+        }
+    """
+    findings = found(tmp_path, robot, doors=doors)
+    assert places(findings) == [("doors.rscd", line, "unresolved-reference") for line in (10, 11, 12)]
+    assert {each.hint for each in findings} == {"a library's component speaks of its own members only"}
+
+
+def test_repairs_escape_keywords(tmp_path: Path) -> None:
+    robot = """
+        robot House {
+          component state {
+            behaviour {
+              variable ^value: integer(0..9)
+              initial marked state error { transition if ^value goto error }
+            }
+          }
+          component Lamp {
+            incoming message shine with type: none
+            behaviour { initial marked state dark { transition if ^error goto dark } }
+          }
+          requirement shine needs ^state
+        }
+    """
+    hints = [each.hint or "" for each in found(tmp_path, robot)]
+    assert hints == [
+        "write `^state.^error`",
+        "compare it, such as `^value > 0`",
+        "write `^state.^value` or `^state.^error`",
+    ]
+
+
 def test_nothing_is_concluded_from_an_unresolved_target(tmp_path: Path) -> None:
     robot = """
         robot House {
