@@ -158,16 +158,8 @@ class Effects:
                 helper = "clampwide" if wide else "clamp"
                 self.helpers.add(helper)
                 return f"({kind}){helper}({text}, {number(bounds.low)}, {number(bounds.high)})"
-        plain = kind == "bool" or values.single is not None or _stored_as(value) == kind
+        plain = kind == "bool" or values.single is not None or printer.type(value) == kind
         return text if plain else f"({kind}){text if printer.precedence(value) == ATOM else f'({text})'}"
-
-
-def _stored_as(value: ex.Expression) -> str | None:
-    """The type of a variable or input that is the whole value."""
-    match value:
-        case sct.VariableReference(variable=declaration) | sct.InputReference(input=declaration):
-            return type_name(declaration.type)
-    return None
 
 
 def _trivial(update: sct.Update) -> bool:

@@ -86,7 +86,8 @@ class _Engine:
             "u": self.names.macro,
             "robot": comment_text(self.model.name),
             "events": self.groups(),
-            "event_count": len(self.events),
+            # C has no empty enumerations: a robot without events has one that never happens.
+            "event_count": max(len(self.events), 1),
             "index": index_type(len(self.events)),
             "cancels": len(self.roles.cancels),
             "triggers": len(self.roles.triggers),
@@ -117,7 +118,7 @@ class _Engine:
                 for plant in self.model.plants
                 for each in plant.inputs
             ],
-            "guards": guarded,
+            "guards": guarded if self.events else [_Case([f"{self.names.prefix}_nothing"], "", ["false"])],
             "guards_read_state": any("state->" in line for each in guarded for line in each.lines),
             "effects": executed,
             "effects_read_inputs": any("inputs->" in line for each in executed for line in each.lines),
@@ -125,7 +126,7 @@ class _Engine:
             "arrived": [each for each in arrived if each is not None],
             "moved": self.moved(),
             "lookups": list(self.lookups()),
-            "event_names": [string_literal(event_name(event)) for event in self.events],
+            "event_names": [string_literal(event_name(event)) for event in self.events] or ['""'],
             "settings": self.settings,
         }
 

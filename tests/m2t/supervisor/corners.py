@@ -1,0 +1,177 @@
+"""Models at the corners of what the engine in C must handle."""
+
+from robosc.metamodel import sct
+from tests.sct_models import edge, model, plant
+
+
+def _one(name: str, events: dict[str, str], **more):
+    """A plant with two locations between which each event goes."""
+    there_and_back = {
+        "here": [edge(event, to="there") for event in events],
+        "there": [edge(event, to="here") for event in events],
+    }
+    return plant(
+        name,
+        there_and_back,
+        controllable=[event for event in events if event.startswith("c_")],
+        uncontrollable=[event for event in events if event.startswith("u_")],
+        **more,
+    )
+
+
+def _still(name: str, events: list[str], **more):
+    return plant(
+        name,
+        {"only": [edge(event) for event in events]},
+        controllable=[event for event in events if event.startswith("c_")],
+        uncontrollable=[event for event in events if event.startswith("u_")],
+        **more,
+    )
+
+
+def nothing() -> sct.SupervisoryControlModel:
+    """No event, no state."""
+    return model([_still("p", [])], guards={}, name="Nothing")
+
+
+def incoming() -> sct.SupervisoryControlModel:
+    """Nothing to send."""
+    return model([_one("p", {"u_response": ""})], guards={}, name="Incoming")
+
+
+def triggers() -> sct.SupervisoryControlModel:
+    """Triggers that share no topic, always possible."""
+    return model([_still("p", ["c_trigger"]), _still("q", ["c_trigger"])], guards={}, name="Triggers")
+
+
+def one_trigger() -> sct.SupervisoryControlModel:
+    """A single trigger, of a service."""
+    return model([_one("p", {"c_trigger": ""}, kind="service")], guards={}, name="OneTrigger")
+
+
+def cancels() -> sct.SupervisoryControlModel:
+    """Cancels without triggers."""
+    return model([_one("p", {"c_cancel": ""}), _one("q", {"c_cancel": ""})], guards={}, name="Cancels")
+
+
+def cancel_and_trigger() -> sct.SupervisoryControlModel:
+    """One of each."""
+    return model([_one("p", {"c_cancel": "", "c_trigger": ""}, kind="action")], guards={}, name="CancelAndTrigger")
+
+
+def silent() -> sct.SupervisoryControlModel:
+    """A silent event that never rests."""
+    return model([_one("p", {"c_tau1": ""})], guards={}, name="Silent")
+
+
+def data() -> sct.SupervisoryControlModel:
+    """Data that nothing sends."""
+    steps = [edge("c_d1", to="d1", when="p.here"), edge("c_none", to="none", when="not p.here")]
+    chosen = plant("data_p", {"none": steps, "d1": steps}, controllable=["c_d1", "c_none"], kind="data", origin="P.p")
+    return model([_one("p", {"u_response": ""}), chosen], guards={}, name="Data")
+
+
+def swap() -> sct.SupervisoryControlModel:
+    """Updates that need the values before, within a plant, between plants and by location."""
+    return model(
+        [
+            plant(
+                "a",
+                {
+                    "x": [edge("u_response", to="y", do={"v": "w", "w": "v", "t": "b.k + v"})],
+                    "y": [edge("u_response", to="x", do={"w": "v", "v": "5 - w"})],
+                },
+                uncontrollable=["u_response"],
+                variables={"v": "0..5 = 1", "w": "0..5 = 4", "t": "-3..7"},
+            ),
+            plant(
+                "b",
+                {"x": [edge("a.u_response", to="z", do={"k": "a.t - 1"})], "z": [edge("a.u_response", to="x")]},
+                variables={"k": "-10..10"},
+            ),
+        ],
+        guards={},
+        name="Swap",
+    )
+
+
+def wide() -> sct.SupervisoryControlModel:
+    """Ranges and computations up to 64 bits."""
+    biggest = 2**63 - 1
+    return model(
+        [
+            plant(
+                "p",
+                {
+                    "x": [
+                        edge("u_response", do={"a": "a + i", "b": "b - a", "c": "a - 1", "d": "d + 1 - e", "e": "-f"}),
+                        edge("u_error", do={"e": "e * f - d", "f": "f - 40000", "u": "u + 40000", "h": "h + 1"}),
+                        edge("u_feedback", when="e - 1 < u and u * 2 > e", do={"g": "f if a > e else d", "u": "b - d"}),
+                    ]
+                },
+                uncontrollable={"u_response": ["i"], "u_error": [], "u_feedback": []},
+                inputs={"i": f"{-(2**31)}..{2**31 - 1}"},
+                variables={
+                    "a": f"{-(2**62)}..{2**62}",
+                    "b": f"-{2**61}..{2**61}",
+                    "c": f"{-biggest - 1}..{biggest} = {-biggest}",
+                    "d": "-128..127",
+                    "e": "-32768..32767 = 32767",
+                    "f": "0..65535 = 65535",
+                    "g": "-70000..70000",
+                    "h": "5..5",
+                    "u": f"0..{2**32 - 1}",
+                },
+            )
+        ],
+        guards={},
+        name="Wide",
+    )
+
+
+def names() -> sct.SupervisoryControlModel:
+    """Names that are keywords of C and C++, clash with each other or with the engine's own, or are not ASCII."""
+    return model(
+        [
+            plant("int", {"if": [edge("u_response", to="else")], "else": []}, uncontrollable=["u_response"]),
+            plant("a", {"b": [edge("int.u_response")]}, variables={"b_c": "0..3", "class": "bool"}),
+            plant("a_b", {"x": [], "d": []}, variables={"c": "0..9"}),
+            plant("a_b_c", {"bool": [], "NULL": []}),
+            plant("event", {"name": [], "ünïcode": []}, variables={"名": "0..3"}),
+            _one("init", {"u_error": ""}),
+            _one("self", {"c_trigger": ""}, variables={"state": "bool"}),
+            _one("state", {"c_tau1": ""}),
+        ],
+        enumerations={"event": ["name", "count"], "a_b": ["c", "x"], "settings": ["hooks"]},
+        guards={"self.c_trigger": "self.state or state.here"},
+        name="Class",
+    )
+
+
+def texts() -> sct.SupervisoryControlModel:
+    """Words of the model that try to leave their comment."""
+    evil = 'needs */ int main; /* ??/\n// \\ \u202e\u2066 "%s" /*/ */*/ ??) ' + "x" * 200
+    made = model(
+        [
+            _still("p", ["c_trigger", "c_tau1"], kind="message", topic=evil, origin=evil),
+            _one("q", {"u_response": ""}, origin="*/\\", topic="\\"),
+        ],
+        guards={"c_trigger": "q.here", "c_tau1": ("q.here", "q.there")},
+        name="Texts",
+    )
+    condition = sct.LocationReference(location=made.plants[1].locations[0])
+    made.requirements.append(
+        sct.Requirement(
+            event=made.plants[0].events[0],
+            kind=sct.RequirementKind.needs,
+            condition=condition,
+            text=evil,
+            source="*/evil*/.rscd:1:1-1:2",
+        )
+    )
+    return made
+
+
+ALL = (
+    nothing, incoming, triggers, one_trigger, cancels, cancel_and_trigger, silent, data, swap, wide, names, texts
+)  # fmt: skip
