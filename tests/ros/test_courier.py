@@ -5,10 +5,14 @@ The model is `tests/m2t/cpp/courier.rscd`, the steps are those of `send_to_couri
 
 from __future__ import annotations
 
+import json
 import math
 from typing import TYPE_CHECKING, Any
 
 import pytest
+from jsonschema import Draft202012Validator
+
+from robosc.resources import locate
 
 if TYPE_CHECKING:
     from tests.ros.conftest import Courier
@@ -126,6 +130,8 @@ def test_logs_events_with_their_data(courier: Courier) -> None:
     assert {"data_target.c_d1", "component_Scanner.c_tau1"} < {
         each["event"] for each in courier.log if each["direction"] == "internal"
     }
+    validator = Draft202012Validator(json.loads(locate("schemas/event-log.schema.json").read_text()))
+    assert not [error for each in courier.log for error in validator.iter_errors(each)]
     times = [each["time"] for each in courier.log]
     assert times == sorted(times)
     assert not math.isnan(times[0])

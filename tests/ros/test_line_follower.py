@@ -6,9 +6,13 @@ waits for the controller.
 
 from __future__ import annotations
 
+import json
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from jsonschema import Draft202012Validator
+
+from robosc.resources import locate
 from tests.ros.line_follower_rules import commands_in, late_moves, violations
 
 if TYPE_CHECKING:
@@ -83,10 +87,24 @@ def test_reports_state_and_definition(drive: Drive) -> None:
     assert END * 10 * 0.9 < len(states) <= END * 10 + 2
 
 
+def test_what_it_tells_fits_the_schemas(drive: Drive) -> None:
+    for name in ("state", "definition"):
+        told = [each["data"] for each in drive.reports if each["topic"] == name]
+        assert told
+        validate(told, name)
+    validate(drive.log, "event-log")
+
+
 def test_ends_cleanly_and_without_complaint(drive: Drive) -> None:
     assert drive.node_status == 0
     assert "WARN" not in drive.node_output
     assert "ERROR" not in drive.node_output
+
+
+def validate(instances: list[Any], schema: str) -> None:
+    validator = Draft202012Validator(json.loads(locate(f"schemas/{schema}.schema.json").read_text()))
+    for each in instances:
+        validator.validate(each)
 
 
 def moves(drive: Drive, start: float, end: float) -> bool:

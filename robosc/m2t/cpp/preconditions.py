@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from robosc.config import Configuration
     from robosc.models import Models
 
-RULE = "precondition"
+RULE = "ros-node"
 
 _PACKAGE = re.compile(r"[a-z]([a-z0-9]|_(?!_))*[a-z0-9]")
 _TYPE = re.compile(r"[A-Z][A-Za-z0-9]*")
