@@ -89,7 +89,7 @@ class Roles:
     def settling_bound(self) -> int:
         """How many silent events may run in a row: what verification proved, else 2 for each of them and 16."""
         proved = None if self.model.supervisor is None else self.model.supervisor.settlingBound
-        return 2 * len(self.silent) + 16 if proved is None else proved
+        return 2 * len(self.silent) + 16 if proved is None else min(proved, 0xFFFFFFFF)
 
     def _of(self, *kinds: sct.EventKind) -> tuple[sct.Event, ...]:
         return tuple(event for event in self.events if event.kind in kinds)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from robosc.expressions import ATOM
 from robosc.m2t.c.expressions import CPrinter
 from robosc.m2t.c.guards import Edges, within
-from robosc.m2t.c.ranges import All
+from robosc.m2t.c.nodes import All
 from robosc.m2t.c.types import interval_of, number, signed, type_name
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.expressions import ATOM, PRECEDENCE, ExpressionPrinter
-from robosc.m2t.c.ranges import COMPARISONS, Junction, Not, children_of, is_condition
+from robosc.m2t.c.nodes import COMPARISONS, Junction, Not, children_of, is_condition
 from robosc.m2t.c.types import Interval, index_type, number, signed, type_name
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
@@ -14,7 +14,8 @@ if TYPE_CHECKING:
     from collections.abc import Collection
 
     from robosc.m2t.c.names import CNames
-    from robosc.m2t.c.ranges import Node, Ranges
+    from robosc.m2t.c.nodes import Node
+    from robosc.m2t.c.ranges import Ranges
 
 _ARITHMETIC = (ex.Addition, ex.Subtraction, ex.Multiplication, ex.UnaryMinus)
 _CONDITIONAL = 0

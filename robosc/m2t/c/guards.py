@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robosc.m2t.c.ranges import All, Node, Not, Some
+from robosc.m2t.c.nodes import All, Node, Not, Some
 from robosc.metamodel import sct
 
 if TYPE_CHECKING:
@@ -29,10 +29,18 @@ class EventTable:
                 for edge in location.edges:
                     self.edges[edge.event].setdefault(plant, {})[location] = edge
         assert model.supervisor is not None
-        self.guards = {guard.event: guard for guard in model.supervisor.guards}
-        self.requirements: dict[sct.Event, list[sct.Requirement]] = {}
+        self._guards = {guard.event: guard for guard in model.supervisor.guards}
+        self._requirements: dict[sct.Event, list[sct.Requirement]] = {}
         for requirement in model.requirements:
-            self.requirements.setdefault(requirement.event, []).append(requirement)
+            self._requirements.setdefault(requirement.event, []).append(requirement)
+
+    def words(self, event: sct.Event) -> list[str]:
+        """The requirements on an event in the robot model's words, each with its place."""
+        return [
+            f"{each.text}{f' ({each.source})' if each.source else ''}"
+            for each in self._requirements.get(event, ())
+            if each.text
+        ]
 
     def possible(self, event: sct.Event, printer: CPrinter) -> All:
         """Where all plants of the event can take part in it."""
@@ -40,11 +48,11 @@ class EventTable:
 
     def required(self, event: sct.Event) -> All:
         """What the requirements ask."""
-        return All(_given(self.guards[event].requirement) if event in self.guards else [])
+        return All(_given(self._guards[event].requirement) if event in self._guards else [])
 
     def added(self, event: sct.Event) -> All:
         """What synthesis added."""
-        return All(_given(self.guards[event].synthesis) if event in self.guards else [])
+        return All(_given(self._guards[event].synthesis) if event in self._guards else [])
 
     def stays(self, event: sct.Event, plant: sct.Plant) -> Node:
         """Where the event would leave a plant, which takes part in it, in its location."""

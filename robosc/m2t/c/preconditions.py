@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 from robosc.diagnostics import START, Diagnostic, Severity, Span
 from robosc.m2t.c.expressions import working_type
-from robosc.m2t.c.ranges import Ranges, children_of, is_condition
+from robosc.m2t.c.nodes import children_of, is_condition
+from robosc.m2t.c.ranges import Ranges
 from robosc.metamodel import expression as ex
 
 if TYPE_CHECKING:

@@ -39,11 +39,19 @@ def supervised(path: Path) -> sct.SupervisoryControlModel:
     return made
 
 
+def dock() -> sct.SupervisoryControlModel:
+    return supervised(HERE / "dock.rscd")
+
+
+def line_follower() -> sct.SupervisoryControlModel:
+    return supervised(EXAMPLE)
+
+
 @pytest.fixture(scope="module")
 def sources(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
     """The sources of all corner models and of two real ones, in one folder."""
     folder = tmp_path_factory.mktemp("sources")
-    models = [make() for make in corners.ALL] + [supervised(HERE / "dock.rscd"), supervised(EXAMPLE)]
+    models = [make() for make in corners.ALL] + [dock(), line_follower()]
     return [write(each, folder) for each in models]
 
 
@@ -73,10 +81,11 @@ def test_cppcheck_has_nothing_to_say(sources: Sequence[Path]) -> None:
     assert call("cppcheck", "--quiet", "--std=c99", checks, *sources) == ""
 
 
-@pytest.mark.parametrize("make", corners.ALL)
-def test_corner_models_run_as_in_python(make: Callable[[], sct.SupervisoryControlModel], tmp_path: Path) -> None:
+@pytest.mark.parametrize("make", [*corners.ALL, dock, line_follower])
+def test_it_runs_as_in_python(make: Callable[[], sct.SupervisoryControlModel], tmp_path: Path) -> None:
     made = make()
     walk = Walk(made, Settings(events_per_tick=1, reactions_per_tick=3), seed=7)
+    walk.tick()
     if walk.loop.engine.events:
         walk.steps(150)
     built = build(made, tmp_path, Chosen(events_per_tick=1, reactions_per_tick=3))
@@ -84,14 +93,14 @@ def test_corner_models_run_as_in_python(make: Callable[[], sct.SupervisoryContro
 
 
 def test_the_golden_files(golden: Callable[[Path, str], None]) -> None:
-    generated = robosc.generate("supervisor", Models(supervised(HERE / "dock.rscd")))
+    generated = robosc.generate("supervisor", Models(dock()))
     assert list(generated) == ["dock_supervisor.h", "dock_supervisor.c", "CMakeLists.txt"]
     for name, text in generated.items():
         golden(HERE / "golden" / name, text)
 
 
 def test_two_controllers_fit_in_one_program(tmp_path: Path) -> None:
-    models = [corners.swap(), supervised(HERE / "dock.rscd")]
+    models = [corners.swap(), dock()]
     written = [write(each, tmp_path) for each in models]
     (tmp_path / "main.c").write_text(
         """
@@ -145,7 +154,7 @@ def test_no_function_calls_itself(sources: Sequence[Path]) -> None:
 
 
 def test_the_line_follower_is_small(tmp_path: Path) -> None:
-    source = write(supervised(EXAMPLE), tmp_path)
+    source = write(line_follower(), tmp_path)
     compiled = tmp_path / "engine.o"
     call("gcc", "-std=c99", "-Os", "-DLINE_FOLLOWER_NO_NAMES", "-c", source, "-o", compiled)
     sizes = dict(re.findall(r"^(\.\w+) +(\d+)", call("size", "-A", compiled), flags=re.MULTILINE))
@@ -154,7 +163,7 @@ def test_the_line_follower_is_small(tmp_path: Path) -> None:
 
 
 def test_requirements_stand_at_the_guard_in_the_words_of_the_model() -> None:
-    header, source, _ = robosc.generate("supervisor", Models(supervised(HERE / "dock.rscd"))).values()
+    header, source, _ = robosc.generate("supervisor", Models(dock())).values()
     words = "requirement Station.docked disables approach (dock.rscd:78:"
     at = source.index("case dock_action_approach_c_trigger:")
     assert words in source[:at].rsplit("return", 1)[1]
@@ -178,7 +187,7 @@ def test_settings_are_the_configurations() -> None:
 
 
 def test_the_same_model_gives_the_same_files() -> None:
-    first, second = (robosc.generate("supervisor", Models(supervised(HERE / "dock.rscd"))) for _ in range(2))
+    first, second = (robosc.generate("supervisor", Models(dock())) for _ in range(2))
     assert first == second
 
 
@@ -206,7 +215,7 @@ def test_what_could_overflow_is_refused_where_it_stands(update: str, fits: bool)
 def test_cmake_builds_installs_and_includes_it(tmp_path: Path) -> None:
     package = tmp_path / "package"
     package.mkdir()
-    for name, text in robosc.generate("supervisor", Models(supervised(HERE / "dock.rscd"))).items():
+    for name, text in robosc.generate("supervisor", Models(dock())).items():
         (package / name).write_text(text)
     call(
         "cmake",

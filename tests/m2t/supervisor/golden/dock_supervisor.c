@@ -219,7 +219,7 @@ static void provide(dock_supervisor *self)
 /* Lets silent events happen until none is enabled, each followed by the choice of data. */
 static void settle(dock_supervisor *self)
 {
-    unsigned left = BOUND;
+    uint32_t left = BOUND;
     while (!self->rested) {
         unsigned next = self->silent;
         unsigned asked = 0U;

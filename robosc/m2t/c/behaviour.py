@@ -1,0 +1,148 @@
+"""What the source computes: the condition of each event, what it changes, and the tables of the control loop."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from robosc.m2t.c.comments import comment
+from robosc.m2t.c.effects import Effects
+from robosc.m2t.c.nodes import All, Node
+from robosc.m2t.c.types import index_type
+from robosc.roles import plant_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from robosc.m2t.c.context import Context
+    from robosc.metamodel import sct
+
+_INDENT = 4
+
+
+@dataclass(frozen=True)
+class _Case:
+    """A part of a `switch`: its events, a comment on them, its lines, and whether they read a copy of the state."""
+
+    events: list[str]
+    comment: str
+    lines: list[str]
+    old: bool = False
+
+
+def _merged(cases: Iterable[_Case]) -> list[_Case]:
+    """Neighbours with the same lines as one, where the second has no comment."""
+    merged: list[_Case] = []
+    for case in cases:
+        if merged and merged[-1].lines == case.lines and not case.comment:
+            merged[-1].events.extend(case.events)
+        else:
+            merged.append(case)
+    return merged
+
+
+class Behaviour:
+    """Prepares conditions, changes and tables for the templates."""
+
+    def __init__(self, context: Context) -> None:
+        self._context = context
+
+    def prepared(self) -> dict[str, Any]:
+        """The values that the templates put in."""
+        effects = Effects(self._context.names, self._context.ranges)
+        executed, guarded = self._effects(effects), self._guards()
+        roles = self._context.roles
+        arrived = [self._arrived(event) for event in self._context.data]
+        return {
+            "index": index_type(len(self._context.events)),
+            "cancels": len(roles.cancels),
+            "triggers": len(roles.triggers),
+            "queued": len(self._context.queued),
+            "silent": len(roles.silent),
+            "bound": roles.settling_bound,
+            "data": self._data_starts(),
+            "settles": bool(roles.silent or roles.data),
+            "topics": len(roles.shared_topics),
+            "groups": len(roles.shared_topics) + len(roles.once_per_tick),
+            "group_of": self._group_of(),
+            "guards": guarded,
+            "guards_read_state": any("state->" in line for each in guarded for line in each.lines),
+            "effects": executed,
+            "effects_read_inputs": any("inputs->" in line for each in executed for line in each.lines),
+            "helpers": sorted(effects.helpers),
+            "arrived": [each for each in arrived if each is not None],
+            "moved": self._moved(),
+        }
+
+    def _guards(self) -> list[_Case]:
+        """The conditions of the events, but of those that nothing forbids and that there is nothing to tell about."""
+        cases = []
+        for event in self._context.events:
+            unforced = All(
+                [self._context.table.possible(event, self._context.printer), self._context.table.required(event)]
+            )
+            added = self._context.table.added(event)
+            told = self._context.table.words(event)
+            if told or self._context.ranges(All([unforced, added])).single != 1:
+                lines = self._lines(unforced, added)
+                cases.append(_Case([self._context.names.enumerator(event)], comment(told, _INDENT), lines))
+        if not self._context.events:
+            cases.append(_Case([f"{self._context.names.prefix}_nothing"], "", ["false"]))
+        return _merged(cases)
+
+    def _lines(self, unforced: All, added: All) -> list[str]:
+        """A condition, one part a line."""
+        operator, terms = self._conditions(All([unforced, added]))
+        plain, by_synthesis = self._conditions(unforced)[1], self._conditions(added)[1]
+        told = [each for each in by_synthesis if each not in plain] if operator == "&&" else []
+        marked = [f"{each} /* added by synthesis */" if each in told else each for each in terms]
+        return [marked[0], *(f"{operator} {each}" for each in marked[1:])]
+
+    def _conditions(self, node: Node) -> tuple[str, list[str]]:
+        """The outermost operator of a condition, and its operands."""
+        reduced = self._context.ranges.reduced(node)
+        joined = self._context.ranges.joined(reduced) if self._context.ranges(reduced).single is None else None
+        if joined is None:
+            return "&&", [self._context.printer(reduced)]
+        return "&&" if joined.neutral else "||", self._context.printer.terms(joined)
+
+    def _effects(self, effects: Effects) -> list[_Case]:
+        """The statements of the events that change something."""
+        cases = []
+        for event in self._context.events:
+            lines, old = effects.statements(self._context.table.edges[event])
+            if lines:
+                cases.append(_Case([self._context.names.enumerator(event)], "", lines, old))
+        return _merged(cases)
+
+    def _data_starts(self) -> list[str]:
+        """The first event of each data plant, and the one behind the last."""
+        if not self._context.data:
+            return []
+        start = len(self._context.queued) + len(self._context.roles.silent)
+        return [self._context.names.enumerator(events[0]) for events in self._context.roles.data] + [
+            f"{start + len(self._context.data)}"
+        ]
+
+    def _arrived(self, event: sct.Event) -> dict[str, str] | None:
+        stays = self._context.table.stays(event, plant_of(event))
+        if self._context.ranges(stays).single == 0:
+            return None
+        return {"event": self._context.names.enumerator(event), "condition": self._context.printer(stays)}
+
+    def _moved(self) -> list[dict[str, str]]:
+        """The triggers whose data a plant with several locations chooses."""
+        return [
+            {"event": self._context.names.enumerator(trigger), "member": self._context.names.member(plant)}
+            for trigger, plant in self._context.roles.data_plants.items()
+            if plant in self._context.located
+        ]
+
+    def _group_of(self) -> list[int]:
+        """For each cancel and trigger: 0, or the number of those of which one runs only."""
+        groups = dict.fromkeys(self._context.queued, 0)
+        for number_, events in enumerate(
+            [*self._context.roles.shared_topics, *((each,) for each in self._context.roles.once_per_tick)], 1
+        ):
+            groups.update(dict.fromkeys(events, number_))
+        return list(groups.values())
