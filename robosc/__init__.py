@@ -124,12 +124,17 @@ def _plants(robot: Robot) -> tuple[SupervisoryControlModel, Trace]:
 def synthesize(model: SupervisoryControlModel) -> Supervisor:
     """The maximally permissive, controllable, non-blocking supervisor of a model, which becomes its `supervisor`.
 
-    Raises EmptySupervisorError, a ModelError that says why, where there is none; MemoryError where the decision
-    diagrams would take more than 4 GB.
+    Raises EmptySupervisorError, a ModelError that says why, where there is none; ModelError where an action would
+    cancel itself; MemoryError where the decision diagrams would take more than 4 GB. What is merely doubtful about the
+    supervisor, `robosc.supervision.supervise` tells.
     """
+    from robosc.diagnostics import ModelError, has_errors
     from robosc.supervision import supervise
 
-    supervisor = supervise(model).supervisor
+    supervision = supervise(model)
+    if has_errors(supervision.findings):
+        raise ModelError(supervision.findings)
+    supervisor = supervision.synthesis.supervisor
     assert supervisor is not None
     return supervisor
 

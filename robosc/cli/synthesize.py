@@ -44,13 +44,14 @@ def command(model: str, as_json: bool, library_paths: Sequence[str]) -> None:
         plants = read_models(model, library_paths, report).sct
         try:
             with progress("synthesizing the supervisor"):
-                synthesis = supervise(plants)
+                supervision = supervise(plants)
         except EmptySupervisorError as error:
             if as_json:
                 _show_json(plants, error.synthesis)
             raise
+        report.add(supervision.findings)
         show = _show_json if as_json else _show
-        show(plants, synthesis)
+        show(plants, supervision.synthesis)
 
 
 def _show_json(model: sct.SupervisoryControlModel, synthesis: Synthesis) -> None:

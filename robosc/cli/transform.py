@@ -71,7 +71,9 @@ def command(
         configuration = _configuration(Path(model), chosen)
         if models.sct.supervisor is None:
             with progress("synthesizing the supervisor"):
-                supervise(models.sct)
+                supervision = supervise(models.sct)
+            report.add(supervision.findings)
+            report.stop_on_errors()
         for target in targets:
             report.add(target.findings(models, configuration))
         report.stop_on_errors()

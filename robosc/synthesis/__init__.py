@@ -9,7 +9,7 @@ else:
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from time import perf_counter
 
 from robosc.diagnostics import Diagnostic, ModelError, Severity
@@ -21,23 +21,25 @@ from robosc.synthesis.encoding import Encoding, Layout
 from robosc.synthesis.explanation import EmptySupervisor, Reason
 from robosc.synthesis.fixpoint import reachable, supervise
 from robosc.synthesis.guards import permission
+from robosc.synthesis.observations import Observations, Observer
 from robosc.synthesis.paths import TraceStep
 from robosc.synthesis.relation import event_relations
 
-__all__ = ["Reason", "Synthesis", "TraceStep", "synthesize"]
+__all__ = ["Observations", "Reason", "Synthesis", "TraceStep", "synthesize"]
 
 
 @dataclass(frozen=True)
 class Synthesis:
     """The result of synthesis. All but `seconds` is the same on every run.
 
-    Either `supervisor` is there and `reason` is None, or the supervisor is empty, and `reason` says why. A state is an
-    assignment of locations and variables: `uncontrolled_states` counts those that the plants reach without
-    requirements, `controlled_states` those under the supervisor. `bdd_nodes` are the nodes of the diagrams of the
-    controlled states and of the states in which each controllable event is allowed.
+    Either `supervisor` and `observations` are there and `reason` is None, or the supervisor is empty, and `reason` says
+    why. A state is an assignment of locations and variables: `uncontrolled_states` counts those that the plants reach
+    without requirements, `controlled_states` those under the supervisor. `bdd_nodes` are the nodes of the diagrams of
+    the controlled states and of the states in which each controllable event is allowed.
     """
 
     supervisor: sct.Supervisor | None
+    observations: Observations | None
     reason: Reason | None
     uncontrolled_states: int
     controlled_states: int
@@ -57,7 +59,7 @@ def synthesize(model: sct.SupervisoryControlModel, *, memory: int = 4 << 30) -> 
     _refuse_data_of_controllable_events(model)
     layout = Layout(model)
     result = with_enough_memory(lambda capacity: _synthesize(model, layout, capacity), memory)
-    return Synthesis(*result, seconds=perf_counter() - began)
+    return replace(result, seconds=perf_counter() - began)
 
 
 def _refuse_data_of_controllable_events(model: sct.SupervisoryControlModel) -> None:
@@ -73,9 +75,8 @@ def _refuse_data_of_controllable_events(model: sct.SupervisoryControlModel) -> N
         )
 
 
-def _synthesize(
-    model: sct.SupervisoryControlModel, layout: Layout, capacity: int
-) -> tuple[sct.Supervisor | None, Reason | None, int, int, int]:
+def _synthesize(model: sct.SupervisoryControlModel, layout: Layout, capacity: int) -> Synthesis:
+    """All of the result but the seconds."""
     diagrams = Diagrams(layout.levels, capacity)
     encoding = Encoding(layout, diagrams)
     relations = event_relations(model, encoding)
@@ -91,7 +92,7 @@ def _synthesize(
     )
     if not found.controlled.satisfiable():
         reason = EmptySupervisor(encoding, moves, plant_moves, found).reason()
-        return None, reason, encoding.count(uncontrolled), 0, found.controlled.node_count()
+        return Synthesis(None, None, reason, encoding.count(uncontrolled), 0, found.controlled.node_count(), 0.0)
     permissions = [
         permission(each, found.controlled, encoding, restricts=len(found.rounds) > 1)
         for each in relations
@@ -103,4 +104,12 @@ def _synthesize(
         bddNodes=found.controlled.node_count() + sum(each.allowed.node_count() for each in permissions),
         guards=[each.guard for each in permissions],
     )
-    return supervisor, None, supervisor.uncontrolledStates, supervisor.controlledStates, supervisor.bddNodes
+    return Synthesis(
+        supervisor,
+        Observer(model, encoding, moves, found, permissions).observations(),
+        None,
+        supervisor.uncontrolledStates,
+        supervisor.controlledStates,
+        supervisor.bddNodes,
+        0.0,
+    )

@@ -67,7 +67,7 @@ class EmptySupervisor:
         first = self._path(self._moves, self._encoding.initial, before, everything)
         last = self._path(uncontrollable, before, blocked, everything)
         event = last.moves[0][0].event
-        unmarked = self._never_marked(last.states[-1])
+        unmarked = never_marked(self._encoding, self._moves, last.states[-1])
         return self._described(
             f"{event_name(event)} can't be prevented, and after it no marked state can be reached",
             event,
@@ -102,7 +102,7 @@ class EmptySupervisor:
             self._encoding.all_marked,
             self._encoding.diagrams.true,
         )
-        unmarked = self._never_marked(self._encoding.initial_codes)
+        unmarked = never_marked(self._encoding, self._moves, self._encoding.initial_codes)
         problem = "no marked state can be reached"
         if path is None:
             return self._described(f"{problem} at all", None, unmarked, [], self._encoding.initial_codes)
@@ -123,13 +123,6 @@ class EmptySupervisor:
         path = shortest_path(self._encoding, moves, start, goal, within)
         assert path is not None
         return path
-
-    def _never_marked(self, codes: Mapping[Element, int]) -> list[sct.Plant]:
-        """The plants that are in no marked location in any state that can follow the given one."""
-        encoding = self._encoding
-        steps = [step for _, step in self._moves]
-        states = reachable(encoding.diagrams, steps, encoding.state(codes), encoding.diagrams.true)
-        return [each for each in encoding.layout.plants if not (states & encoding.marked(each)).satisfiable()]
 
     def _described(
         self,
@@ -156,3 +149,10 @@ class EmptySupervisor:
             for variable in plant.variables:
                 state[f"{plant.name}.{variable.name}"] = value(variable, codes[variable])
         return Reason(f"{problem}; {who}", event, tuple(unmarked), tuple(steps), state)
+
+
+def never_marked(encoding: Encoding, moves: Sequence[Move], codes: Mapping[Element, int]) -> list[sct.Plant]:
+    """The plants that are in no marked location in any state that can follow the given one."""
+    steps = [step for _, step in moves]
+    states = reachable(encoding.diagrams, steps, encoding.state(codes), encoding.diagrams.true)
+    return [each for each in encoding.layout.plants if not (states & encoding.marked(each)).satisfiable()]

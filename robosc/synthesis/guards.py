@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 class Permission:
     """In which of the controlled states a controllable event may happen, and how the supervisor says so."""
 
+    relation: EventRelation
     guard: sct.EventGuard
     allowed: Diagram
 
@@ -48,7 +49,7 @@ def permission(relation: EventRelation, controlled: Diagram, encoding: Encoding,
             if guard.everEnabled
             else ex.BooleanLiteral(value=False)
         )
-    return Permission(guard, allowed)
+    return Permission(relation, guard, allowed)
 
 
 def _condition(requirement: sct.Requirement) -> ex.Expression:

@@ -39,39 +39,60 @@ class Path:
     moves: list[Move]
 
 
+class Layers:
+    """The states that moves reach from a start, by the least number of steps, as far as was asked for."""
+
+    def __init__(self, encoding: Encoding, moves: Sequence[Move], start: Diagram, within: Diagram) -> None:
+        """A path stays `within` until it is at its goal."""
+        self._encoding = encoding
+        self._moves = moves
+        self._within = within
+        self._layers = [start]
+        self._seen = start
+
+    def path_to(self, goal: Diagram) -> Path | None:
+        """A shortest path to a state of `goal`; None where there is none.
+
+        Of several the same one every time: by the order of the moves, then by the states' codes.
+        """
+        steps = 0
+        while not (self._layers[steps] & goal).satisfiable():
+            steps += 1
+            if steps == len(self._layers) and not self._grow():
+                return None
+        return self._back(steps, goal)
+
+    def _grow(self) -> bool:
+        reached = self._encoding.diagrams.false
+        for _, step in self._moves:
+            reached |= step.image(self._layers[-1] & self._within)
+        reached &= ~self._seen
+        if not reached.satisfiable():
+            return False
+        self._layers.append(reached)
+        self._seen |= reached
+        return True
+
+    def _back(self, steps: int, goal: Diagram) -> Path:
+        state = pick(self._layers[steps] & goal, self._encoding.layout.state)
+        states, taken = [state], []
+        for layer in reversed(self._layers[:steps]):
+            here = self._encoding.state(state)
+            allowed = layer & self._within
+            move, before = next(
+                (move, before) for move in self._moves if (before := move[1].preimage(here) & allowed).satisfiable()
+            )
+            state = pick(before, self._encoding.layout.state)
+            states.append(state)
+            taken.append(move)
+        return Path(states[::-1], taken[::-1])
+
+
 def shortest_path(
     encoding: Encoding, moves: Sequence[Move], start: Diagram, goal: Diagram, within: Diagram
 ) -> Path | None:
-    """A shortest path from a state of `start` to one of `goal` that stays `within` until it is there.
-
-    None where there is none. Of several the same one every time: by the order of the moves, then by the states' codes.
-    """
-    layers = [start]
-    seen = start
-    while not (layers[-1] & goal).satisfiable():
-        reached = encoding.diagrams.false
-        for _, step in moves:
-            reached |= step.image(layers[-1] & within)
-        reached &= ~seen
-        if not reached.satisfiable():
-            return None
-        layers.append(reached)
-        seen |= reached
-    return _back(encoding, moves, layers, goal, within)
-
-
-def _back(encoding: Encoding, moves: Sequence[Move], layers: Sequence[Diagram], goal: Diagram, within: Diagram) -> Path:
-    state = pick(layers[-1] & goal, encoding.layout.state)
-    states, taken = [state], []
-    for layer in reversed(layers[:-1]):
-        here = encoding.state(state)
-        move, before = next(
-            (move, before) for move in moves if (before := move[1].preimage(here) & layer & within).satisfiable()
-        )
-        state = pick(before, encoding.layout.state)
-        states.append(state)
-        taken.append(move)
-    return Path(states[::-1], taken[::-1])
+    """A shortest path from a state of `start` to one of `goal`, as `Layers` finds it."""
+    return Layers(encoding, moves, start, within).path_to(goal)
 
 
 def trace(encoding: Encoding, path: Path) -> list[TraceStep]:

@@ -49,20 +49,20 @@ class EventRelation:
         requirements: Sequence[sct.Requirement],
         encoding: Encoding,
     ) -> None:
-        """`edges` are those with the event, plant by plant, `requirements` those on it."""
+        """`edges` are those with the event, plant by plant, `requirements` those on it.
+
+        `enabled_by` says of each of these plants where it enables the event, `asked` where each requirement lets it.
+        """
         self.event = event
         self.requirements = requirements
         self._encoding = encoding
         self._edges = edges
         changed = [each for edges in self._edges for each in _changed(edges)]
         self.changed = tuple(each for each in changed if encoding.layout.domains[each].size > 1)
-        self.enabled = self._conjunction(self._enabled(edges) for edges in self._edges)
-        self.requirement = self._conjunction(
-            ~encoding.holds(each.condition)
-            if each.kind == sct.RequirementKind.disables
-            else encoding.holds(each.condition)
-            for each in requirements
-        )
+        self.enabled_by = {edges[0].eContainer().eContainer(): self._enabled(edges) for edges in self._edges}
+        self.enabled = self._conjunction(self.enabled_by.values())
+        self.asked = {each: self._asked(each) for each in requirements}
+        self.requirement = self._conjunction(self.asked.values())
 
     def with_inputs(self) -> Diagram:
         """The relation of present, inputs and next values, without the requirements."""
@@ -113,6 +113,10 @@ class EventRelation:
         for part in parts:
             result &= part
         return result
+
+    def _asked(self, requirement: sct.Requirement) -> Diagram:
+        holds = self._encoding.holds(requirement.condition)
+        return ~holds if requirement.kind == sct.RequirementKind.disables else holds
 
     def _enabled(self, edges: Sequence[sct.Edge]) -> Diagram:
         result = self._encoding.diagrams.false

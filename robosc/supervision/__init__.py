@@ -1,0 +1,50 @@
+"""Gives a model its supervisor, or says why there is none, and what is doubtful about it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from robosc.diagnostics import Diagnostic, ModelError, Severity, has_errors
+from robosc.metamodel.places import place
+from robosc.supervision.findings import findings_of
+from robosc.synthesis import Synthesis, synthesize
+
+if TYPE_CHECKING:
+    from robosc.metamodel import sct
+
+
+@dataclass(frozen=True)
+class Supervision:
+    """The result of synthesis, and what its rules find."""
+
+    synthesis: Synthesis
+    findings: list[Diagnostic]
+
+
+class EmptySupervisorError(ModelError):
+    """No behaviour of the robot keeps to its requirements; `synthesis.reason` says why."""
+
+    def __init__(self, model: sct.SupervisoryControlModel, synthesis: Synthesis) -> None:
+        self.synthesis = synthesis
+        assert synthesis.reason is not None
+        reason = synthesis.reason
+        trace = f"; a shortest trace: {', '.join(map(str, reason.trace))}" if reason.trace else ""
+        file, span = place(reason.event or model)
+        message = f"the supervisor is empty: {reason.message}{trace}"
+        hint = "loosen a requirement, or give every component a way back to a marked state"
+        super().__init__([Diagnostic(file, span, Severity.ERROR, "empty-supervisor", message, hint)])
+
+
+def supervise(model: sct.SupervisoryControlModel) -> Supervision:
+    """Synthesizes the supervisor of a model, and makes it the model's own unless the findings have an error.
+
+    Raises EmptySupervisorError where there is none, ModelError and MemoryError as `robosc.synthesis.synthesize` does.
+    """
+    synthesis = synthesize(model)
+    if synthesis.observations is None:
+        raise EmptySupervisorError(model, synthesis)
+    found = findings_of(model, synthesis.observations)
+    if not has_errors(found):
+        model.supervisor = synthesis.supervisor
+    return Supervision(synthesis, found)

@@ -1,0 +1,213 @@
+"""The rules that synthesis checks: from what it observed to findings in the words of the robot model."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from robosc.diagnostics import Diagnostic, Severity, in_order
+from robosc.metamodel import sct
+from robosc.metamodel.places import place
+from robosc.roles import plant_of
+from robosc.supervision.wording import condition, in_words, listed, name
+from robosc.synthesis.encoding import referenced
+from robosc.synthesis.observations import Forbidden
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from robosc.synthesis import Observations
+    from robosc.synthesis.encoding import Element
+    from robosc.synthesis.observations import (
+        Example,
+        NeverEnabled,
+        ProvideGap,
+        SelfCancelling,
+        SharedTopicConflict,
+        SilentRestricted,
+        Trouble,
+    )
+
+_DONE = {sct.PlantKind.service: "called", sct.PlantKind.action: "started"}
+_FOLLOWED = {sct.EventKind.reset: "the end of `{}`", sct.EventKind.cancel: "the cancelling of `{}`"}
+
+
+def findings_of(model: sct.SupervisoryControlModel, observations: Observations) -> list[Diagnostic]:
+    """The findings about a model, from what synthesis observed of it, in order.
+
+    Each stands at an element of the model: at the requirement, where one alone is at fault.
+    """
+    words_for = _Findings(model)
+    return in_order(
+        [
+            *map(words_for.never_enabled, observations.never_enabled),
+            *map(words_for.silent_restricted, observations.silent_restricted),
+            *map(words_for.self_cancelling, observations.self_cancelling),
+            *map(words_for.provide_gap, observations.provide_gaps),
+            *map(words_for.shared_topic_conflict, observations.shared_topic_conflicts),
+            *map(words_for.unrestricted_call, observations.unrestricted_calls),
+        ]
+    )
+
+
+class _Findings:
+    def __init__(self, model: sct.SupervisoryControlModel) -> None:
+        self._model = model
+
+    def never_enabled(self, observed: NeverEnabled) -> Diagnostic:
+        event, plant = observed.event, plant_of(observed.event)
+        silent = event.kind == sct.EventKind.tau
+        subject = f"this transition of `{name(plant)}`" if silent else f"`{name(plant)}`"
+        done = "taken" if silent else _DONE.get(plant.kind, "sent")
+        if observed.forbidden is Forbidden.BY_REQUIREMENTS:
+            why, hint = f"wherever it could be, {_broken(observed.requirements)}", "loosen what it needs"
+        elif observed.trouble is not None:
+            why, hint = self._trouble(observed.trouble), _way_out(observed.trouble)
+        elif silent:
+            why, hint = _guard(event), "correct the guard, or lead a transition to its state"
+        else:
+            why = _not_requested(observed)
+            hint = f"write `on request to {name(plant)}` in a state that can be reached"
+        return _finding(
+            _blamed(observed.requirements, event),
+            "never-enabled",
+            f"{subject} can never be {done}: {why}",
+            f"{hint}, or leave it out",
+        )
+
+    def silent_restricted(self, observed: SilentRestricted) -> Diagnostic:
+        plant = name(plant_of(observed.event))
+        what = _FOLLOWED.get(observed.event.kind, "this transition of `{}`").format(plant)
+        return _finding(
+            observed.event,
+            "silent-restricted",
+            f"the supervisor sometimes forbids {what}, so that the model may not follow the robot: otherwise "
+            f"{self._trouble(observed.trouble)}",
+            _way_out(observed.trouble),
+        )
+
+    @staticmethod
+    def self_cancelling(observed: SelfCancelling) -> Diagnostic:
+        states = [f"`{name(plant)}.{state.name}`" for plant, state in _entered(observed.event)]
+        led = f"allow {listed(states, 'and')}, where its request leads" if states else "ask for less"
+        return _finding(
+            _blamed(observed.requirements, observed.event),
+            "self-cancelling",
+            f"`{name(plant_of(observed.event))}` is cancelled as soon as it has started: right after its start "
+            f"{_broken(observed.requirements)}",
+            f"what an action needs must hold while it runs, too: {led}",
+            Severity.ERROR,
+        )
+
+    @staticmethod
+    def provide_gap(observed: ProvideGap) -> Diagnostic:
+        plant = plant_of(observed.event)
+        done = _DONE.get(plant.kind, "sent")
+        guards = [edge.guard for location in observed.data.locations for edge in location.edges]
+        return _finding(
+            observed.data,
+            "provide-gap",
+            f"`{name(plant)}` can be {done} where no condition of a `provide` for it holds, without data"
+            + _where(observed.example, [each for guard in guards for each in referenced(guard)]),
+            f"add `provide {name(plant)} with ...` without a condition, or a requirement that excludes this",
+        )
+
+    def shared_topic_conflict(self, observed: SharedTopicConflict) -> Diagnostic:
+        first, second = observed.first, observed.second
+        requirements = [each for event in (first, second) for each in self._model.requirements if each.event is event]
+        asking: list[Element] = [plant for event in (first, second) for plant in self._taking_part(event)]
+        asking += [each for requirement in requirements for each in referenced(requirement.condition)]
+        return _finding(
+            requirements[-1] if requirements else second,
+            "shared-topic-conflict",
+            f"`{name(plant_of(first))}` and `{name(plant_of(second))}` go to one topic, and both can be sent at the "
+            f"same time, so that they take turns{_where(observed.example, asking)}",
+            "let the requirements on the two exclude each other",
+        )
+
+    @staticmethod
+    def unrestricted_call(event: sct.Event) -> Diagnostic:
+        called = name(plant_of(event))
+        return _finding(
+            event,
+            "unrestricted-call",
+            f"`{called}` is {_DONE[plant_of(event).kind]} again and again, as soon as it has ended: no requirement "
+            "restricts it, and no component waits for its request",
+            f"add `requirement {called} needs ...`, or `on request to {called}` in the states that allow it",
+        )
+
+    def _trouble(self, trouble: Trouble) -> str:
+        steps = in_words(trouble.trace, self._model)
+        if trouble.onwards:
+            steps += f", and further {in_words(trouble.onwards, self._model)}"
+        problem = "the marked states of all components can't be reached together any more"
+        if trouble.unmarked:
+            stuck = listed([f"`{name(each)}`" for each in trouble.unmarked])
+            problem = f"{stuck} can't get back to a marked state"
+        return f"after {steps}, {problem}"
+
+    def _taking_part(self, event: sct.Event) -> Iterable[sct.Plant]:
+        for plant in self._model.plants:
+            if any(edge.event is event for location in plant.locations for edge in location.edges):
+                yield plant
+
+
+def _finding(element: Any, rule: str, message: str, hint: str, severity: Severity = Severity.WARNING) -> Diagnostic:
+    file, span = place(element)
+    return Diagnostic(file, span, severity, rule, message, hint)
+
+
+def _blamed(requirements: Sequence[sct.Requirement], event: sct.Event) -> Any:
+    return requirements[0] if len(requirements) == 1 else event
+
+
+def _broken(requirements: Sequence[sct.Requirement]) -> str:
+    texts = [f"`{each.text}`" for each in requirements if each.text]
+    return f"{texts[0]} forbids it" if len(texts) == 1 else "its requirements forbid it"
+
+
+def _guard(event: sct.Event) -> str:
+    """Why a transition is never taken that no requirement restricts."""
+    plant = plant_of(event)
+    locations = [each for each in plant.locations if any(edge.event is event for edge in each.edges)]
+    guarded = any(edge.guard is not None for each in locations for edge in each.edges if edge.event is event)
+    if len(locations) == len(plant.locations):
+        return "its guard never holds"
+    state = f"`{name(plant)}.{locations[0].name}`"
+    return f"its guard never holds in {state}" if guarded else f"{state} is never reached"
+
+
+def _not_requested(observed: NeverEnabled) -> str:
+    waiting = [f"`{name(each)}`" for each in observed.plants]
+    if not waiting:
+        return "the components that wait for its request never do so at the same time"
+    return f"{listed(waiting, 'and')} can't reach a state that waits for its request"
+
+
+def _way_out(trouble: Trouble) -> str:
+    stuck = [f"`{name(each)}`" for each in trouble.unmarked if each.kind == sct.PlantKind.behaviour]
+    return f"give {listed(stuck) or 'the components'} a way from there to a marked state"
+
+
+def _entered(event: sct.Event) -> Iterable[tuple[sct.Plant, sct.Location]]:
+    """The states of components to which an event leads from others."""
+    plants: Sequence[sct.Plant] = plant_of(event).eContainer().plants
+    targets = [
+        edge.target
+        for plant in plants
+        for location in plant.locations
+        for edge in location.edges
+        if plant.kind == sct.PlantKind.behaviour and edge.event is event and edge.target is not location
+    ]
+    return [(each.eContainer(), each) for each in dict.fromkeys(targets)]
+
+
+def _where(example: Example, relevant: Iterable[Element]) -> str:
+    """The example, as far as it is about elements with several values that matter."""
+    chosen = set(relevant)
+    said = [
+        (each, value)
+        for each, value in example.state.items()
+        if each in chosen and not (isinstance(each, sct.Plant) and len(each.locations) == 1)
+    ]
+    shown = f", for example where `{condition(said)}`" if said else ""
+    return shown if example.settled else f"{shown}, if only until silent transitions have run"

@@ -1,0 +1,74 @@
+"""Events, states and traces of an sct model in the words of the robot model that it came from."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robosc.diagnostics import Span
+from robosc.metamodel import sct
+from robosc.roles import event_name, plant_of
+from robosc.synthesis.decoding import text
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from robosc.synthesis import TraceStep
+    from robosc.synthesis.decoding import Value
+    from robosc.synthesis.encoding import Element
+
+_EVENTS = {
+    sct.EventKind.trigger: "request to {}",
+    sct.EventKind.response: "response from {}",
+    sct.EventKind.error: "error from {}",
+    sct.EventKind.feedback: "feedback from {}",
+    sct.EventKind.cancel: "cancel of {}",
+    sct.EventKind.reset: "reset of {}",
+    sct.EventKind.tau: "transition of {}",
+    sct.EventKind.data: "choice of the data of {}",
+}
+
+
+def name(plant: sct.Plant) -> str:
+    """What the robot model calls it: a component, or a component's communication with a dot between."""
+    return plant.origin or plant.name
+
+
+def words(event: sct.Event) -> str:
+    """An event, such as `request to Platform.move`; of silent transitions also the line."""
+    said = _EVENTS[event.kind].format(f"`{name(plant_of(event))}`")
+    span = Span.parse(event.source)
+    return f"{said} in line {span.line}" if event.kind == sct.EventKind.tau and span else said
+
+
+def in_words(steps: Sequence[TraceStep], model: sct.SupervisoryControlModel) -> str:
+    """The events of a trace with the data that matters."""
+    events = {event_name(event): event for plant in model.plants for event in plant.events}
+    said = []
+    for step in steps:
+        event = events[step.event]
+        data = ", ".join(f"{_data(each, event)} = {text(chosen)}" for each, chosen in step.inputs.items())
+        said.append(f"{words(event)} ({data})" if data else words(event))
+    return listed(said, "then")
+
+
+def _data(input_name: str, event: sct.Event) -> str:
+    return input_name.removeprefix(f"i_{event.kind.name}").removeprefix("_") or "value"
+
+
+def listed(names: Sequence[str], last: str = "and") -> str:
+    """`a`, `a and b`, `a, b and c`."""
+    return ", ".join(names[:-1]) + f" {last} {names[-1]}" if len(names) > 1 else "".join(names)
+
+
+def condition(values: Iterable[tuple[Element, Value]]) -> str:
+    """Values of plants and variables as a condition of the language, such as `Lidar.free and Lidar.front = clear`."""
+    return " and ".join(_is(element, chosen) for element, chosen in values)
+
+
+def _is(element: Element, chosen: Value) -> str:
+    if isinstance(element, sct.Plant):
+        return f"{name(element)}.{chosen}"
+    whole = f"{name(element.eContainer())}.{element.name}"
+    if isinstance(chosen, bool):
+        return whole if chosen else f"!{whole}"
+    return f"{whole} = {text(chosen)}"

@@ -1,0 +1,266 @@
+"""What synthesis can say of a model beside its supervisor: what is allowed, but hardly meant."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum, auto
+from functools import cached_property
+from itertools import combinations
+from typing import TYPE_CHECKING
+
+from robosc.metamodel import sct
+from robosc.roles import Roles, plant_of
+from robosc.synthesis.decoding import Value, pick, value
+from robosc.synthesis.explanation import never_marked
+from robosc.synthesis.paths import Layers, Path, TraceStep, shortest_path, trace
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from robosc.synthesis.bdd import Diagram
+    from robosc.synthesis.encoding import Element, Encoding
+    from robosc.synthesis.fixpoint import SupervisedStates
+    from robosc.synthesis.guards import Permission
+    from robosc.synthesis.paths import Move
+
+_CALLS = (sct.PlantKind.service, sct.PlantKind.action)
+_FOLLOWS_THE_ROBOT = (sct.EventKind.tau, sct.EventKind.reset, sct.EventKind.cancel)
+
+
+@dataclass(frozen=True)
+class Trouble:
+    """What the supervisor prevents when it holds an event back that plants and requirements would allow.
+
+    `trace` is a shortest one from the initial state that ends with the event so held back. `onwards` is a shortest way
+    from there, under the requirements, to where no marked state can be reached any more; empty where that is so at
+    once. `unmarked` are the plants that can't be in a marked location from then on; none if each can be but never all
+    at once.
+    """
+
+    trace: tuple[TraceStep, ...]
+    onwards: tuple[TraceStep, ...]
+    unmarked: tuple[sct.Plant, ...]
+
+
+class Forbidden(Enum):
+    """Who keeps an event from ever happening: the first of these that does."""
+
+    BY_PLANTS = auto()
+    BY_REQUIREMENTS = auto()
+    BY_SYNTHESIS = auto()
+
+
+@dataclass(frozen=True)
+class NeverEnabled:
+    """A trigger or tau event that is allowed in no controlled state.
+
+    `plants` and `requirements` are those which forbid it alone: the plants wherever the robot may come, the
+    requirements wherever the plants enable it. `trouble` is there where synthesis forbids it.
+    """
+
+    event: sct.Event
+    forbidden: Forbidden
+    plants: tuple[sct.Plant, ...] = ()
+    requirements: tuple[sct.Requirement, ...] = ()
+    trouble: Trouble | None = None
+
+
+@dataclass(frozen=True)
+class SilentRestricted:
+    """A tau, reset or cancel event to which synthesis added something."""
+
+    event: sct.Event
+    trouble: Trouble
+
+
+@dataclass(frozen=True)
+class SelfCancelling:
+    """An action, by its trigger, whose requirement holds in no state right after it.
+
+    `requirements` are those on it which alone hold in none of these states.
+    """
+
+    event: sct.Event
+    requirements: tuple[sct.Requirement, ...]
+
+
+@dataclass(frozen=True)
+class Example:
+    """A controlled state: the location of every plant by name, the value of every variable.
+
+    `settled` says that no silent event is allowed in it. There is an unsettled example only where there is no other.
+    """
+
+    state: Mapping[Element, Value]
+    settled: bool
+
+
+@dataclass(frozen=True)
+class ProvideGap:
+    """A trigger that is allowed where none of the conditions on its data, in the plant `data`, holds."""
+
+    event: sct.Event
+    data: sct.Plant
+    example: Example
+
+
+@dataclass(frozen=True)
+class SharedTopicConflict:
+    """Two triggers of messages on one topic that are allowed at once, in the order of the model."""
+
+    first: sct.Event
+    second: sct.Event
+    example: Example
+
+
+@dataclass(frozen=True)
+class Observations:
+    """All of them, each kind in the order of the model. `unrestricted_calls` are triggers of services and actions.
+
+    These can happen, no requirement is on them, and no plant but their own takes part in them.
+    """
+
+    never_enabled: tuple[NeverEnabled, ...]
+    silent_restricted: tuple[SilentRestricted, ...]
+    self_cancelling: tuple[SelfCancelling, ...]
+    provide_gaps: tuple[ProvideGap, ...]
+    shared_topic_conflicts: tuple[SharedTopicConflict, ...]
+    unrestricted_calls: tuple[sct.Event, ...]
+
+
+class Observer:
+    """Asks the decision diagrams of a supervisor that is not empty."""
+
+    def __init__(
+        self,
+        model: sct.SupervisoryControlModel,
+        encoding: Encoding,
+        moves: Sequence[Move],
+        found: SupervisedStates,
+        permissions: Sequence[Permission],
+    ) -> None:
+        """`moves` are all events under the requirements, `permissions` are of all controllable events."""
+        self._encoding = encoding
+        self._moves = moves
+        self._found = found
+        self._permissions = {each.relation.event: each for each in permissions}
+        self._roles = Roles(model)
+        self._triggers = [each for each in self._roles.triggers if each in self._permissions]
+
+    def observations(self) -> Observations:
+        """All that there is to say."""
+        return Observations(
+            tuple(self._never_enabled()),
+            tuple(self._silent_restricted()),
+            tuple(self._self_cancelling()),
+            tuple(self._provide_gaps()),
+            tuple(self._shared_topic_conflicts()),
+            tuple(self._unrestricted_calls()),
+        )
+
+    def _never_enabled(self) -> Iterator[NeverEnabled]:
+        controlled = self._found.controlled
+        for event, permission in self._permissions.items():
+            if event.kind not in (sct.EventKind.trigger, sct.EventKind.tau) or permission.allowed.satisfiable():
+                continue
+            relation = permission.relation
+            enabled = controlled & relation.enabled
+            if not enabled.satisfiable():
+                plants = [each for each, own in relation.enabled_by.items() if not (controlled & own).satisfiable()]
+                yield NeverEnabled(event, Forbidden.BY_PLANTS, plants=tuple(plants))
+            elif not (enabled & relation.requirement).satisfiable():
+                yield NeverEnabled(event, Forbidden.BY_REQUIREMENTS, requirements=_broken(permission, enabled))
+            else:
+                yield NeverEnabled(event, Forbidden.BY_SYNTHESIS, trouble=self._trouble(permission))
+
+    def _silent_restricted(self) -> Iterator[SilentRestricted]:
+        for event, permission in self._permissions.items():
+            if event.kind in _FOLLOWS_THE_ROBOT and permission.guard.synthesis is not None:
+                yield SilentRestricted(event, self._trouble(permission))
+
+    def _self_cancelling(self) -> Iterator[SelfCancelling]:
+        for event in self._triggers:
+            permission = self._permissions[event]
+            step = permission.relation.step
+            if plant_of(event).kind != sct.PlantKind.action or not permission.allowed.satisfiable():
+                continue
+            after = permission.allowed if step is None else step.image(permission.allowed)
+            if not (after & permission.relation.requirement).satisfiable():
+                yield SelfCancelling(event, _broken(permission, after))
+
+    def _provide_gaps(self) -> Iterator[ProvideGap]:
+        for event in self._triggers:
+            plant = self._roles.data_plants.get(event)
+            if plant is None:
+                continue
+            gap = self._permissions[event].allowed
+            for each in plant.events:
+                if each in self._permissions and _provides_something(plant, each):
+                    gap &= ~self._permissions[each].relation.enabled
+            if gap.satisfiable():
+                yield ProvideGap(event, plant, self._example(gap))
+
+    def _shared_topic_conflicts(self) -> Iterator[SharedTopicConflict]:
+        for events in self._roles.shared_topics:
+            for first, second in combinations([each for each in events if each in self._permissions], 2):
+                both = self._permissions[first].allowed & self._permissions[second].allowed
+                if both.satisfiable():
+                    yield SharedTopicConflict(first, second, self._example(both))
+
+    def _unrestricted_calls(self) -> Iterator[sct.Event]:
+        for event in self._triggers:
+            plant, permission = plant_of(event), self._permissions[event]
+            alone = all(each is plant for each in permission.relation.enabled_by)
+            restricted = permission.relation.requirements or not alone
+            if plant.kind in _CALLS and not restricted and permission.allowed.satisfiable():
+                yield event
+
+    def _example(self, states: Diagram) -> Example:
+        settled = states & ~self._unsettled
+        codes = pick(settled if settled.satisfiable() else states, self._encoding.layout.state)
+        by_rank = sorted(self._encoding.layout.state, key=lambda each: each.rank)
+        named = {each.element: value(each.element, codes[each.element]) for each in by_rank}
+        return Example(named, settled.satisfiable())
+
+    @cached_property
+    def _unsettled(self) -> Diagram:
+        result = self._encoding.diagrams.false
+        for event in self._roles.silent:
+            if event in self._permissions:
+                result |= self._permissions[event].allowed
+        return result
+
+    @cached_property
+    def _layers(self) -> Layers:
+        """The controlled states by their distance from the initial one."""
+        controlled = self._found.controlled
+        return Layers(self._encoding, self._moves, self._encoding.initial, controlled)
+
+    def _trouble(self, permission: Permission) -> Trouble:
+        relation, encoding, controlled = permission.relation, self._encoding, self._found.controlled
+        step = relation.step
+        assert step is not None  # else the event would change nothing, and lead to no trouble
+        held_back = controlled & relation.enabled & relation.requirement & ~permission.allowed
+        way = self._layers.path_to(held_back)
+        assert way is not None
+        after = pick(step.image(encoding.state(way.states[-1])), encoding.layout.state)
+        blocked = self._found.rounds[0] & ~self._found.alive[0]
+        # There is a way: whatever was given up in a round can leave for what an earlier round gave up.
+        onwards = shortest_path(encoding, self._moves, encoding.state(after), blocked, encoding.diagrams.true)
+        assert onwards is not None
+        return Trouble(
+            tuple(trace(encoding, Path([*way.states, after], [*way.moves, (relation, step)]))),
+            tuple(trace(encoding, onwards)),
+            tuple(never_marked(encoding, self._moves, onwards.states[-1])),
+        )
+
+
+def _broken(permission: Permission, states: Diagram) -> tuple[sct.Requirement, ...]:
+    """The requirements on an event that each let it happen in none of the states."""
+    return tuple(each for each, asked in permission.relation.asked.items() if not (states & asked).satisfiable())
+
+
+def _provides_something(plant: sct.Plant, event: sct.Event) -> bool:
+    """Whether a data event chooses data: the initial location stands for none."""
+    edges = (edge for location in plant.locations for edge in location.edges if edge.event is event)
+    return not any(edge.target.initial for edge in edges)
