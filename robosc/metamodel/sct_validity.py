@@ -28,6 +28,7 @@ def sct_faults(model: sct.SupervisoryControlModel, elements: Sequence[Any]) -> I
         yield from _element(element, own)
     for plant in model.plants:
         yield from _plant(plant, types)
+    yield from _unused(model)
     for element in elements:
         yield from _conditions(element, types)
     yield from _supervisor(model)
@@ -94,6 +95,15 @@ def _plant(plant: sct.Plant, types: ExpressionTypes) -> Iterator[Fault]:
             if edge.target.eContainer() is not plant:
                 yield edge, f"the target '{edge.target.name}' is another plant's location"
             yield from _updates(edge, plant, types)
+
+
+def _unused(model: sct.SupervisoryControlModel) -> Iterator[Fault]:
+    """The events on no edge: whether they can happen, or never, nobody could say."""
+    used = {edge.event for plant in model.plants for location in plant.locations for edge in location.edges}
+    for plant in model.plants:
+        for event in plant.events:
+            if event not in used:
+                yield event, f"no plant has an edge for the event '{event.name}'"
 
 
 def _updates(edge: sct.Edge, plant: sct.Plant, types: ExpressionTypes) -> Iterator[Fault]:

@@ -79,6 +79,10 @@ def _second_edge(given: Any) -> None:
     p.locations[0].edges.append(sct.Edge(event=p.events[0], target=p.locations[0]))
 
 
+def _unused_event(given: Any) -> None:
+    _plants(given)[0].events.append(sct.Event(name="u_error", controllable=False, kind=sct.EventKind.error))
+
+
 def _foreign_target(given: Any) -> None:
     p, q = _plants(given)
     p.locations[0].edges[0].target = q.locations[0]
@@ -219,6 +223,7 @@ BROKEN: list[tuple[Callable[[Any], None], list[str]]] = [
     (_two_initial, ["plant 'p' has 2 initial locations; it starts in exactly one"]),
     (_none_initial, ["plant 'p' has no initial locations; it starts in exactly one"]),
     (_second_edge, ["location 'one' has two edges for 'c'"]),
+    (_unused_event, ["no plant has an edge for the event 'u_error'"]),
     (_foreign_target, ["the target 'one' is another plant's location"]),
     (_foreign_update, ["the variable 'x' is another plant's"]),
     (_updated_twice, ["the variable 'n' is updated twice"]),
