@@ -1,6 +1,8 @@
 """The elements of one XMI file, before its references are resolved."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -20,12 +22,21 @@ _ECORE = "http://www.eclipse.org/emf/2002/Ecore"
 
 @dataclass(frozen=True)
 class Reference:
-    """A reference to be resolved: `target` is a fragment path, with a file's relative path before the `#`."""
+    """A reference to be resolved: `target` is a fragment path, with a file's relative path before the `#`.
+
+    It stands in an attribute of its own name, or is an element.
+    """
 
     element: Any
     feature: Any
     target: str
-    span: Span
+    markup: Element
+    is_attribute: bool
+
+    @property
+    def span(self) -> Span:
+        """Where it stands."""
+        return self.markup.attribute_span(self.feature.name) if self.is_attribute else self.markup.span
 
 
 @dataclass(eq=False)
@@ -80,6 +91,12 @@ def _package(uri: str | None) -> Any:
     return next((each for each in packages().values() if each.nsURI == uri), None)
 
 
+@cache
+def _classifier(uri: str | None, name: str) -> Any:
+    package = _package(uri)
+    return None if package is None else package.getEClassifier(name)
+
+
 class _Filling:
     """Sets the features of one element; its children are made, but not filled."""
 
@@ -106,20 +123,21 @@ class _Filling:
                 self.document.report(self.markup.span, f"{self.class_name} needs '{name}'")
 
     def attribute(self, namespace: str, name: str, text: str) -> None:
-        span = self.markup.attribute_span(name)
         feature = None if namespace else self.features.get(name)
         if feature is None or (not is_attribute(feature) and feature.containment):
-            self.document.report(span, f"{self.class_name} has no attribute '{name}'")
+            self.document.report(self.markup.attribute_span(name), f"{self.class_name} has no attribute '{name}'")
             return
         self.given[name] = 1
         if is_attribute(feature):
-            self.set(span, feature, text)
+            self.set(feature, text, lambda: self.markup.attribute_span(name))
             return
         targets = text.split()
         if len(targets) != 1 and not feature.many:
-            self.document.report(span, f"'{name}' refers to one element")
+            self.document.report(self.markup.attribute_span(name), f"'{name}' refers to one element")
             return
-        self.document.references += [Reference(self.element, feature, f"#{each}", span) for each in targets]
+        self.document.references += [
+            Reference(self.element, feature, f"#{each}", self.markup, is_attribute=True) for each in targets
+        ]
 
     def child(self, child: Element) -> None:
         feature = None if child.namespace else self.features.get(child.name)
@@ -130,12 +148,12 @@ class _Filling:
         if self.given[child.name] > 1 and not feature.many:
             self.document.report(child.span, f"{self.class_name} has only one '{child.name}'")
         elif is_attribute(feature):
-            self.set(child.span, feature, child.text)
+            self.set(feature, child.text, lambda: child.span)
         elif feature.containment:
             self.contain(child, feature)
         else:
             target = child.attributes.get(("", "href"), "")
-            self.document.references.append(Reference(self.element, feature, target, child.span))
+            self.document.references.append(Reference(self.element, feature, target, child, is_attribute=False))
 
     def contain(self, child: Element, feature: Any) -> None:
         metaclass = self.child_class(child, feature)
@@ -154,8 +172,7 @@ class _Filling:
         written = child.attributes.get((XSI, "type"))
         if written is not None:
             prefix, _, name = written.rpartition(":")
-            package = _package(child.prefixes.get(prefix))
-            found = None if package is None else package.getEClassifier(name)
+            found = _classifier(child.prefixes.get(prefix), name)
         if found is None or isinstance(found, EEnum):
             self.document.report(child.attribute_span("xsi:type"), f"there is no class '{written}'")
         elif not issubclass(found.python_class, feature.eType.python_class):
@@ -167,12 +184,12 @@ class _Filling:
             return found
         return None
 
-    def set(self, span: Span, feature: Any, text: str) -> None:
+    def set(self, feature: Any, text: str, where: Callable[[], Span]) -> None:
         value = from_text(feature.eType, text)
         if value is None:
             kind = feature.eType
             hint = f"one of {', '.join(each.name for each in kind.eLiterals)}" if isinstance(kind, EEnum) else None
-            self.document.report(span, f"'{feature.name}' can't be '{text[:80]}'", hint)
+            self.document.report(where(), f"'{feature.name}' can't be '{text[:80]}'", hint)
         elif feature.many:
             getattr(self.element, feature.name).append(value)
         else:

@@ -36,14 +36,14 @@ class Element:
 
     def attribute_span(self, written: str) -> Span:
         """Where an attribute is, by its name as it is written; where the element is, if it is on no one line."""
-        line, start = self.line, self.span.end_column - 1
-        for text in self.lines[self.line - 1 :]:
-            for match in _ATTRIBUTE_OR_END.finditer(text, start):
+        start = self.span.end_column - 1
+        for line in range(self.line, len(self.lines) + 1):
+            for match in _ATTRIBUTE_OR_END.finditer(self.lines[line - 1], start):
                 if match.group(1) is None:
                     return self.span
                 if match.group(1) == written:
                     return Span(line, match.start() + 1, line, match.end() + 1)
-            line, start = line + 1, 0
+            start = 0
         return self.span
 
 

@@ -28,7 +28,7 @@ def load(path: str | Path) -> Any:
 
 class _Loading:
     def __init__(self, path: Path) -> None:
-        self._folder = path.parent.resolve()
+        self._folder = path.resolve().parent
         self._documents: dict[Path, Document] = {}
         self._sought: set[tuple[Document, str]] = set()
         main = self._read(path.as_posix(), path.resolve())
