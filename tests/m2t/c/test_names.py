@@ -1,0 +1,73 @@
+from keyword import iskeyword
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from robosc.m2t.c.names import KEYWORDS, CNames
+from robosc.metamodel import sct
+from tests.m2t.supervisor import corners
+from tests.sct_models import model, plant
+
+_words = st.sampled_from(["a", "b", "a_b", "b_a", "a_b_a", "int", "event", "name", "state", "bool", "class", "_", "b_"])
+
+
+def _all(names: CNames, made: sct.SupervisoryControlModel) -> tuple[list[str], list[str], list[str]]:
+    """Names at file level, members of the state, members of the inputs."""
+    enumerators = [names.enumerator(each) for owner in made.plants for each in (*owner.events, *owner.locations)] + [
+        names.enumerator(each) for owner in made.enumerations for each in owner.literals
+    ]
+    functions = [names.lookup(each) for each in (*made.plants, *made.enumerations)]
+    members = [names.member(each) for owner in made.plants for each in (owner, *owner.variables)]
+    return enumerators + functions, members, [names.member(each) for owner in made.plants for each in owner.inputs]
+
+
+@settings(max_examples=60)
+@given(
+    st.lists(_words, unique=True, min_size=1, max_size=5),
+    st.lists(_words, unique=True, max_size=4),
+    st.lists(_words, unique=True, min_size=1, max_size=4),
+)
+def test_names_are_one_to_one_and_no_keywords(plants: list[str], inner: list[str], locations: list[str]) -> None:
+    made = model(
+        [
+            plant(
+                each,
+                {location: [] for location in locations},
+                controllable=inner,
+                variables=dict.fromkeys(inner, "bool"),
+                inputs=dict.fromkeys(inner, "bool"),
+            )
+            for each in plants
+        ],
+        enumerations={each: [f"l{number}" for number in range(2)] for each in plants},
+        name="A",
+    )
+    names = CNames(made)
+    for scope in _all(names, made):
+        assert len(set(scope)) == len(scope)
+        assert not set(scope) & KEYWORDS
+        assert all(each.isascii() and each.isidentifier() for each in scope)
+    own = {f"a_{each}" for each in ("event", "state", "init", "perform", "event_name", "supervisor")}
+    assert not set(_all(names, made)[0]) & own
+
+
+def test_names_are_what_the_model_says_where_nothing_clashes() -> None:
+    made = corners.swap()
+    names = CNames(made)
+    a = made.plants[0]
+    assert names.prefix == "swap"
+    assert names.macro == "SWAP"
+    assert names.enumerator(a.events[0]) == "swap_a_u_response"
+    assert names.enumerator(a.locations[1]) == "swap_a_y"
+    assert [names.member(each) for each in (a, a.variables[0])] == ["a", "a_v"]
+    assert names.lookup(a) == "swap_location_name_a"
+
+
+@pytest.mark.parametrize(
+    ("robot", "prefix"),
+    [("LineFollower", "line_follower"), ("_Hidden_", "hidden"), ("__", "robot"), ("2go", "robot_2go"), ("Ü", "u00fc")],
+)
+def test_the_prefix_is_an_identifier(robot: str, prefix: str) -> None:
+    assert CNames(model([plant("p", {"x": []})], name=robot)).prefix == prefix
+    assert not iskeyword(prefix)
