@@ -48,12 +48,13 @@ class Processes:
             time.sleep(0.05)
 
     def stop(self, process: subprocess.Popen[bytes]) -> int:
-        """Interrupts a program, as Ctrl-C does; its exit status. It has ten seconds to end."""
+        """Interrupts a program, as Ctrl-C does; its exit status. One that has not ended after ten seconds is killed."""
         self._signal(process, signal.SIGINT)
         try:
             return process.wait(_SECONDS_TO_END)
         except subprocess.TimeoutExpired:
-            return -1
+            self._signal(process, signal.SIGKILL)
+            return process.wait()
 
     def logs(self) -> str:
         """What the programs wrote."""
@@ -72,7 +73,6 @@ class Processes:
         for _, process in self._started:
             # What a program has left behind is in its group.
             self._signal(process, signal.SIGKILL)
-            process.wait()
 
     @staticmethod
     def _signal(process: subprocess.Popen[bytes], number: signal.Signals) -> None:

@@ -39,7 +39,7 @@ class Ros1:
         import rospy
 
         self.rospy = rospy
-        rospy.init_node(name, anonymous=True)
+        rospy.init_node(name, anonymous=True, disable_signals=True)
         self.publishers = []
 
     def listen(self, topic, kind, callback, latched=False):  # noqa: ARG002
