@@ -102,5 +102,5 @@ def _trees(
         trees[folder] |= {(below / path).as_posix(): text for path, text in files.items()}
         copy = getattr(configuration.output, target.location) if target.location else None
         if copy:
-            trees.setdefault(home / copy, {}).update(files)
+            trees.setdefault(home / Path(copy).expanduser(), {}).update(files)
     return trees
