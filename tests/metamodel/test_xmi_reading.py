@@ -200,7 +200,7 @@ def test_document_types_and_entities_are_refused(write: Any, doctype: str) -> No
 
 def test_nesting_is_bounded(write: Any) -> None:
     [finding] = findings(write(HEAD + "<plants>" * 200_000))
-    assert (finding.rule, finding.message) == ("syntax", "more than 1000 elements are inside each other")
+    assert (finding.rule, finding.message) == ("syntax", "more than 6000 elements are inside each other")
 
 
 FOREIGN = [

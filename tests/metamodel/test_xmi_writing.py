@@ -10,6 +10,7 @@ from robosc.diagnostics import ModelError, Span
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc, rosgraph, sct
 from robosc.metamodel.xmi import load, to_texts
+from robosc.metamodel.xmi.format import DEEPEST
 from tests.sct_models import edge, model, needs, plant
 
 
@@ -159,8 +160,8 @@ def nested(depth: int) -> sct.SupervisoryControlModel:
 
 
 def test_depth_is_bounded(tmp_path: Any) -> None:
-    text = to_texts({"x.xmi": nested(997)})["x.xmi"]
+    text = to_texts({"x.xmi": nested(DEEPEST - 3)})["x.xmi"]
     (tmp_path / "x.xmi").write_text(text)
     assert to_texts({"x.xmi": load(tmp_path / "x.xmi")})["x.xmi"] == text
-    with pytest.raises(ModelError, match="more than 1000 elements"):
-        to_texts({"x.xmi": nested(1000)})
+    with pytest.raises(ModelError, match="more than 6000 elements"):
+        to_texts({"x.xmi": nested(DEEPEST)})

@@ -6,8 +6,8 @@ from typing import Any
 XMI = "http://www.omg.org/XMI"
 XSI = "http://www.w3.org/2001/XMLSchema-instance"
 
-#: Elements inside each other: more than any model needs, fewer than would exhaust a recursive reader.
-DEEPEST = 1000
+#: Elements inside each other: as many as an expression of the language may have operators, and those around it.
+DEEPEST = 6000
 #: What XML 1.0 can't hold, not even escaped.
 UNWRITABLE = re.compile("[^\t\n\r -\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 

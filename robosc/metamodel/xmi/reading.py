@@ -1,6 +1,7 @@
 """XMI files to models, with everything found wrong at once."""
 
 import re
+import sys
 from pathlib import Path, PurePosixPath
 from typing import Any
 from urllib.parse import unquote
@@ -9,7 +10,7 @@ from robosc.diagnostics import ModelError, Span
 from robosc.metamodel.reflection import features, is_attribute
 from robosc.metamodel.validity import faults
 from robosc.metamodel.xmi.building import Document, Reference, build
-from robosc.metamodel.xmi.format import a
+from robosc.metamodel.xmi.format import DEEPEST, a
 from robosc.metamodel.xmi.markup import parse
 
 _FRAGMENT = re.compile(r"/(/@\w+(\.[0-9]{1,9})?)*", re.ASCII)
@@ -23,6 +24,8 @@ def load(path: str | Path) -> Any:
     for what is no XML, `xmi` for what is no model of these metamodels, refers to nothing, or breaks a rule that every
     such model keeps (`robosc.metamodel.validity`). Nothing is ever fetched, and no entity expanded.
     """
+    # What reads a model follows its expressions by recursion, a few calls for each operator in a row.
+    sys.setrecursionlimit(max(sys.getrecursionlimit(), 20 * DEEPEST))
     return _Loading(Path(path)).root
 
 

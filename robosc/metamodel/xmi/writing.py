@@ -10,7 +10,7 @@ from xml.sax.saxutils import escape, quoteattr
 from robosc.diagnostics import Diagnostic, ModelError, Severity
 from robosc.metamodel._ecore import PACKAGES, packages
 from robosc.metamodel.places import place
-from robosc.metamodel.reflection import features, is_attribute, tree
+from robosc.metamodel.reflection import contents, features, is_attribute
 from robosc.metamodel.xmi.format import DEEPEST, UNWRITABLE, XMI, XSI
 from robosc.metamodel.xmi.values import to_text
 
@@ -20,16 +20,38 @@ def to_texts(roots: Mapping[str, Any]) -> dict[str, str]:
 
     A reference to a model of another of these files becomes a relative href. The text depends on nothing but the
     models and the paths between the files. Raises ModelError for what XML can't hold (a control character in a string,
-    a thousand elements inside each other) and ValueError for a reference to an element of none of these models.
+    more elements inside each other than any expression has), and ValueError for a reference to an element of none of
+    these models.
     """
-    places = {element: _Place(path, fragment) for path, root in roots.items() for fragment, element in tree(root)}
+    places: dict[Any, _Place] = {}
+    for path, root in roots.items():
+        places[root] = _Place(path, None, "")
+        elements = [root]
+        while elements:
+            where = places[elements[-1]]
+            for step, child in contents(elements.pop()):
+                places[child] = _Place(path, where, step)
+                elements.append(child)
     return {path: _Document(path, places).text(root) for path, root in roots.items()}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Place:
+    """Where an element is: its file, the place of what contains it, and the step from there."""
+
     file: str
-    fragment: str
+    container: "_Place | None"
+    step: str
+
+    @property
+    def fragment(self) -> str:
+        """The path from the root, which for most elements nobody asks for."""
+        steps = []
+        where: _Place | None = self
+        while where is not None:
+            steps.append(where.step)
+            where = where.container
+        return "/" + "/".join(reversed(steps))
 
 
 @dataclass
