@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 class Level:
     """What stands inside a kind of braces: items of a rule of the grammar, in words a `noun`.
 
-    `starters` are the keywords that an item begins with, `bodies` what its braces hold, by such a keyword, and `unknown`
+    `starters` are the keywords that an item begins with, `bodies` what its braces hold, by such a keyword; `unknown` is
     what they hold most likely where the keyword can't be told.
     """
 
@@ -79,7 +79,7 @@ _CONTINUED = {"message": ("incoming", "outgoing")} | dict.fromkeys(
     ("state", "initial", "marked"), ("initial", "marked")
 )
 #: Keywords and braces that follow the one that an item begins with.
-_SECOND = {"message", "object", "enum", "state", "{"}
+_SECOND = {"message", "object", "enum", "initial", "marked", "state", "{"}
 
 
 @dataclass(frozen=True)
@@ -137,7 +137,23 @@ class Outline:
         elif not self._ended():
             self._missing("{")
         items = self._body((DEFINITIONS,))
+        while self._more():
+            self.braces.append(Brace("}", self._at - 1, surplus=True))
+            items += self.items((DEFINITIONS,))
+            if self._is("}"):
+                self._at += 1
+            else:
+                self._missing("}", 0)
         return Block(None, 0, self._at, 0, self._end(), items)
+
+    def _more(self) -> bool:
+        """Whether definitions follow on the brace that seemed to be the last."""
+        for index in range(self._at, self._limit):
+            if self._tokens[index].is_keyword("robot", "library"):
+                return False
+            if self._tokens[index].is_keyword(*DEFINITIONS.starters):
+                return True
+        return False
 
     def items(self, levels: tuple[Level, ...]) -> tuple[Block, ...]:
         """The items of the last of these levels, up to where one of the others goes on."""
@@ -151,7 +167,9 @@ class Outline:
         starter = level.starter(self._tokens[first])
         body = self._body_level(level, starter)
         items: tuple[Block, ...] = ()
-        if not self._is("{"):
+        if body is None and self._is("{"):
+            self._skip(levels)
+        elif not self._is("{"):
             self._at += 1
         unopened = False
         while not self._ended():
@@ -185,6 +203,7 @@ class Outline:
                 self._at += 1
             return True
         begins = body is RULES and self._tokens[self._at - 1].is_keyword("to")
+        begins = begins and not self._tokens[self._at + 1].is_keyword("{")
         if begins or self._starts(body):
             self._missing("{")
             return True
@@ -212,10 +231,11 @@ class Outline:
     def _skip(self, levels: tuple[Level, ...]) -> None:
         """Passes braces that hold no items of their own, with what they hold."""
         depth = 0
-        while not self._ended() and not any(self._starts(each) for each in levels if each.starters):
-            depth += self._is("{") - self._is("}")
+        while not self._ended():
+            doubled = depth and self._is("{") and self._tokens[self._at - 1].is_keyword("{")
+            depth += (self._is("{") and not doubled) - self._is("}")
             self._at += 1
-            if depth == 0:
+            if depth == 0 or any(self._starts(each) for each in levels if each.starters):
                 return
 
     def _outer(self, levels: tuple[Level, ...]) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import codecs
+import sys
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from pathlib import Path
@@ -13,6 +14,7 @@ from robosc.language.linking import RULE, link
 from robosc.language.recovery import parse_file
 from robosc.language.scopes import File
 from robosc.language.text import Text
+from robosc.language.tokens import LONGEST
 from robosc.metamodel import robosc as rsc
 from robosc.metamodel.files import set_path
 
@@ -44,6 +46,8 @@ def read(path: Path | str, library_paths: Iterable[Path | str] = ()) -> Reading:
     OSError where the file itself can't be read; all other faults are findings of the rules `syntax`,
     `unresolved-reference` and `import-cycle`.
     """
+    # Expressions are trees that everything follows by recursion, a few calls for each operator in a row.
+    sys.setrecursionlimit(max(sys.getrecursionlimit(), 20 * LONGEST))
     reader = _Reader(library_paths)
     file = reader.read(Path(path), str(path))
     return Reading(file.base, reader.findings, reader.texts)

@@ -14,7 +14,7 @@ from robosc.language.building import Builder
 from robosc.language.explaining import expected, found, hint
 from robosc.language.grammar import Failure, is_reserved, parse
 from robosc.language.outline import DECLARED, DEFINITIONS, PROPERTIES, RULES, Block, Brace, Outline
-from robosc.language.tokens import DEEPEST, Kind, Token, Tokens, too_deep
+from robosc.language.tokens import Kind, Token, Tokens, too_complex
 from robosc.language.unread import Declared, Unread
 
 if TYPE_CHECKING:
@@ -46,7 +46,7 @@ class Parsed:
 def parse_file(text: Text) -> Parsed:
     """Parses the text of a file. Findings are of the rule `syntax`."""
     tokens = Tokens(text.content)
-    tree = None if too_deep(tokens) else parse(text.content, "Base")
+    tree = None if too_complex(tokens) else parse(text.content, "Base")
     if tree is None or isinstance(tree, Failure):
         return _Recovery(text, tokens).parse()
     builder = Builder(text)
@@ -128,9 +128,9 @@ class _Recovery:
         """Parses an item and what is in it."""
         for item in block.items:
             self._check(item)
-        deep = None if block.items else too_deep(self._tokens, block.first, block.after)
-        if deep is not None:
-            self._report(deep, f"this is nested more than {DEEPEST} levels deep", "use variables for its parts")
+        complex_ = None if block.items else too_complex(self._tokens, block.first, block.after)
+        if complex_ is not None:
+            self._report(*complex_, "use variables for its parts")
             self._skip_block(block)
         elif self._is_library and block.level is DEFINITIONS and self._starts(block, "requirement", "provide"):
             message = f"a library holds no {self._tokens[block.first].text} statements"
@@ -157,6 +157,10 @@ class _Recovery:
             return
         # The item itself is whole, and something follows that may be an item with a fault, or nothing known.
         self._unread.doubtful.append((block.start, block.end))
+        if self._tokens[index].kind is Kind.SYMBOL:
+            self._explain(block, index, failure)
+            self._skip(index, block.after)
+            return
         outline = Outline(self._tokens, index, block.after)
         following, *others = outline.items(block.levels)
         self._mend(outline.braces)

@@ -71,6 +71,8 @@ class Scope:
         self._instances = Instances(base)
         self._members: dict[rsc.Component, Names] = {}
         self._communications: dict[rsc.Component, Names] = {}
+        #: Whether a component is imported of which nothing is known.
+        self.incomplete = any(self.members(each) is None for each in self.components.values())
 
     def find(self, kind: type[Any], name: str) -> list[tuple[File, Any]]:
         """The definitions of a kind with a name: the own one, else those of directly imported libraries."""

@@ -102,14 +102,19 @@ def _tokens(text: str) -> Iterator[Token]:
     yield Token(Kind.END, "", previous.end, previous.end)
 
 
-#: How deep brackets and signs may be nested: what reads the model follows it by recursion.
+#: How deep brackets and signs may be nested, and how many operators one expression may have: what reads the model
+#: follows it by recursion.
 DEEPEST = 50
+LONGEST = 5000
+_STARTERS = ("requirement", "provide", "component", "datatype", "state", "on", "transition")
+_BETWEEN_EXPRESSIONS = (*_STARTERS, "{", "}", "->", ":", ":=", ",", "needs", "disables", "if", "do")
+_OPERATORS = ("=>", "or", "and", "=", "!=", "<", "<=", ">", ">=", "+", "-", "*", "/")
 
 
-def too_deep(tokens: Tokens, first: int = 0, after: int | None = None) -> int | None:
-    """The index of the first token that is nested deeper than DEEPEST; None where there is none."""
+def too_complex(tokens: Tokens, first: int = 0, after: int | None = None) -> tuple[int, str] | None:
+    """The index of the first token that is nested too deep or is an operator too many, and what is wrong there."""
     around: list[int] = []
-    signs = 0
+    signs = operators = 0
     for index in range(first, len(tokens) if after is None else after):
         token = tokens[index]
         if token.is_keyword("(", "[", "{"):
@@ -121,8 +126,14 @@ def too_deep(tokens: Tokens, first: int = 0, after: int | None = None) -> int | 
             signs = 0
             if token.is_keyword(")", "]", "}") and around:
                 around.pop()
-            elif token.is_keyword("requirement", "provide", "component", "datatype", "state", "on", "transition"):
+            elif token.is_keyword(*_STARTERS):
                 around.clear()  # A brace that is missing before makes nothing after it deep.
         if len(around) > DEEPEST or sum(around) + signs > DEEPEST:
-            return index
+            return index, f"this is nested more than {DEEPEST} levels deep"
+        if token.is_keyword(*_BETWEEN_EXPRESSIONS):
+            operators = 0
+        elif token.is_keyword(*_OPERATORS):
+            operators += 1
+            if operators > LONGEST:
+                return index, f"this expression has more than {LONGEST} operators"
     return None
