@@ -36,6 +36,8 @@ class Ranges:
     def __init__(self) -> None:
         self._values: dict[Node, Interval] = {}
         self._cells: dict[Node, frozenset[Cell]] = {}
+        self._joined: dict[Node, Junction | None] = {}
+        self._reduced: dict[Node, Node] = {}
 
     def __call__(self, node: Node) -> Interval:
         """The values that the expression can have."""
@@ -51,6 +53,11 @@ class Ranges:
 
     def joined(self, node: Node) -> Junction | None:
         """A node as conjunction or disjunction, without parts that are always true or always false."""
+        if node not in self._joined:
+            self._joined[node] = self._join(node)
+        return self._joined[node]
+
+    def _join(self, node: Node) -> Junction | None:
         joined = junction(node)
         if joined is None:
             return None
@@ -67,12 +74,10 @@ class Ranges:
 
     def reduced(self, node: Node) -> Node:
         """The part of an expression that decides it, where the rest is constant."""
-        while self(node).single is None:
-            part = self._deciding(node)
-            if part is None:
-                break
-            node = part
-        return node
+        if node not in self._reduced:
+            part = self._deciding(node) if self(node).single is None else None
+            self._reduced[node] = node if part is None else self.reduced(part)
+        return self._reduced[node]
 
     def _deciding(self, node: Node) -> Node | None:
         joined = self.joined(node)
