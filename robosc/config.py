@@ -5,6 +5,7 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from difflib import get_close_matches
+from itertools import accumulate
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar
 
@@ -22,6 +23,8 @@ RULE = "configuration"
 #: How many folders below the model a configuration is looked for.
 SEARCH_DEPTH = 3
 
+_DEEPEST = 100
+_BRACKETS = {"{": 1, "[": 1, "]": -1, "}": -1}
 #: Faults that pydantic calls by Python's names.
 _WRONG_TYPE = {"model_type": "be an object", "dict_type": "be an object", "list_type": "be an array"}
 
@@ -222,14 +225,14 @@ def read(file: Path) -> Configuration:
     name = str(file)
     try:
         text = file.read_bytes().decode("utf-8")
+        if _depth(text) > _DEEPEST:
+            raise ModelError([_error(name, "nested too deeply")])
         values = json.loads(text)
     except UnicodeDecodeError as error:
         raise ModelError([_error(name, f"not UTF-8: {error.reason} at byte {error.start}")]) from error
     except json.JSONDecodeError as error:
         span = Span(error.lineno, error.colno, error.lineno, error.colno + 1)
         raise ModelError([_error(name, f"not JSON: {error.msg}", span)]) from error
-    except RecursionError as error:
-        raise ModelError([_error(name, "nested too deeply")]) from error
     findings = [_error(name, f'the key "{key}" stands twice', span) for key, span in _duplicates(text, _skip(text, 0))]
     try:
         configuration = Configuration.model_validate(values, context=(name, text), by_alias=True, by_name=False)
@@ -244,6 +247,11 @@ def schema() -> str:
     """The JSON Schema of the file, as it ships in `robosc/schemas`."""
     document = {"$schema": "https://json-schema.org/draft/2020-12/schema", **Configuration.model_json_schema()}
     return json.dumps(document, indent=2) + "\n"
+
+
+def _depth(text: str) -> int:
+    """How many brackets are open at once, those in strings counted too: `json` would follow any number of them."""
+    return max(accumulate((_BRACKETS.get(each, 0) for each in text), initial=0))
 
 
 def _folders(folder: Path) -> list[Path]:
