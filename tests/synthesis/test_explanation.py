@@ -1,5 +1,6 @@
 """Why a supervisor is empty: the sentence, and a trace that the definition agrees with."""
 
+from collections.abc import Container, Sequence
 from itertools import product
 
 import pytest
@@ -8,7 +9,7 @@ from hypothesis import assume, given
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 from robosc.roles import event_name
-from robosc.synthesis import Reason, synthesize
+from robosc.synthesis import Reason, TraceStep, synthesize
 from tests.random_sct import sct_models
 from tests.sct_models import disables, edge, model, needs, plant
 from tests.synthesis.oracle import Oracle, State, values_of
@@ -16,17 +17,17 @@ from tests.synthesis.test_against_oracle import RANDOM_MODELS
 
 
 class Replay:
-    """Walks a reason's trace through the oracle."""
+    """Walks a trace through the oracle."""
 
-    def __init__(self, given_model: sct.SupervisoryControlModel, reason: Reason) -> None:
+    def __init__(self, given_model: sct.SupervisoryControlModel, trace: Sequence[TraceStep]) -> None:
         self.oracle = Oracle(given_model)
-        self.reason = reason
+        self.trace = trace
         self.events = {event_name(each): each for each in self.oracle.events}
 
     def after(self, steps: int, *, requirements: bool) -> State:
         """The state after the first steps of the trace; each is possible, whatever the inputs that it does not name."""
         state = self.oracle.initial
-        for step in self.reason.trace[:steps]:
+        for step in self.trace[:steps]:
             event = self.events[step.event]
             assert not requirements or self.oracle.required(event, state)
             reached = {
@@ -61,8 +62,8 @@ def python(value):
     return value.name if isinstance(value, ex.EnumerationLiteral) else value
 
 
-def distance(oracle: Oracle, goal: State) -> int:
-    """How many events it takes at least to a state, under the requirements."""
+def distance(oracle: Oracle, goal: State, within: Container[State] | None = None) -> int:
+    """How many events it takes at least to a state, under the requirements, through no states but some."""
     layer, seen, steps = {oracle.initial}, {oracle.initial}, 0
     while goal not in layer:
         layer = {
@@ -71,6 +72,7 @@ def distance(oracle: Oracle, goal: State) -> int:
             for event in oracle.events
             if oracle.required(event, state)
             for after in oracle.successors(event, state)
+            if within is None or after in within
         } - seen
         seen |= layer
         steps += 1
@@ -88,20 +90,20 @@ def test_the_trace_leads_to_the_fault(random_model):
     assume(synthesis.supervisor is None)
     reason = synthesis.reason
     assert reason is not None
-    replay = Replay(random_model, reason)
+    replay = Replay(random_model, reason.trace)
     if reason.event is None:
         assert reason.trace == ()
         assert not any(map(replay.oracle.is_marked, replay.oracle.uncontrolled))
         assert reason.state == replay.names(replay.oracle.initial)
     elif reason.event.controllable:
-        check_requirement_at_fault(replay)
+        check_requirement_at_fault(replay, reason)
     else:
-        check_uncontrollable_at_fault(replay)
+        check_uncontrollable_at_fault(replay, reason)
 
 
-def check_requirement_at_fault(replay: Replay) -> None:
+def check_requirement_at_fault(replay: Replay, reason: Reason) -> None:
     """All is blocked from the start; the trace ends with what a requirement forbids on the way to a marked state."""
-    oracle, reason = replay.oracle, replay.reason
+    oracle = replay.oracle
     assert is_blocked(oracle, oracle.initial)
     before = replay.after(len(reason.trace) - 1, requirements=True)
     assert reason.trace[-1].event == event_name(reason.event)
@@ -112,9 +114,9 @@ def check_requirement_at_fault(replay: Replay) -> None:
     assert reason.state == replay.names(before)
 
 
-def check_uncontrollable_at_fault(replay: Replay) -> None:
+def check_uncontrollable_at_fault(replay: Replay, reason: Reason) -> None:
     """The trace is a shortest one to its last event, which leads where no marked state can be reached any more."""
-    oracle, reason = replay.oracle, replay.reason
+    oracle = replay.oracle
     before, after = (replay.after(len(reason.trace) - last, requirements=True) for last in (1, 0))
     assert reason.trace[-1].event == event_name(reason.event)
     assert len(reason.trace) == distance(oracle, before) + 1

@@ -1,0 +1,271 @@
+"""What synthesis observes over decision diagrams against the definitions, state by state, on random models."""
+
+from itertools import combinations
+
+import pytest
+from hypothesis import assume, event, given
+from hypothesis import strategies as st
+
+from robosc.metamodel import sct
+from robosc.roles import event_name, plant_of
+from robosc.synthesis import Observations, synthesize
+from robosc.synthesis.observations import Example, Forbidden, Trouble
+from tests.random_sct import sct_models
+from tests.sct_models import edge, model, needs, plant
+from tests.synthesis.oracle import Oracle, State
+from tests.synthesis.test_against_oracle import RANDOM_MODELS
+from tests.synthesis.test_explanation import Replay, distance, is_blocked, is_never_marked
+
+SILENT = (sct.EventKind.tau, sct.EventKind.reset)
+
+
+@st.composite
+def communicating_models(draw: st.DrawFn) -> sct.SupervisoryControlModel:
+    """Random models in which what is observed is not too rare.
+
+    Plants with a trigger are communication on one topic, data plants belong to one of them, and some actions need that
+    they have not started.
+    """
+    made = draw(sct_models())
+    triggers = [each for p in made.plants for each in p.events if each.kind == sct.EventKind.trigger]
+    for trigger in triggers:
+        plant_of(trigger).kind = getattr(sct.PlantKind, draw(st.sampled_from(("message", "service", "action"))))
+        plant_of(trigger).topic = draw(st.sampled_from(("shared", "/shared")))
+        if plant_of(trigger).kind == sct.PlantKind.action and draw(st.booleans()):
+            initial = next(each for each in plant_of(trigger).locations if each.initial)
+            made.requirements.append(
+                sct.Requirement(
+                    event=trigger, kind=sct.RequirementKind.needs, condition=sct.LocationReference(location=initial)
+                )
+            )
+    for each in made.plants:
+        if each.kind == sct.PlantKind.data and triggers:
+            each.origin = "C.c"
+            plant_of(draw(st.sampled_from(triggers))).origin = "C.c"
+    return made
+
+
+class Definitions:
+    """The definitions of all observations, over the states that the oracle found."""
+
+    def __init__(self, oracle: Oracle) -> None:
+        self.oracle = oracle
+        self.controllable = [each for each in oracle.events if each.controllable]
+        self.triggers = [each for each in self.controllable if each.kind == sct.EventKind.trigger]
+
+    def allowed(self, each: sct.Event) -> set[State]:
+        return {state for state in self.oracle.controlled if self.oracle.allows(each, state)}
+
+    def never_enabled(self) -> list[sct.Event]:
+        kinds = (sct.EventKind.trigger, sct.EventKind.tau)
+        return [each for each in self.controllable if each.kind in kinds and not self.allowed(each)]
+
+    def held_back(self, each: sct.Event) -> set[State]:
+        """The controlled states in which only synthesis forbids the event."""
+        return {
+            state
+            for state in self.oracle.controlled
+            if self.oracle.edges(each, state) is not None and self.oracle.required(each, state)
+        } - self.allowed(each)
+
+    def silent_restricted(self) -> list[sct.Event]:
+        kinds = (*SILENT, sct.EventKind.cancel)
+        return [each for each in self.controllable if each.kind in kinds and self.held_back(each)]
+
+    def after(self, each: sct.Event) -> set[State]:
+        return {after for state in self.allowed(each) for after in self.oracle.successors(each, state)}
+
+    def self_cancelling(self) -> list[sct.Event]:
+        return [
+            each
+            for each in self.triggers
+            if plant_of(each).kind == sct.PlantKind.action
+            and self.allowed(each)
+            and not any(self.oracle.required(each, state) for state in self.after(each))
+        ]
+
+    def gap(self, each: sct.Event, data: sct.Plant) -> set[State]:
+        return {
+            state
+            for state in self.allowed(each)
+            if not any(
+                self.oracle.value(edge.guard, state, {})
+                for edge in state[self.oracle.places[data]].edges
+                if not edge.target.initial
+            )
+        }
+
+    def provide_gaps(self) -> list[tuple[sct.Event, sct.Plant]]:
+        return [
+            (each, data)
+            for each in self.triggers
+            for data in self.oracle.model.plants
+            if data.kind == sct.PlantKind.data and data.origin and data.origin == plant_of(each).origin
+            if self.gap(each, data)
+        ]
+
+    def shared_topic_conflicts(self) -> list[tuple[sct.Event, sct.Event]]:
+        messages = [each for each in self.triggers if plant_of(each).kind == sct.PlantKind.message]
+        return [
+            (one, other)
+            for one, other in combinations(messages, 2)
+            if plant_of(one).topic.strip("/") == plant_of(other).topic.strip("/")
+            and self.allowed(one) & self.allowed(other)
+        ]
+
+    def unrestricted_calls(self) -> list[sct.Event]:
+        return [
+            each
+            for each in self.triggers
+            if plant_of(each).kind in (sct.PlantKind.service, sct.PlantKind.action)
+            and self.allowed(each)
+            and not any(requirement.event is each for requirement in self.oracle.model.requirements)
+            and not any(
+                edge.event is each
+                for p in self.oracle.model.plants
+                if p is not plant_of(each)
+                for location in p.locations
+                for edge in location.edges
+            )
+        ]
+
+
+@given(communicating_models())
+@RANDOM_MODELS
+def test_random_models(random_model):
+    observed = synthesize(random_model).observations
+    oracle = Oracle(random_model)
+    assert (observed is None) == (not oracle.controlled)
+    assume(observed is not None)
+    definitions = Definitions(oracle)
+    assert [each.event for each in observed.never_enabled] == definitions.never_enabled()
+    assert [each.event for each in observed.silent_restricted] == definitions.silent_restricted()
+    assert [each.event for each in observed.self_cancelling] == definitions.self_cancelling()
+    assert [(each.event, each.data) for each in observed.provide_gaps] == definitions.provide_gaps()
+    conflicts = definitions.shared_topic_conflicts()
+    assert {(each.first, each.second) for each in observed.shared_topic_conflicts} == set(conflicts)
+    assert len(observed.shared_topic_conflicts) == len(conflicts)
+    assert list(observed.unrestricted_calls) == definitions.unrestricted_calls()
+    for name in vars(observed):
+        event(name if getattr(observed, name) else f"no {name}")
+    check_details(definitions, observed)
+
+
+def check_details(definitions: Definitions, observed: Observations) -> None:
+    """What is said beside the event is true, too."""
+    oracle = definitions.oracle
+    for each in observed.never_enabled:
+        enabled = [state for state in oracle.controlled if oracle.edges(each.event, state) is not None]
+        required = [state for state in enabled if oracle.required(each.event, state)]
+        assert each.forbidden is (
+            Forbidden.BY_SYNTHESIS if required else Forbidden.BY_REQUIREMENTS if enabled else Forbidden.BY_PLANTS
+        )
+        if each.forbidden is Forbidden.BY_REQUIREMENTS:
+            assert list(each.requirements) == broken(oracle, each.event, enabled)
+        assert (each.trouble is not None) == bool(required)
+        if each.trouble is not None:
+            check_trouble(definitions, each.event, each.trouble)
+    for each in observed.silent_restricted:
+        check_trouble(definitions, each.event, each.trouble)
+    for each in observed.self_cancelling:
+        assert list(each.requirements) == broken(oracle, each.event, definitions.after(each.event))
+    for each in observed.provide_gaps:
+        check_example(definitions, each.example, definitions.gap(each.event, each.data))
+    for each in observed.shared_topic_conflicts:
+        both = definitions.allowed(each.first) & definitions.allowed(each.second)
+        check_example(definitions, each.example, both)
+
+
+def broken(oracle, each, states):
+    """The requirements that hold in none of the states."""
+    return [
+        requirement
+        for requirement in oracle.model.requirements
+        if requirement.event is each
+        and not any(
+            oracle.value(requirement.condition, state, {}) == (requirement.kind == sct.RequirementKind.needs)
+            for state in states
+        )
+    ]
+
+
+def check_example(definitions: Definitions, example: Example, states: set[State]) -> None:
+    """The example is one of the states, and settled if one of them is."""
+    oracle = definitions.oracle
+    silent = [each for each in definitions.controllable if each.kind in SILENT]
+    unsettled = {state for each in silent for state in definitions.allowed(each)}
+    [state] = [each for each in states if shown(oracle, each) == example.state]
+    assert list(example.state) == list(oracle.places)
+    assert example.settled == (state not in unsettled) == bool(states - unsettled)
+
+
+def shown(oracle: Oracle, state: State):
+    values = dict(zip(oracle.places, state, strict=True))
+    return {key: value if isinstance(value, (bool, int)) else value.name for key, value in values.items()}
+
+
+def check_trouble(definitions: Definitions, held_back: sct.Event, trouble: Trouble) -> None:
+    """The trace is a shortest one to where the event is held back, and goes on to where nothing is marked any more."""
+    oracle = definitions.oracle
+    assert trouble.trace[-1].event == event_name(held_back)
+    steps = [*trouble.trace, *trouble.onwards]
+    replay = Replay(oracle.model, steps)
+    before, after, end = (
+        replay.after(count, requirements=True) for count in (len(trouble.trace) - 1, len(trouble.trace), len(steps))
+    )
+    states = definitions.held_back(held_back)
+    assert before in states
+    assert after not in oracle.controlled
+    assert len(trouble.trace) - 1 == min(distance(oracle, state, within=oracle.controlled) for state in states)
+    assert is_blocked(oracle, end)
+    assert trouble.onwards == () or not is_blocked(oracle, replay.after(len(steps) - 1, requirements=True))
+    assert set(trouble.unmarked) == {each for each in oracle.model.plants if is_never_marked(oracle, each, end)}
+
+
+def test_trouble_that_comes_later_is_traced_to_its_end():
+    """The event leads to where the robot may slip, by itself, to where only a forbidden way goes on."""
+    machine = plant(
+        "M",
+        {
+            "rest": [edge("c_tau1", to="edge")],
+            "edge": [edge("u_slip", to="slope"), edge("c_tau2", to="rest")],
+            "slope": [edge("c_tau3", to="ravine")],
+            "ravine": [edge("u_fall", to="ground"), edge("c_tau4", to="rest")],
+            "ground": [],
+        },
+        controllable=["c_tau1", "c_tau2", "c_tau3", "c_tau4"],
+        uncontrollable=["u_slip", "u_fall"],
+    )
+    observed = synthesize(model([machine])).observations
+    [restricted] = observed.silent_restricted
+    assert restricted.event.name == "c_tau1"
+    assert [each.event for each in restricted.trouble.trace] == ["M.c_tau1"]
+    assert [each.event for each in restricted.trouble.onwards] == ["M.u_slip", "M.c_tau3", "M.u_fall"]
+    assert restricted.trouble.unmarked == (machine.element,)
+    never = {each.event.name: each for each in observed.never_enabled}
+    assert never["c_tau1"].trouble == restricted.trouble
+    assert never["c_tau2"].forbidden is Forbidden.BY_PLANTS
+    assert never["c_tau2"].plants == (machine.element,)
+
+
+@pytest.mark.parametrize(
+    ("where", "example", "settled"),
+    [("S.dusk", "dusk", False), ("S.dusk or S.light", "light", True), ("S.dark or S.dusk", "dark", True)],
+)
+def test_an_example_is_settled_where_that_is_possible(where, example, settled):
+    sensor = plant(
+        "S",
+        {"dark": [edge("u_response", to="dusk")], "dusk": [edge("c_tau1", to="light")], "light": []},
+        controllable=["c_tau1"],
+        uncontrollable=["u_response"],
+        marked=["dark", "dusk", "light"],
+    )
+    one, other = (
+        plant(name, {"ready": [edge("c_trigger")]}, controllable=["c_trigger"], kind="message", topic=topic)
+        for name, topic in (("a", "t"), ("b", "/t"))
+    )
+    [conflict] = synthesize(
+        model([sensor, one, other], [needs("a.c_trigger", where)])
+    ).observations.shared_topic_conflicts
+    assert conflict.example.state == {sensor.element: example, one.element: "ready", other.element: "ready"}
+    assert conflict.example.settled == settled

@@ -1,0 +1,42 @@
+"""Synthesis, exploration state by state and the generated CIF, read back, agree on how many states there are."""
+
+from hypothesis import event, given
+
+from robosc.config import Configuration
+from robosc.m2t import cif
+from robosc.metamodel import sct
+from robosc.models import Models
+from robosc.synthesis import synthesize
+from tests.m2t.cif.rebuilding import rebuild
+from tests.random_sct import sct_models
+from tests.synthesis.oracle import Oracle
+from tests.synthesis.test_against_oracle import RANDOM_MODELS
+
+
+@given(sct_models())
+@RANDOM_MODELS
+def test_state_counts_agree(model):
+    synthesis = synthesize(model)
+    event("empty" if synthesis.supervisor is None else "supervised")
+    model.supervisor = synthesis.supervisor
+    files = cif.generate(Models(model), Configuration())
+    counts = synthesis.uncontrolled_states, synthesis.controlled_states
+    again = rebuild(files["robot.cif"])
+    read_back = synthesize(again)
+    assert (read_back.uncontrolled_states, read_back.controlled_states) == counts
+    for oracle in (Oracle(model), Oracle(again)):
+        assert (len(oracle.uncontrolled), len(oracle.controlled)) == counts
+    if synthesis.supervisor is not None:
+        assert supervised_states(rebuild(files["robot.supervised.cif"])) == synthesis.controlled_states
+
+
+def supervised_states(supervised: sct.SupervisoryControlModel) -> int:
+    """The states that the plants reach under the guards of the supervisor, which take the place of requirements."""
+    for guard in supervised.supervisor.guards:
+        for part in (guard.requirement, guard.synthesis):
+            if part is not None:
+                supervised.requirements.append(
+                    sct.Requirement(event=guard.event, kind=sct.RequirementKind.needs, condition=part)
+                )
+    oracle = Oracle(supervised)
+    return len(oracle.reach(oracle.initial, requirements=True))
