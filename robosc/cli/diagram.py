@@ -3,29 +3,83 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from robosc.cli import CallError
-from robosc.diagrams import METAMODELS, NOTATIONS, metamodel_diagram
+from robosc.cli.options import FILE, library_path
+from robosc.cli.reading import read, read_models
+from robosc.cli.report import Report
+from robosc.diagrams import (
+    GRAPH_NOTATIONS,
+    METAMODELS,
+    NOTATIONS,
+    behaviour_graph,
+    diagram,
+    metamodel_diagram,
+    plants_graph,
+    ros_graph,
+)
+from robosc.metamodel import robosc as rsc
 from robosc.output import OutputError, write
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from robosc.diagrams.graph import Graph
+
+_KINDS = ("behaviour", "ros-graph", "plants")
 
 
 @click.command("diagram")
-@click.option("--metamodel", "name", required=True, type=click.Choice(METAMODELS), help="What is drawn.")
+@click.argument("model", type=FILE, required=False)
+@click.option("--kind", type=click.Choice(_KINDS), help="What of MODEL is drawn.  [default: behaviour]")
+@click.option("--metamodel", "name", type=click.Choice(METAMODELS), help="Draw a metamodel instead.")
 @click.option(
-    "--format", "notation", type=click.Choice(NOTATIONS), default="mermaid", show_default=True, help="How it is drawn."
+    "--format",
+    "notation",
+    type=click.Choice(tuple(dict.fromkeys([*GRAPH_NOTATIONS, *NOTATIONS]))),
+    default="mermaid",
+    show_default=True,
+    help="How it is drawn: dot for models only, plantuml for metamodels only.",
 )
 @click.option("-o", "--output", type=click.Path(dir_okay=False), help="The file to write, instead of printing it.")
-def command(name: str, notation: str, output: str | None) -> None:
-    """Draw the class diagram of a metamodel.
+@library_path
+def command(
+    model: str | None,
+    kind: str | None,
+    name: str | None,
+    notation: str,
+    output: str | None,
+    library_paths: Sequence[str],
+) -> None:
+    """Draw a model, or a metamodel.
+
+    MODEL is a .rscd file, or an .xmi file that `transform --to xmi` wrote. `behaviour` shows the automaton of each
+    component as the text has it, `ros-graph` the controller's node with its topics, services and actions, `plants` what
+    synthesis works on.
 
     \b
     Examples:
-      robosc diagram --metamodel sct
-      robosc diagram --metamodel robosc --format svg -o robosc.svg
+      robosc diagram line_follower.rscd
+      robosc diagram line_follower.rscd --kind ros-graph --format svg -o line_follower.svg
+      robosc diagram line_follower.rscd --kind plants --format dot | dot -Tpdf -o plants.pdf
+      robosc diagram --metamodel sct --format svg -o sct.svg
+
+    Exit status: 0 done, 1 errors in the model, 2 a wrong call.
     """
-    text = metamodel_diagram(name, notation)
+    if (model is None) == (name is None) or (model is None and kind is not None):
+        raise CallError("either a MODEL, with or without --kind, or a --metamodel is drawn")
+    allowed = tuple(GRAPH_NOTATIONS) if model else NOTATIONS
+    if notation not in allowed:
+        raise CallError(f"a {'' if model else 'meta'}model is drawn in {', '.join(allowed)}, not in {notation}")
+    if model is None:
+        assert name is not None
+        text = metamodel_diagram(name, notation)
+    else:
+        with Report(aside=True) as report:
+            text = diagram(_graph(model, kind or "behaviour", library_paths, report), notation)
     if output is None:
         click.echo(text, nl=False)
         return
@@ -34,3 +88,19 @@ def command(name: str, notation: str, output: str | None) -> None:
         write({path.parent: {path.name: text}})
     except OutputError as error:
         raise CallError(str(error)) from error
+
+
+def _graph(path: str, kind: str, library_paths: Sequence[str], report: Report) -> Graph:
+    """What is drawn of the model in a file. Ends the report where there are errors."""
+    if kind == "behaviour":
+        base = read(path, library_paths, report)
+        report.stop_on_errors()
+        if not isinstance(base, rsc.Base):
+            raise CallError(f"{path} says nothing about components: --kind plants draws what it holds")
+        return behaviour_graph(base)
+    models = read_models(path, library_paths, report)
+    if kind == "plants":
+        return plants_graph(models.sct)
+    if models.rosgraph is None:
+        raise CallError(f"{path} says nothing about ROS: --kind plants draws what it holds")
+    return ros_graph(models.rosgraph)

@@ -1,16 +1,36 @@
-"""Diagrams of the metamodels: classes with their features, and how they inherit, contain and refer."""
+"""Diagrams of the metamodels, and of robots: the behaviour of components, the plants, the ROS graph."""
 
 from __future__ import annotations
 
-from pathlib import Path
+from typing import TYPE_CHECKING
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
-
+from robosc.diagrams import notations
+from robosc.diagrams.behaviour import behaviour_graph
 from robosc.diagrams.classes import ClassDiagram
 from robosc.diagrams.drawing import draw
+from robosc.diagrams.plants import plants_graph
+from robosc.diagrams.rendering import environment
+from robosc.diagrams.ros_graph import ros_graph
+
+if TYPE_CHECKING:
+    from robosc.diagrams.graph import Graph
+
+__all__ = ["behaviour_graph", "diagram", "metamodel_diagram", "plants_graph", "ros_graph"]
 
 METAMODELS = ("robosc", "sct", "rosgraph", "expression")
 NOTATIONS = ("mermaid", "plantuml", "svg")
+GRAPH_NOTATIONS = {"mermaid": notations.mermaid, "dot": notations.dot, "svg": notations.svg}
+
+
+def diagram(graph: Graph, notation: str) -> str:
+    """What `behaviour_graph`, `plants_graph` or `ros_graph` made, in one of GRAPH_NOTATIONS; the same text every time.
+
+    Mermaid and Graphviz (`dot`) leave the layout to their own tools; SVG is laid out here. Raises ValueError for a
+    notation that is none of these.
+    """
+    if notation not in GRAPH_NOTATIONS:
+        raise ValueError(f"no diagram in {notation}: it is {', '.join(GRAPH_NOTATIONS)}")
+    return GRAPH_NOTATIONS[notation](graph)
 
 
 def metamodel_diagram(name: str, notation: str) -> str:
@@ -21,14 +41,6 @@ def metamodel_diagram(name: str, notation: str) -> str:
     """
     if name not in METAMODELS or notation not in NOTATIONS:
         raise ValueError(f"no diagram of {name} in {notation}: it is {METAMODELS} in {NOTATIONS}")
-    diagram = ClassDiagram.of(name)
-    templates = Environment(
-        loader=FileSystemLoader(Path(__file__).with_name("templates")),
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-        autoescape=notation == "svg",  # noqa: S701 - the other notations are no XML
-    )
-    template = templates.get_template(f"classes.{notation}.j2")
-    return template.render(diagram=diagram, drawing=draw(diagram) if notation == "svg" else None)
+    classes = ClassDiagram.of(name)
+    template = environment(markup=notation == "svg").get_template(f"classes.{notation}.j2")
+    return template.render(diagram=classes, drawing=draw(classes) if notation == "svg" else None)

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from robosc.diagrams.layers import Link, Route, arrange
+from robosc.diagrams.shapes import coordinate as _at
+from robosc.diagrams.shapes import path, text_width
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -17,9 +19,6 @@ _TITLE = 34.0
 _ROW = 17.0
 _PADDING = 8.0
 _END = 13.0
-#: Widths of characters in a sans-serif face, in parts of its size; what is not named is 0.58 wide.
-_NARROW = dict.fromkeys("ijlI.,:;'|![]() ft", 0.36)
-_WIDE = dict.fromkeys("mwMW@", 0.92) | dict.fromkeys("ABCDEFGHKNOPQRSUVXYZ", 0.7)
 
 
 @dataclass(frozen=True)
@@ -134,7 +133,10 @@ def _head(shown: Class) -> _Head:
     rows = [*shown.literals, *(_row(each, shown) for each in shown.features)]
     line = _PADDING + _ROW * (1 + len(notes))
     width = max(
-        1.12 * _width(shown.name, 13), *(_width(each, 12) for each in rows), *(_width(each, 10) for each in notes), 60
+        1.12 * text_width(shown.name, 13),
+        *(text_width(each, 12) for each in rows),
+        *(text_width(each, 10) for each in notes),
+        60,
     )
     return _Head(
         notes=notes,
@@ -152,10 +154,6 @@ def _row(feature: Feature, owner: Class) -> str:
     return f"{mark}{feature.name}: {feature.type}{many}"
 
 
-def _width(text: str, size: int) -> float:
-    return size * sum(_NARROW.get(each, _WIDE.get(each, 0.58)) for each in text)
-
-
 def _box(shown: Class, head: _Head, x: float, y: float) -> Box:
     texts = [Text(_at(y + _ROW * (index + 0.5) + _PADDING), each, "note") for index, each in enumerate(head.notes)]
     name = "abstract" if shown.abstract else "name"
@@ -165,7 +163,16 @@ def _box(shown: Class, head: _Head, x: float, y: float) -> Box:
         for index, each in enumerate(head.rows)
     ]
     kind = "enumeration" if shown.literals else "abstract" if shown.abstract else "class"
-    return Box(kind, _at(x), _at(y), _at(head.width), _at(head.height), _at(y + head.line), texts, shown.documentation)
+    return Box(
+        kind,
+        _at(x),
+        _at(y),
+        _at(head.width),
+        _at(head.height),
+        _at(y + head.line),
+        texts,
+        shown.documentation,
+    )
 
 
 def _line(kind: str, route: Route) -> Line:
@@ -182,25 +189,4 @@ def _line(kind: str, route: Route) -> Line:
         case _:
             tip = f"{_at(end_x)} {_at(end_y)}"
             end = f"M{_at(end_x - route.arrives * 8)} {_at(end_y - 4.5)}L{tip}l{-route.arrives * 8} 4.5"
-    return Line(kind, _path(points), end)
-
-
-def _path(points: Sequence[tuple[float, float]]) -> str:
-    """Level lines through the columns, and curves that leave and arrive level between them."""
-    x, y = points[0]
-    path = f"M{_at(x)} {_at(y)}"
-    for next_x, next_y in points[1:]:
-        if _at(next_y) == _at(y):
-            path += f"H{_at(next_x)}"
-        elif _at(next_x) == _at(x):
-            path += f"V{_at(next_y)}"
-        else:
-            middle = _at((x + next_x) / 2)
-            path += f"C{middle} {_at(y)} {middle} {_at(next_y)} {_at(next_x)} {_at(next_y)}"
-        x, y = next_x, next_y
-    return path
-
-
-def _at(value: float) -> float:
-    """A coordinate with a tenth of a pixel, so that no platform's rounding shows."""
-    return round(value, 1) + 0.0
+    return Line(kind, path(points), end)

@@ -72,7 +72,9 @@ class _Item:
     left: list[tuple[_Item, float, float]] = field(default_factory=list)
 
 
-def arrange(sizes: Mapping[str, tuple[float, float]], links: Sequence[Link]) -> Arrangement:
+def arrange(
+    sizes: Mapping[str, tuple[float, float]], links: Sequence[Link], column_gap: float = _COLUMN_GAP
+) -> Arrangement:
     """Arranges boxes of given widths and heights. Ranking links run from rank to rank, but for those in circles.
 
     A link from a box to itself is not arranged, and must not be given.
@@ -85,7 +87,7 @@ def arrange(sizes: Mapping[str, tuple[float, float]], links: Sequence[Link]) -> 
         layers[item.column].append(item)
     layers = _fewest_crossings(layers)
     _set_tops(layers)
-    return _Geometry(sizes, layers, boxes, chains).arrangement(links)
+    return _Geometry(sizes, layers, boxes, chains, column_gap).arrangement(links)
 
 
 def _columns(names: Iterable[str], links: Sequence[Link]) -> dict[str, int]:
@@ -227,6 +229,7 @@ class _Geometry:
         layers: Sequence[Sequence[_Item]],
         boxes: Mapping[str, _Item],
         chains: Sequence[Sequence[_Item]],
+        column_gap: float,
     ) -> None:
         self._sizes = sizes
         self._boxes = boxes
@@ -240,7 +243,7 @@ class _Geometry:
             inside = sum(each[0].column == each[-1].column == column for each in chains)
             self._edges.append((left, right))
             self._width = right + (_BESIDE * (inside + 2) if inside else 0.0)
-            left = right + _COLUMN_GAP + _BESIDE * inside
+            left = right + column_gap + _BESIDE * inside
         self._beside = [0] * len(layers)
 
     def arrangement(self, links: Sequence[Link]) -> Arrangement:

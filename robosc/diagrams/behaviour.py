@@ -1,0 +1,102 @@
+"""The automaton of each component, as its text has it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robosc.diagrams.automata import EVERY, State, Step, automaton
+from robosc.diagrams.graph import Graph, visible
+from robosc.expressions import RoboscPrinter
+from robosc.instances import Instances
+from robosc.metamodel import expression as ex
+from robosc.metamodel import robosc
+from robosc.naming import written
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from robosc.diagrams.graph import Group, Label
+    from robosc.instances import Instance
+
+
+def behaviour_graph(base: robosc.Base) -> Graph:
+    """The components of a robot or a library that have a behaviour, imported ones included, each as a group."""
+    instances = Instances(base)
+    shown = [each for each in instances if each.automaton is not None]
+    groups = [_Component(each, instances).group(f"c{number}") for number, each in enumerate(shown, 1)]
+    return Graph(f"{visible(base.name)}: behaviour", groups)
+
+
+class _Component(RoboscPrinter):
+    """Says what one component does, its own names without the component before them."""
+
+    def __init__(self, instance: Instance, instances: Instances) -> None:
+        self.instance = instance
+        self.instances = instances
+
+    def group(self, key: str) -> Group:
+        automaton_model = self.instance.automaton
+        assert automaton_model is not None
+        definitions = automaton_model.definitions
+        states = [each for each in definitions if isinstance(each, robosc.State)]
+        numbers = {each: number for number, each in enumerate(states)}
+        sources = [(EVERY, each) for each in definitions if isinstance(each, robosc.Transition)]
+        sources += [(numbers[state], each) for state in states for each in state.transitions]
+        return automaton(
+            key,
+            self.instance.name,
+            [self.variable(each) for each in definitions if isinstance(each, robosc.Variable)],
+            [State(each.name, each.initial, each.marked) for each in states],
+            [
+                Step(source, None if each.target is None else numbers[each.target], self.label(each))
+                for source, each in sources
+            ],
+        )
+
+    def variable(self, variable: robosc.Variable) -> str:
+        initial = "" if variable.initial is None else f" = {self(variable.initial)}"
+        return f"{variable.name}: {_type(variable.type)}{initial}"
+
+    def label(self, transition: robosc.Transition) -> Label:
+        match transition:
+            case robosc.ResultTransition():
+                kind = transition.resultType.name
+                word = "to" if kind == "request" else "from"
+                first = f"on {kind} {word} {self.communication(transition.communicationType)}"
+            case robosc.TauTransition():
+                first = "transition" if transition.guard is None else f"transition if {self(transition.guard)}"
+        return (first, *self.assignments(transition.assignments))
+
+    def assignments(self, assignments: Sequence[robosc.Assignment]) -> list[str]:
+        texts = [f"{self(each.item)} := {self(each.value)}" for each in assignments]
+        return [f"{'do ' if number == 0 else ''}{text}" for number, text in enumerate(texts)]
+
+    def communication(self, reference: robosc.CommunicationReference) -> str:
+        """Its name; with its component where two share the name and it is the other's."""
+        occurrence = self.instances.occurrence(reference, self.instance)
+        assert occurrence is not None
+        name = written(occurrence.communication.name)
+        others = sum(each.communication.name == occurrence.communication.name for each in self.instances.occurrences())
+        own = occurrence.instance is self.instance
+        return name if own or others == 1 else f"{written(occurrence.instance.name)}.{name}"
+
+    def atom(self, expression: ex.Expression) -> str:
+        """A name of the component itself without the component."""
+        text = super().atom(expression)
+        if isinstance(expression, robosc.Access) and expression.component is not None:
+            owner = self.instances.instance(expression.component, self.instance)
+            if owner is self.instance:
+                return text.removeprefix(f"{written(expression.component.name)}.")
+        return text
+
+
+def _type(data_type: robosc.DataType) -> str:
+    match data_type:
+        case robosc.ComplexDataTypeReference():
+            return written(data_type.type.name)
+        case robosc.IntegerDataType():
+            limits = "" if data_type.minimum is None else f"({data_type.minimum}..{data_type.maximum})"
+            return f"integer{limits}"
+        case robosc.Array():
+            return f"array({_type(data_type.type)})"
+    return type(data_type).__name__.removesuffix("DataType").lower()

@@ -1,0 +1,98 @@
+"""Diagrams of robots as text in each notation; whatever a model holds stays in its place."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from robosc.diagrams.graph_drawing import draw
+from robosc.diagrams.rendering import environment
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from robosc.diagrams.graph import Graph, Label, Node
+
+_MERMAID_SHAPES = {
+    "controller": ("[", "]"),
+    "topic": ("([", "])"),
+    "service": ("[[", "]]"),
+    "action": ("{{", "}}"),
+}
+_DOT_SHAPES = {
+    "state": "shape=box style=rounded",
+    "every": 'shape=box style="rounded,dashed"',
+    "controller": "shape=box style=bold",
+    "topic": "shape=ellipse",
+    "service": "shape=component",
+    "action": "shape=hexagon",
+}
+#: What Mermaid takes as it is in all places; anything else could mean something to one of its grammars.
+_PLAIN = re.compile(r"[^A-Za-z0-9_ .,/()=+*-]")
+
+
+def mermaid(graph: Graph) -> str:
+    """A state diagram where groups have titles, else a flow chart."""
+    name = "states" if _is_states(graph) else "ros"
+    return _render(f"{name}.mermaid.j2", graph, shapes=_MERMAID_SHAPES)
+
+
+def dot(graph: Graph) -> str:
+    """A graph for Graphviz, a cluster for each group that has a title."""
+    return _render("graph.dot.j2", graph, shapes=_DOT_SHAPES, states=_is_states(graph))
+
+
+def svg(graph: Graph) -> str:
+    """A picture, laid out here."""
+    return environment(markup=True).get_template("graph.svg.j2").render(picture=draw(graph))
+
+
+def _is_states(graph: Graph) -> bool:
+    return all(group.title for group in graph.groups)
+
+
+def _render(name: str, graph: Graph, **values: object) -> str:
+    templates = environment(markup=False)
+    templates.filters |= {
+        "dot": _dot,
+        "dot_labels": _dot_labels,
+        "dot_node": _dot_node,
+        "mermaid": _mermaid,
+        "mermaid_labels": _mermaid_labels,
+    }
+    return templates.get_template(name).render(graph=graph, **values)
+
+
+def _mermaid(text: str | Label) -> str:
+    """Text for a label: lines with `<br/>` between, and codes for all characters that could mean something else."""
+    lines = [text] if isinstance(text, str) else text
+    return "<br/>".join(_PLAIN.sub(lambda found: f"#{ord(found[0])};", each) for each in lines)
+
+
+def _mermaid_labels(labels: Sequence[Label]) -> str:
+    return "<br/>".join(map(_mermaid, labels))
+
+
+def _dot(text: str | Label) -> str:
+    """A quoted string: lines centred, backslashes, quotes and entities without a meaning."""
+    lines = [text] if isinstance(text, str) else text
+    return '"' + r"\n".join(map(_dot_line, lines)) + '"'
+
+
+def _dot_line(text: str) -> str:
+    return text.replace("\\", "\\\\").replace('"', r"\"").replace("&", "&amp;")
+
+
+def _dot_labels(labels: Sequence[Label]) -> str:
+    return f'"{_dot_rows(labels)}"'
+
+
+def _dot_node(node: Node) -> str:
+    rows = _dot_rows(node.rows)
+    return f'"{_dot_line(node.title)}{chr(92) + "n" if rows else ""}{rows}"'
+
+
+def _dot_rows(labels: Sequence[Label]) -> str:
+    """Lines to the left, those that belong to another indented."""
+    lines = [("" if number == 0 else "  ") + text for label in labels for number, text in enumerate(label)]
+    return "".join(rf"{_dot_line(each)}\l" for each in lines)
