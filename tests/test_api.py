@@ -10,7 +10,7 @@ from click.testing import CliRunner
 import robosc
 from robosc.cli import main
 from robosc.targets import TARGETS
-from tests.cli.conftest import DOOR
+from tests.cli.conftest import COURIER, DOOR, LAMPS
 
 
 @pytest.fixture
@@ -108,3 +108,13 @@ def test_what_can_not_be_generated(door: Path) -> None:
         robosc.generate("ros3", bare)
     with pytest.raises(ValueError, match="ros1 needs the ROS graph"):
         robosc.generate("ros1", bare)
+
+
+def test_an_action_that_cancels_itself(tmp_path: Path) -> None:
+    (tmp_path / "lamps.rscd").write_text(LAMPS)
+    (tmp_path / "courier.rscd").write_text(COURIER.format(needs="resting"))
+    model = robosc.to_sct(robosc.load(tmp_path / "courier.rscd"))
+    with pytest.raises(robosc.ModelError) as raised:
+        robosc.synthesize(model)
+    assert [each.rule for each in raised.value.diagnostics] == ["self-cancelling", "shared-topic-conflict"]
+    assert model.supervisor is None

@@ -63,7 +63,7 @@ class _Findings:
         elif observed.trouble is not None:
             why, hint = self._trouble(observed.trouble), _way_out(observed.trouble)
         elif silent:
-            why, hint = _guard(event), "correct the guard, or lead a transition to its state"
+            why, hint = _guard(event), "correct its guard or what leads to its state"
         else:
             why = _not_requested(observed)
             hint = f"write `on request to {name(plant)}` in a state that can be reached"
@@ -80,7 +80,7 @@ class _Findings:
         return _finding(
             observed.event,
             "silent-restricted",
-            f"the supervisor sometimes forbids {what}, so that the model may not follow the robot: otherwise "
+            f"the supervisor has to hold back {what}, so that the model may no longer follow the robot: otherwise, "
             f"{self._trouble(observed.trouble)}",
             _way_out(observed.trouble),
         )
@@ -88,7 +88,7 @@ class _Findings:
     @staticmethod
     def self_cancelling(observed: SelfCancelling) -> Diagnostic:
         states = [f"`{name(plant)}.{state.name}`" for plant, state in _entered(observed.event)]
-        led = f"allow {listed(states, 'and')}, where its request leads" if states else "ask for less"
+        led = f"allow {listed(states)}, where its request leads" if states else "ask for less"
         return _finding(
             _blamed(observed.requirements, observed.event),
             "self-cancelling",
@@ -98,29 +98,28 @@ class _Findings:
             Severity.ERROR,
         )
 
-    @staticmethod
-    def provide_gap(observed: ProvideGap) -> Diagnostic:
+    def provide_gap(self, observed: ProvideGap) -> Diagnostic:
         plant = plant_of(observed.event)
         done = _DONE.get(plant.kind, "sent")
-        guards = [edge.guard for location in observed.data.locations for edge in location.edges]
+        edges = [edge for location in observed.data.locations for edge in location.edges]
+        read = [each for edge in edges for each in referenced(edge.guard)]
         return _finding(
             observed.data,
             "provide-gap",
             f"`{name(plant)}` can be {done} where no condition of a `provide` for it holds, without data"
-            + _where(observed.example, [each for guard in guards for each in referenced(guard)]),
+            + _where(observed.example, [*read, *self._asking(observed.event)]),
             f"add `provide {name(plant)} with ...` without a condition, or a requirement that excludes this",
         )
 
     def shared_topic_conflict(self, observed: SharedTopicConflict) -> Diagnostic:
         first, second = observed.first, observed.second
-        requirements = [each for event in (first, second) for each in self._model.requirements if each.event is event]
-        asking: list[Element] = [plant for event in (first, second) for plant in self._taking_part(event)]
-        asking += [each for requirement in requirements for each in referenced(requirement.condition)]
+        requirements = [*self._requirements(first), *self._requirements(second)]
         return _finding(
             requirements[-1] if requirements else second,
             "shared-topic-conflict",
             f"`{name(plant_of(first))}` and `{name(plant_of(second))}` go to one topic, and both can be sent at the "
-            f"same time, so that they take turns{_where(observed.example, asking)}",
+            f"same time, so that they take turns"
+            + _where(observed.example, [*self._asking(first), *self._asking(second)]),
             "let the requirements on the two exclude each other",
         )
 
@@ -145,10 +144,16 @@ class _Findings:
             problem = f"{stuck} can't get back to a marked state"
         return f"after {steps}, {problem}"
 
-    def _taking_part(self, event: sct.Event) -> Iterable[sct.Plant]:
+    def _requirements(self, event: sct.Event) -> list[sct.Requirement]:
+        return [each for each in self._model.requirements if each.event is event]
+
+    def _asking(self, event: sct.Event) -> Iterable[Element]:
+        """What decides whether an event is allowed: the plants that take part in it and what requirements read."""
         for plant in self._model.plants:
             if any(edge.event is event for location in plant.locations for edge in location.edges):
                 yield plant
+        for requirement in self._requirements(event):
+            yield from referenced(requirement.condition)
 
 
 def _finding(element: Any, rule: str, message: str, hint: str, severity: Severity = Severity.WARNING) -> Diagnostic:
@@ -180,7 +185,7 @@ def _not_requested(observed: NeverEnabled) -> str:
     waiting = [f"`{name(each)}`" for each in observed.plants]
     if not waiting:
         return "the components that wait for its request never do so at the same time"
-    return f"{listed(waiting, 'and')} can't reach a state that waits for its request"
+    return f"{listed(waiting)} can't reach a state that waits for its request"
 
 
 def _way_out(trouble: Trouble) -> str:

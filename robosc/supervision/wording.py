@@ -48,16 +48,16 @@ def in_words(steps: Sequence[TraceStep], model: sct.SupervisoryControlModel) -> 
         event = events[step.event]
         data = ", ".join(f"{_data(each, event)} = {text(chosen)}" for each, chosen in step.inputs.items())
         said.append(f"{words(event)} ({data})" if data else words(event))
-    return listed(said, "then")
+    return ", then ".join(said)
 
 
 def _data(input_name: str, event: sct.Event) -> str:
     return input_name.removeprefix(f"i_{event.kind.name}").removeprefix("_") or "value"
 
 
-def listed(names: Sequence[str], last: str = "and") -> str:
+def listed(names: Sequence[str]) -> str:
     """`a`, `a and b`, `a, b and c`."""
-    return ", ".join(names[:-1]) + f" {last} {names[-1]}" if len(names) > 1 else "".join(names)
+    return ", ".join(names[:-1]) + f" and {names[-1]}" if len(names) > 1 else "".join(names)
 
 
 def condition(values: Iterable[tuple[Element, Value]]) -> str:

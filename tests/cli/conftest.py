@@ -71,3 +71,58 @@ def library(tmp_path: Path) -> Path:
     file = tmp_path / "library.rscd"
     file.write_text("library Parts {}\n")
     return file
+
+
+#: A robot, imported lamps and all, that draws a warning in the library, and an error where `{needs}` is `resting`.
+COURIER = """\
+robot Courier {{
+  interface drive_action use Drive from courier_msgs
+
+  component Lamps from Lamps import Lamps
+
+  component Base {{
+    action drive with identifier: "/drive", request: none, response: none, feedback: none links drive_action
+
+    behaviour {{
+      initial marked state resting {{ on request to drive goto driving }}
+
+      state driving {{
+        on response from drive goto resting
+        on error from drive goto resting
+        on cancel from drive goto resting
+      }}
+    }}
+  }}
+
+  requirement drive needs Base.{needs}
+
+  provide light with true
+  provide dark with false
+}}
+"""
+
+LAMPS = """\
+library Lamps {
+  component Lamps {
+    incoming message light with identifier: "/lamps", type: boolean
+    incoming message dark with identifier: "/lamps", type: boolean
+  }
+}
+"""
+
+
+@pytest.fixture
+def courier(tmp_path: Path) -> Path:
+    """A file with a robot that synthesis warns about, in a library in the folder `parts`."""
+    (tmp_path / "parts").mkdir()
+    (tmp_path / "parts" / "lamps.rscd").write_text(LAMPS)
+    file = tmp_path / "courier.rscd"
+    file.write_text(COURIER.format(needs="resting or Base.driving"))
+    return file
+
+
+@pytest.fixture
+def self_cancelling(courier: Path) -> Path:
+    """The same with an action that would be cancelled as soon as it has started."""
+    courier.write_text(COURIER.format(needs="resting"))
+    return courier

@@ -102,3 +102,19 @@ def test_a_library_has_no_supervisor(run: Run, library: Path) -> None:
     answer = run("synthesize", library)
     assert answer.exit_code == 2
     assert "holds a library" in answer.stderr
+
+
+def test_warnings_of_synthesis_leave_the_status_alone(run: Run, courier: Path) -> None:
+    answer = run("synthesize", courier, "-I", "parts", "--json")
+    assert answer.exit_code == 0
+    assert json.loads(answer.stdout)["controlled_states"] == 16
+    assert answer.stderr.startswith("parts/lamps.rscd:4:5: warning: `Lamps.light` and `Lamps.dark` go to one topic")
+    assert "[shared-topic-conflict]" in answer.stderr
+    assert run("check", courier, "-I", "parts").stdout == ""
+
+
+def test_errors_of_synthesis_are_shown_beside_the_supervisor(run: Run, self_cancelling: Path) -> None:
+    answer = run("synthesize", self_cancelling, "-I", "parts", "--json")
+    assert answer.exit_code == 1
+    assert json.loads(answer.stdout)["empty"] is False
+    assert f"{self_cancelling}:20:3: error: `Base.drive` is cancelled as soon as it has started" in answer.stderr

@@ -1,5 +1,6 @@
 """`robosc transform`: what is written where, and that nothing is where something is wrong."""
 
+import json
 import os
 import subprocess
 import sys
@@ -164,3 +165,31 @@ def test_copies_of_the_packages(run: Run, door: Path) -> None:
     assert "package.xml" in package
     assert tree(Path("workspace/src/door")) == package
     assert not Path("two").exists()
+
+
+@pytest.mark.parametrize("form", ["json", "sarif"])
+def test_warnings_of_synthesis(run: Run, courier: Path, form: str) -> None:
+    answer = run("transform", courier.name, "-I", "parts", "--to", "cif,supervisor", "-o", "out", "--format", form)
+    assert answer.exit_code == 0, answer.output
+    said = json.loads(answer.stdout)
+    if form == "json":
+        [finding] = said
+        assert (finding["rule"], finding["severity"]) == ("shared-topic-conflict", "warning")
+        assert (finding["file"], finding["line"], finding["column"]) == ("parts/lamps.rscd", 4, 5)
+        assert finding["hint"]
+    else:
+        [rule] = said["runs"][0]["tool"]["driver"]["rules"]
+        assert (rule["id"], rule["shortDescription"]["text"]) == (
+            "shared-topic-conflict",
+            "Two messages to one topic can be sent at the same time.",
+        )
+    assert Path("out/Courier.cif").exists()
+
+
+def test_nothing_is_generated_for_an_action_that_cancels_itself(run: Run, self_cancelling: Path) -> None:
+    answer = run("transform", self_cancelling.name, "-I", "parts", "--to", ALL, "-o", "out")
+    assert answer.exit_code == 1
+    assert "courier.rscd:20:3: error: " in answer.stdout
+    assert "[self-cancelling]" in answer.stdout
+    assert "[shared-topic-conflict]" in answer.stdout
+    assert not Path("out").exists()
