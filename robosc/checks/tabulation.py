@@ -29,20 +29,16 @@ def table_faults(instances: Instances, result: Needed) -> Iterator[Fault]:
 def _in_expression(
     instances: Instances, expression: ex.Expression | None, within: Instance | None, assigned: Assigned | None
 ) -> Iterator[Fault]:
+    value = value_type(expression) if expression else None
     pending = [expression]
     while pending:
         each = pending.pop()
-        if isinstance(each, (*EQUALITY, *ORDERING)) and _is_of_doubles(each):
+        if isinstance(each, (*EQUALITY, *ORDERING)) and DOUBLE in {infer(each.left, value), infer(each.right, value)}:
             yield from _in_comparison(instances, each, within, assigned)
         elif isinstance(each, ex.BinaryExpression):
             pending += [each.right, each.left]
         elif isinstance(each, ex.UnaryExpression):
             pending.append(each.operand)
-
-
-def _is_of_doubles(comparison: ex.BinaryExpression) -> bool:
-    value = value_type(comparison)
-    return DOUBLE in {infer(comparison.left, value), infer(comparison.right, value)}
 
 
 def _in_comparison(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.diagnostics import START, Diagnostic, ModelError, Severity, Span
+from robosc.evaluation import evaluate
 from robosc.m2m.tabulation import TooLargeError, tabulate
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc, sct
@@ -52,9 +53,12 @@ class SctExpressions:
                 return type(expression)(value=expression.value)  # type: ignore[arg-type]
             case ex.UnaryExpression():
                 return type(expression)(operand=translate(expression.operand))
+            case ex.Equation() | ex.Inequation() if isinstance(expression.left, ex.StringLiteral):
+                # The supervisor needs no string, so that both sides are constants.
+                return ex.BooleanLiteral(value=bool(evaluate(expression, translate)))
         assert isinstance(expression, ex.BinaryExpression)
         translated = type(expression)(left=translate(expression.left), right=translate(expression.right))
-        if isinstance(translated, _COMPARISONS) and _has_double(translated):
+        if isinstance(translated, _COMPARISONS) and (_has_double(translated.left) or _has_double(translated.right)):
             return self._tabulate(translated, expression, within)
         return translated
 
@@ -100,13 +104,14 @@ class SctExpressions:
 
 
 def _has_double(expression: ex.Expression) -> bool:
+    """Whether a number is a double; what is within a comparison is none of it."""
     match expression:
         case ex.DoubleLiteral() | ex.Division():
             return True
-        case ex.BinaryExpression():
-            return _has_double(expression.left) or _has_double(expression.right)
-        case ex.UnaryExpression():
+        case ex.UnaryMinus():
             return _has_double(expression.operand)
+        case ex.Addition() | ex.Subtraction() | ex.Multiplication():
+            return _has_double(expression.left) or _has_double(expression.right)
     return False
 
 

@@ -1,0 +1,272 @@
+"""Random robots as text: all names resolve, types mostly fit, and little else is wrong with most of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from random import Random
+from typing import Any
+
+COMPARED = ("=", "!=", "<", "<=", ">", ">=")
+EVENTS = {
+    "incoming": ("request",),
+    "outgoing": ("response",),
+    "service": ("request", "response", "error"),
+    "action": ("request", "response", "error", "feedback", "cancel"),
+}
+
+
+@dataclass(frozen=True)
+class Type:
+    """A type as written; of an object its properties, of an array its elements, of an enum its values and its base."""
+
+    text: str
+    kind: str
+    properties: tuple[tuple[str, Type], ...] = ()
+    element: Type | None = None
+    values: tuple[str, ...] = ()
+    base: Type | None = None
+
+    @property
+    def is_finite(self) -> bool:
+        """Whether the supervisor can have it."""
+        return self.kind in {"boolean", "enum"} or (self.kind == "integer" and "(" in self.text)
+
+    @property
+    def needs_link(self) -> bool:
+        return (self.base or self).kind == "object"
+
+    @property
+    def can_be_sent(self) -> bool:
+        parts = [*(each for _, each in self.properties), *([self.element] if self.element else [])]
+        return self.kind != "enum" and all(each.can_be_sent for each in parts)
+
+
+BOOLEAN, DOUBLE, STRING, NONE = (Type(each, each) for each in ("boolean", "double", "string", "none"))
+INTEGER = Type("integer", "integer")
+RANGED = [Type(f"integer({low}..{high})", "integer") for low, high in ((0, 3), (-2, 2), (5, 5), (-9, -7))]
+
+
+@dataclass
+class Communication:
+    name: str
+    kind: str
+    sent: Type = NONE
+    data: dict[str, Type] = field(default_factory=dict)
+    text: str = ""
+
+
+@dataclass
+class Component:
+    name: str
+    communications: list[Communication] = field(default_factory=list)
+    variables: list[tuple[str, Type]] = field(default_factory=list)
+    states: list[str] = field(default_factory=list)
+
+
+class Writer:
+    """Writes one robot, with mistakes now and then.
+
+    A variable whose name starts with `x` may be needed by the supervisor: it is computed from finite data only.
+    """
+
+    def __init__(self, seed: int) -> None:
+        self.random = Random(seed)  # noqa: S311 - nothing here is secret
+        self.enums: list[Type] = []
+        self.objects: list[Type] = []
+        self.components: list[Component] = []
+        self.mistakes = self.random.randrange(10) == 0
+
+    def one(self, choices: Any) -> Any:
+        return self.random.choice(list(choices))
+
+    def many(self, most: int, least: int = 0) -> range:
+        return range(self.random.randint(least, most))
+
+    def maybe(self, text: str, chance: int = 2) -> str:
+        return text if self.random.randrange(chance) == 0 else ""
+
+    def robot(self) -> str:
+        types = [self.data_type(number) for number in self.many(4)]
+        for number in self.many(3, 1):
+            self.declare(number)
+        parts = [self.component(each) for each in self.components]
+        sent = [(c, m) for c in self.components for m in c.communications if m.kind != "outgoing"]
+        parts += [self.requirement(sent) for _ in self.many(4) if sent]
+        parts += [self.provide(*self.one(sent)) for _ in self.many(3) if sent]
+        return "\n".join(["robot R {", "interface i use Some from some_msgs", *types, *parts, "}"])
+
+    # Types
+
+    def simple(self) -> Type:
+        return self.one([BOOLEAN, DOUBLE, STRING, INTEGER, *RANGED])
+
+    def data_type(self, number: int) -> str:
+        if self.one("eo") == "o":
+            properties = []
+            for index in self.many(3, 1):
+                kind = self.one([self.simple(), *self.enums, *self.objects])
+                for _ in self.many(2):
+                    kind = self.one([kind, Type(f"array({kind.text})", "array", element=kind)])
+                properties.append((f"p{index}", kind))
+            self.objects.append(Type(f"O{number}", "object", tuple(properties)))
+            text = " ".join(f"{name}: {kind.text}" for name, kind in properties)
+            return f"datatype object O{number} {{ {text} }}"
+        base = self.one([self.simple(), *self.objects])
+        values = tuple(f"v{number}{index}" for index in self.many(3, 1))
+        reads = paths("value", base)
+        rules = [f"{self.expression(BOOLEAN, reads, 2)} -> {each}" for each in values[1:]]
+        self.enums.append(Type(f"E{number}", "enum", values=values, base=base))
+        return f"datatype enum E{number} from {base.text} to {{ {' '.join([*rules, f'default -> {values[0]}'])} }}"
+
+    # Components
+
+    def carried(self) -> Type:
+        return self.one([NONE, self.simple(), *self.enums, *self.objects])
+
+    def declare(self, number: int) -> None:
+        component = Component(f"C{number}")
+        for index in self.many(3):
+            kind = self.one(EVENTS)
+            made = Communication(f"m{number}{index}", kind)
+            topic = self.maybe('identifier: "/shared", ', 4)
+            name = f"{made.name} with {topic}"
+            if kind == "outgoing":
+                made.data = {"response": self.carried()}
+                made.text = f"outgoing message {name}type: {made.data['response'].text}"
+            else:
+                made.sent = self.one([each for each in (NONE, self.simple(), *self.objects) if each.can_be_sent])
+                made.data = {each: self.carried() for each in ("response", "feedback") if each in EVENTS[kind]}
+                rest = "".join(f", {event}: {each.text}" for event, each in made.data.items())
+                word = "type" if kind == "incoming" else "request"
+                head = "incoming message" if kind == "incoming" else kind
+                made.text = f"{head} {name}{word}: {made.sent.text}{rest}"
+            types = [made.sent, *made.data.values()]
+            basic = kind in {"incoming", "outgoing"} or (kind == "service" and set(types) == {NONE})
+            made.text += (
+                " links i" if not basic or any(each.needs_link for each in types) else self.maybe(" links i", 5)
+            )
+            component.communications.append(made)
+        for index in self.many(4):
+            kind = self.one([self.simple(), *RANGED, BOOLEAN, *self.enums])
+            component.variables.append((f"x{number}{index}" if kind.is_finite else f"h{number}{index}", kind))
+            if kind.is_finite and self.one([True, False, False]):
+                component.variables[-1] = (f"h{number}{index}", kind)
+        component.states = [f"s{number}{index}" for index in self.many(3, 1)]
+        self.components.append(component)
+
+    def component(self, component: Component) -> str:
+        lines = [each.text for each in component.communications]
+        body = [f"variable {name}: {kind.text}{self.initial(kind)}" for name, kind in component.variables]
+        free = [(m, event) for c in self.components for m in c.communications for event in EVENTS[m.kind]]
+        common = [each for each in free if self.random.randrange(6) == 0]
+        body += [self.transition(component, *each) for each in common]
+        body += [self.silent(component) for _ in self.many(1)]
+        for index, state in enumerate(component.states):
+            own = [each for each in free if each not in common and self.random.randrange(4) == 0]
+            inside = [self.transition(component, *each) for each in own] + [
+                self.silent(component) for _ in self.many(2)
+            ]
+            body.append(f"{'initial ' if index == 0 else ''}marked state {state} {{ {' '.join(inside)} }}")
+        return "\n".join([f"component {component.name} {{", *lines, "behaviour {", *body, "}", "}"])
+
+    def initial(self, kind: Type) -> str:
+        if kind in RANGED:
+            low, high = kind.text[8:-1].split("..")
+            return self.maybe(f" = {self.one([low, high])}")
+        return self.maybe(f" = {self.expression(kind, [], 2)}")
+
+    def transition(self, component: Component, communication: Communication, event: str) -> str:
+        reads = paths("value", communication.data.get(event, NONE))
+        assigned = self.assigned(component, reads) if (communication.kind, event) != ("incoming", "request") else ""
+        word = self.one(["to", "from"])
+        return f"on {event} {word} {communication.name}{assigned}{self.goto(component)}"
+
+    def silent(self, component: Component) -> str:
+        guard = self.maybe(f" if {self.expression(BOOLEAN, self.readable(finite=True), 3)}")
+        return f"transition{guard}{self.assigned(component, [])}{self.goto(component)}"
+
+    def goto(self, component: Component) -> str:
+        return self.maybe(f" goto {self.one(component.states)}")
+
+    def assigned(self, component: Component, data: list[tuple[str, Type]]) -> str:
+        done = []
+        for name, kind in component.variables:
+            if self.one([True, False]):
+                finite = name.startswith("x") and not self.mistakes
+                fitting = [each for each in data if not finite or (each[1].is_finite and "[" not in each[0])]
+                done.append(f"{name} := {self.expression(kind, [*fitting, *self.readable(finite=finite)], 3)}")
+        return f" do {', '.join(done)}" if done else ""
+
+    # Requirements and data
+
+    def requirement(self, sent: list[tuple[Component, Communication]]) -> str:
+        condition = self.expression(BOOLEAN, self.readable(finite=True), 3)
+        named = [self.one(sent)[1].name for _ in self.many(2, 1)]
+        target = f"{{ {', '.join(named)} }}" if len(named) > 1 else named[0]
+        return self.one([f"requirement {target} needs {condition}", f"requirement {condition} disables {target}"])
+
+    def provide(self, component: Component, communication: Communication) -> str:
+        if communication.sent == NONE:
+            return ""
+        data = self.provided(communication.sent)
+        condition = self.maybe(f" if {self.expression(BOOLEAN, self.readable(finite=True), 3)}")
+        return f"provide {self.maybe(f'{component.name}.')}{communication.name} with {data}{condition}"
+
+    def provided(self, kind: Type) -> str:
+        if kind.kind == "object":
+            given = [each for each in kind.properties if each[1].kind != "array" and self.one([True, False])]
+            return "{ " + ", ".join(f"{name}: {self.provided(each)}" for name, each in given) + " }"
+        return self.expression(kind, self.readable(finite=False), 2, constant=kind not in RANGED)
+
+    # Expressions
+
+    def readable(self, *, finite: bool) -> list[tuple[str, Type]]:
+        """What can be read by its full name."""
+        states = [(f"{c.name}.{each}", BOOLEAN) for c in self.components for each in c.states]
+        variables = [(f"{c.name}.{n}", kind) for c in self.components for n, kind in c.variables]
+        return states + [each for each in variables if not finite or self.mistakes or ".x" in each[0]]
+
+    def expression(self, kind: Type, reads: list[tuple[str, Type]], depth: int, *, constant: bool = True) -> str:
+        """An expression of the type; without `constant` it is no constant where anything can be read."""
+        alike = [text for text, each in reads if each.kind == kind.kind and (kind.kind != "enum" or each == kind)]
+        leaf = self.one([*alike, *alike, *(self.literals(kind) if constant or not alike else [])])
+        if depth == 0 or self.one([True, False, False]):
+            return leaf
+        operand = [self.expression(kind, reads, depth - 1) for _ in range(2)]
+        match kind.kind:
+            case "boolean":
+                return self.boolean(reads, depth, *operand)
+            case "integer" if leaf in alike:
+                return self.one([f"{leaf} {self.one('+-*')} {operand[0]}", f"-({leaf})"])
+            case "double":
+                other = self.expression(INTEGER, reads, depth - 1)
+                mixed = [f"{operand[0]} {self.one('+-*/')} {other}", f"({other}) / {operand[1]}", f"-{leaf}"]
+                return self.one([f"({operand[0]} {self.one('+-*')} {operand[1]})", *mixed])
+        return leaf
+
+    def boolean(self, reads: list[tuple[str, Type]], depth: int, left: str, right: str) -> str:
+        kind = self.one([INTEGER, DOUBLE, STRING, BOOLEAN, *self.enums])
+        if kind.kind in {"double", "string"} and not any(each.kind == kind.kind for _, each in reads):
+            kind = self.one([INTEGER, DOUBLE])
+        first, second = (self.expression(kind, reads, depth - 1) for _ in range(2))
+        symbol = self.one(COMPARED if kind.kind in {"integer", "double"} else COMPARED[:2])
+        logical = [f"{left} {self.one(['and', 'or', '=>'])} ({right})", f"!({left})"]
+        return self.one([*logical, f"(({first}) {symbol} {second})"])
+
+    def literals(self, kind: Type) -> list[str]:
+        known = {"boolean": ["true", "false"], "double": ["0.5", "-2.0"], "string": ['"a"', "'b'"], "enum": kind.values}
+        if kind in RANGED:
+            return list(kind.text[8:-1].split(".."))
+        return list(known.get(kind.kind, ["0", "2", "-1"]))
+
+
+def paths(start: str, kind: Type) -> list[tuple[str, Type]]:
+    """What can be read of data, each with its type."""
+    if kind.element is not None:
+        return paths(f"{start}[1]", kind.element)
+    return [(start, kind), *(read for name, each in kind.properties for read in paths(f"{start}.{name}", each))]
+
+
+def random_robot(seed: int) -> str:
+    """The text of a robot, the same for the same seed."""
+    return Writer(seed).robot()
