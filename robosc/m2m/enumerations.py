@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robosc.m2m.names import Names
 from robosc.m2m.sources import source
 from robosc.metamodel import expression as ex
+from robosc.naming import Names
 
 if TYPE_CHECKING:
     from robosc.metamodel import robosc, rosgraph, sct

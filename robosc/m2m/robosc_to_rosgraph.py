@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, NamedTuple
 from robosc.instances import Instance, InstanceVariable, Occurrence
 from robosc.m2m.constants import default_value, initial_value, literal
 from robosc.m2m.enumerations import Enumerations
-from robosc.m2m.names import Names
 from robosc.m2m.node_expressions import NodeExpressions, as_double
 from robosc.m2m.sources import source
 from robosc.m2m.trace import EVENT_OF
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc, rosgraph, sct
+from robosc.naming import Names
 from robosc.needed import transitions
 
 if TYPE_CHECKING:

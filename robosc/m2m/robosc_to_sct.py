@@ -6,12 +6,12 @@ from robosc.expressions import RoboscPrinter, conjunction, disjunction
 from robosc.instances import Instance, Instances, InstanceVariable, Occurrence
 from robosc.m2m.constants import initial_value, literal
 from robosc.m2m.enumerations import Enumerations
-from robosc.m2m.names import Names
 from robosc.m2m.sct_expressions import SctExpressions
 from robosc.m2m.sources import source
 from robosc.m2m.trace import EVENT_OF, Trace
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc, sct
+from robosc.naming import Names
 from robosc.needed import Data, needed, transitions
 
 #: What comes from outside, or must always be possible: a component elsewhere than in the right state ignores it.

@@ -44,10 +44,12 @@ def _expressions(model: sct.SupervisoryControlModel) -> Iterator[tuple[ex.Locate
                     yield edge, edge.guard
                 for update in edge.updates:
                     yield update, update.value
+    # What the author can change about a guard is a requirement on its event.
+    requirements = {each.event: each for each in reversed(model.requirements)}
     for guard in model.supervisor.guards if model.supervisor else ():
         for part in (guard.requirement, guard.synthesis):
             if part is not None:
-                yield guard.event, part
+                yield requirements.get(guard.event, guard.event), part
 
 
 def _overflows(expression: ex.Expression, ranges: Ranges) -> Iterator[str]:
