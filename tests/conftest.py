@@ -1,9 +1,14 @@
-"""Golden files: what a test produces, kept beside its input and accepted anew with `pytest --accept`."""
+"""What all tests share: golden files, kept beside their inputs and accepted anew with `pytest --accept`."""
 
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
+
+# Time is measured in benchmarks; a busy machine fails no test.
+settings.register_profile("robosc", deadline=None)
+settings.load_profile("robosc")
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
