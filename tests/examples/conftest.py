@@ -1,0 +1,22 @@
+"""The robots among the examples, each with its supervisor."""
+
+from functools import cache
+from pathlib import Path
+
+import robosc
+from robosc.models import Models
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+#: Every model, by its name.
+MODELS = {path.stem: path for path in sorted(EXAMPLES.rglob("*.rscd"))}
+#: The eight scenarios: folders with a page.
+SCENARIOS = sorted(path.parent.name for path in EXAMPLES.glob("*/README.md"))
+
+
+@cache
+def models_of(name: str) -> Models:
+    """The models of an example."""
+    robot = robosc.load(MODELS[name])
+    plants = robosc.to_sct(robot)
+    robosc.synthesize(plants)
+    return Models(plants, robosc.to_rosgraph(robot), robot)

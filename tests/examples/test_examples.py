@@ -1,0 +1,83 @@
+"""The examples: nothing is wrong with them, and what is said about them is so."""
+
+import json
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from robosc.cli import main
+from robosc.diagrams import behaviour_graph, diagram, ros_graph
+
+from .conftest import EXAMPLES, MODELS, SCENARIOS, models_of
+
+GUARDS = Path(__file__).with_name("guards")
+#: Targets for controllers with services or actions as well, and those for messages only.
+ALL, MESSAGES = "cif,supervisor,xmi", "cif,supervisor,xmi,ros1,ros2"
+EACH = pytest.mark.parametrize("name", MODELS)
+
+
+def test_the_eight_scenarios_are_there() -> None:
+    assert len(SCENARIOS) == 8
+    assert {*SCENARIOS} <= {*MODELS}
+
+
+@EACH
+def test_nothing_is_wrong(name: str) -> None:
+    answer = CliRunner().invoke(main, ["check", "--format", "json", str(MODELS[name])])
+    assert (answer.exit_code, json.loads(answer.stdout)) == (0, [])
+
+
+@EACH
+def test_guards(name: str, golden) -> None:
+    answer = CliRunner().invoke(main, ["synthesize", "--json", str(MODELS[name])])
+    assert (answer.exit_code, answer.stderr) == (0, "")
+    said = json.loads(answer.stdout)
+    # How long it took and how large the diagrams got is no matter of the example.
+    del said["seconds"], said["bdd_nodes"]
+    golden(GUARDS / f"{name}.json", json.dumps(said, indent=2) + "\n")
+    assert not said["empty"]
+    assert [each["name"] for each in said["events"] if each["added_by_synthesis"]] == []
+    unused = [each["name"] for each in said["events"] if not each["ever_enabled"]]
+    assert [each for each in unused if not each.endswith(".c_none")] == []
+
+
+@EACH
+def test_everything_can_be_generated(name: str, tmp_path: Path) -> None:
+    graph = models_of(name).rosgraph
+    targets = ALL if graph.serviceClients or graph.actionClients else MESSAGES
+    answer = CliRunner().invoke(main, ["transform", str(MODELS[name]), "--to", targets, "-o", str(tmp_path)])
+    assert answer.exit_code == 0, answer.output
+    assert {each.name for each in tmp_path.iterdir()} > {"supervisor"} | {"ros1", "ros2"} & {*targets.split(",")}
+
+
+@pytest.mark.parametrize("name", SCENARIOS)
+def test_pictures_are_up_to_date(name: str, golden) -> None:
+    models = models_of(name)
+    page = (EXAMPLES / name / "README.md").read_text()
+    for picture, graph in [("behaviour", behaviour_graph(models.robosc)), ("ros-graph", ros_graph(models.rosgraph))]:
+        golden(EXAMPLES / name / f"{picture}.svg", diagram(graph, "svg"))
+        assert f"]({picture}.svg)" in page
+
+
+@pytest.mark.parametrize("name", [each for each in SCENARIOS if each != "line_follower"])
+def test_the_page_names_every_topic(name: str) -> None:
+    graph = models_of(name).rosgraph
+    rows = [row.strip("| ").split(" | ") for row in (EXAMPLES / name / "README.md").read_text().splitlines()]
+    said = {(row[0], *(each.strip("`") for each in row[1:3])) for row in rows if len(row) == 4 and row[1][:2] == "`/"}
+    ways = [
+        (way, getattr(each, "topic", None) or each.identifier, f"{each.interface.package}/{each.interface.type}")
+        for way, connections in [
+            ("outgoing", graph.subscriptions),
+            ("incoming", graph.publishers),
+            ("service", graph.serviceClients),
+            ("action", graph.actionClients),
+        ]
+        for each in connections
+    ]
+    assert said == {*ways}
+
+
+def test_the_list_of_examples_is_complete() -> None:
+    page = (EXAMPLES / "README.md").read_text()
+    assert [each for each in SCENARIOS if f"[{each}]({each})" not in page] == []
