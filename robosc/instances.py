@@ -104,6 +104,11 @@ class Instances:
             return None
         return InstanceVariable(instance, access.item)
 
+    def assignments(self, transition: robosc.Transition, within: Instance) -> dict[InstanceVariable, robosc.Assignment]:
+        """What a transition of an instance assigns to which variable; of several to one variable the last counts."""
+        owned = ((self.variable(each.item, within), each) for each in transition.assignments if each.item)
+        return {variable: each for variable, each in owned if variable is not None}
+
 
 def _instantiate(component: robosc.Component, base: robosc.Base) -> Instance | None:
     """Follows imports to the component's definition; outer re-mappings win."""

@@ -1,4 +1,4 @@
-"""`assignment-on-message-to-node` and `assignment-scope` (thesis 4.5.5 and 4.5.6)."""
+"""`assignment-on-message-to-node` and `assignment-scope` (thesis 4.5.5 and 4.5.6), and `repeated-assignment`."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from robosc.checks.automata import assigned_variable, behaviours, sends_message, transitions
 from robosc.checks.rule import Finding, rule
+from robosc.diagnostics import Severity
 from robosc.metamodel import robosc as rsc
 
 if TYPE_CHECKING:
@@ -41,6 +42,24 @@ def assignment_scope(base: rsc.Base) -> Iterator[Finding]:
                         f"{_describe(target)} is assigned a value, expected a variable of `{component.name}`",
                         _repair(target, component),
                     )
+
+
+@rule("repeated-assignment", Severity.WARNING)
+def repeated_assignment(base: rsc.Base) -> Iterator[Finding]:
+    """A transition assigns a variable once."""
+    for _, behaviour in behaviours(base):
+        for transition in transitions(behaviour.automaton):
+            assigned = set()
+            for assignment in transition.assignments:
+                variable = assigned_variable(assignment)
+                if variable is not None and variable in assigned:
+                    yield Finding(
+                        assignment,
+                        f"`{variable.name}` is assigned a value by this transition already, expected one: the last"
+                        " one counts",
+                        "leave out the one that is not meant: assignments of one transition are simultaneous",
+                    )
+                assigned.add(variable)
 
 
 def _describe(target: rsc.Access) -> str:

@@ -291,11 +291,8 @@ class _Transformation:
     def reactions(self, instance: Instance) -> None:
         assert instance.automaton is not None or not list(transitions(instance))
         for transition, state in transitions(instance):
-            assignments = [
-                each
-                for each in transition.assignments
-                if self.instances.variable(each.item, instance) in self.variables
-            ]
+            assigned = self.instances.assignments(transition, instance)
+            assignments = {owned: each for owned, each in assigned.items() if owned in self.variables}
             if not assignments:
                 continue
             event, data = self.event_and_data(transition, instance)
@@ -305,9 +302,7 @@ class _Transformation:
                 locations=list(places) if state is None else [self.trace.locations[instance, state]],
                 source=source(transition, instance.home),
             )
-            for each in assignments:
-                owned = self.instances.variable(each.item, instance)
-                assert owned is not None
+            for owned, each in assignments.items():
                 variable = self.variables[owned]
                 value = self.expressions(each.value, instance, data)
                 reaction.assignments.append(

@@ -251,8 +251,7 @@ class _Transformation:
         self.trace.origins[edge] = transition
         if isinstance(transition, robosc.TauTransition) and transition.guard is not None:
             edge.guard = self.expressions.condition(transition.guard, instance)
-        for assignment in transition.assignments:
-            owned = self.instances.variable(assignment.item, instance)
+        for owned, assignment in self.instances.assignments(transition, instance).items():
             if owned in self.trace.variables:
                 value = self.expressions.value(assignment.value, instance, transition)
                 edge.updates.append(

@@ -194,6 +194,31 @@ def test_unresolved_names_draw_nothing_further(tmp_path: Path) -> None:
     assert places(types) == [("robot.rscd", 16, "type")]
 
 
+def test_unresolved_types_and_interfaces_draw_nothing_further(tmp_path: Path) -> None:
+    robot = """
+        robot House {
+          datatype object Width { width: Widht }
+          datatype enum Size from Widht to { default -> wide }
+          component Door {
+            outgoing message width with type: Width links nothing
+            outgoing message size with type: Size
+            service open with request: Widht, response: none
+            action shut with request: none, response: none, feedback: none links nothing
+            behaviour {
+              variable last: Widht
+              initial marked state closed {
+                on response from width do last := value.width
+                transition if last = wide and last > 3
+              }
+            }
+          }
+          requirement { opne } needs Door.closed
+          provide opne with { }
+        }
+    """
+    assert {each.rule for each in found(tmp_path, robot)} == {"unresolved-reference"}
+
+
 @pytest.mark.parametrize(
     "damaged",
     [

@@ -283,3 +283,33 @@ def test_every_element_says_where_it_comes_from(to_sct):
     assert plant(model, "component_Sensor").origin == "Sensor"
     assert plant(model, "message_near").origin == "Sensor.near"
     assert all(isinstance(each, ex.Located) for each in trace.origins.values())
+
+
+def test_of_two_assignments_to_one_variable_the_last_counts(to_sct):
+    model, _ = to_sct(
+        """robot R {
+          component C {
+            outgoing message m with type: none
+            behaviour {
+              variable a: integer(0..3)
+              initial marked state s { on response from m do a := 1, a := 2 transition if a = 1 }
+            }
+          }
+        }"""
+    )
+    (update,) = plant(model, "component_C").locations[0].edges[0].updates
+    assert show(update.value) == "2"
+
+
+def test_a_comparison_of_strings_is_a_constant(to_sct):
+    model, _ = to_sct(
+        """robot R {
+          component C {
+            incoming message m with type: none
+            behaviour { initial marked state s { } }
+          }
+          requirement m needs C.s and "a" = "a"
+          requirement "a" != "a" disables m
+        }"""
+    )
+    assert [show(each.condition) for each in model.requirements] == ["component_C.s and true", "false"]
