@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Iterable, Mapping
+from decimal import Decimal
 from functools import reduce
 from typing import Any, ClassVar, TypeVar
 
@@ -123,8 +124,11 @@ class RoboscPrinter(ExpressionPrinter):
                 return owner + name + "".join(map(_step, expression.segments))
             case ex.BooleanLiteral():
                 return "true" if expression.value else "false"
-            case ex.IntegerLiteral() | ex.DoubleLiteral():
+            case ex.IntegerLiteral():
                 return str(expression.value)
+            case ex.DoubleLiteral():
+                digits = format(Decimal(repr(expression.value)), "f")  # RoboSC has no exponents
+                return digits if "." in digits else f"{digits}.0"
             case ex.StringLiteral():
                 return json.dumps(expression.value, ensure_ascii=False)
         return super().atom(expression)

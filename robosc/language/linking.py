@@ -189,8 +189,7 @@ class _Linker:
 
     def _target(self, transition: rsc.Transition, name: Name) -> None:
         own = self._around(transition, rsc.Component)
-        members = self._scope.members(own) if own is not None else None
-        states = {each: member for each, member in (members or {}).items() if isinstance(member, rsc.State)}
+        states = self._scope.states(own) if own is not None else {}
         if name.text in states:
             transition.target = states[name.text]
         elif own is not None and not self._file.may_declare(name.text, Declared.MEMBER, imported=False):
@@ -264,8 +263,8 @@ class _Linker:
 
     def _read_as_property(self, access: rsc.Access, name: Name) -> None:
         """`a.b`, where `a` turned out to be no component: then `b` is a property of it."""
-        start, end = name.start - 1, name.end
-        segment = rsc.PropertySegment(source=self._file.text.source(start, end))
+        start = self._file.text.content.rfind(".", 0, name.start)
+        segment = rsc.PropertySegment(source=self._file.text.source(start, name.end))
         access.segments.insert(0, segment)
         self._segment(segment, name)
 

@@ -9,6 +9,7 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from robosc.diagnostics import in_order
 from robosc.language.libraries import LibraryPath
 from robosc.language.linking import RULE, link
 from robosc.language.recovery import parse_file
@@ -30,7 +31,7 @@ class Reading:
     """What came of reading a file.
 
     `base` is its robot or library, as far as its text could be read; None where not even its first line could.
-    `findings` are the faults of the text and of its names, those of imported libraries included, file by file.
+    `findings` are the faults of the text and of its names, those of imported libraries included, in order.
     `texts` holds what was read, by the paths that the findings carry.
     """
 
@@ -50,7 +51,7 @@ def read(path: Path | str, library_paths: Iterable[Path | str] = ()) -> Reading:
     sys.setrecursionlimit(max(sys.getrecursionlimit(), 20 * LONGEST))
     reader = _Reader(library_paths)
     file = reader.read(Path(path), str(path))
-    return Reading(file.base, reader.findings, reader.texts)
+    return Reading(file.base, in_order(reader.findings), reader.texts)
 
 
 class _Reader:

@@ -70,6 +70,7 @@ class Scope:
         self._imports = [each for each in file.libraries.values() if each is not None]
         self._instances = Instances(base)
         self._members: dict[rsc.Component, Names] = {}
+        self._states: dict[rsc.Component, Names] = {}
         self._communications: dict[rsc.Component, Names] = {}
         #: Whether a component is imported of which nothing is known.
         self.incomplete = any(self.members(each) is None for each in self.components.values())
@@ -93,6 +94,14 @@ class Scope:
                 return None
             self._members[component] = by_name(_members(instance))
         return self._members[component]
+
+    def states(self, component: rsc.Component) -> Names:
+        """The states of a component; empty where its import is broken."""
+        if component not in self._states:
+            instance = self._instances.instance(component, None)
+            members = _members(instance) if instance is not None else ()
+            self._states[component] = by_name(each for each in members if isinstance(each, rsc.State))
+        return self._states[component]
 
     def communications(self, component: rsc.Component) -> Names | None:
         """The communications of a component; None where its import is broken."""

@@ -1,0 +1,110 @@
+"""Grammar and metamodel say the same, each all that the other says."""
+
+import re
+from typing import Any
+
+import pytest
+
+from robosc.language.building import element_class
+from robosc.language.grammar import is_reserved, language
+from robosc.metamodel import expression as ex
+from robosc.metamodel import robosc as rsc
+from robosc.naming import ROBOSC_KEYWORDS
+from robosc.resources import locate
+
+TEXT = locate("grammar/robosc.tx").read_text(encoding="utf-8")
+RULES = re.findall(r"^(\w+):", TEXT, re.MULTILINE)
+WORDS = {"Name", "UnreservedName", "Integer", "SignedInteger", "Double", "String", "Boolean", "Comment"}
+#: What a text can't say: transformations make it.
+MADE_BY_TRANSFORMATIONS = {
+    *("Type", "BooleanType", "IntegerType", "DoubleType", "StringType", "EnumerationType", "Enumeration"),
+    *("EnumerationLiteral", "EnumerationLiteralReference", "DoubleConversion", "Conditional"),
+}
+#: Features that no rule sets: reading sets them from the file, and the operators' left operands from their precedence.
+SET_OTHERWISE = {"source", "file", "left"}
+
+
+def classifier(name: str) -> Any:
+    """The EClass or EEnum of a name; None where there is none."""
+    found = getattr(rsc, name, None) or getattr(ex, name, None)
+    return getattr(found, "eClass", None) if isinstance(found, type) else found
+
+
+CLASSES = [
+    name
+    for module in (rsc, ex)
+    for name, each in vars(module).items()
+    if isinstance(each, type) and hasattr(each, "eClass") and name not in MADE_BY_TRANSFORMATIONS
+]
+
+
+def body(rule: str) -> str:
+    found = re.search(rf"^{rule}:(.*?);$", TEXT, re.MULTILINE | re.DOTALL)
+    assert found is not None
+    return found[1]
+
+
+def is_abstract(name: str) -> bool:
+    return bool(classifier(name).abstract)
+
+
+def features(name: str) -> dict[str, Any]:
+    return {each.name: each for each in classifier(name).eAllStructuralFeatures() if each.name not in SET_OTHERWISE}
+
+
+def is_a(name: str, ancestor: str) -> bool:
+    return name == ancestor or any(each.name == ancestor for each in classifier(name).eAllSuperTypes())
+
+
+def test_there_is_a_class_for_each_rule() -> None:
+    enumerations = {"MessageDirection", "ResultType"}
+    assert set(RULES) == {each for each in RULES if each in CLASSES} | enumerations | WORDS | {"Operand"}
+
+
+def test_there_is_a_rule_for_each_class_that_has_elements() -> None:
+    assert [each for each in CLASSES if not is_abstract(each) and each not in RULES] == []
+
+
+@pytest.mark.parametrize("rule", [each for each in RULES if each in CLASSES and not is_abstract(each)])
+def test_a_rule_assigns_exactly_the_features_of_its_class(rule: str) -> None:
+    assigned = language()[rule]._tx_attrs
+    wanted = features(rule)
+    assert set(assigned) == set(wanted)
+    for name, attribute in assigned.items():
+        assert attribute.mult.endswith("*") == wanted[name].many
+
+
+@pytest.mark.parametrize("rule", [each for each in RULES if each in CLASSES and not is_abstract(each)])
+def test_a_rule_assigns_what_its_class_wants(rule: str) -> None:
+    assignments = re.findall(r"(\w+)[*+?]?=(\[?)(\w+|'\w+')", body(rule))
+    assert {each for each, _, _ in assignments} == set(features(rule))
+    for name, bracket, target in assignments:
+        feature = features(rule)[name]
+        if feature.is_attribute:
+            assert not bracket
+            assert target.startswith("'") or target in WORDS or target == feature.eType.name
+        else:
+            assert bool(bracket) != feature.containment
+            # An operand is any expression: `Operand` is what stands between operators.
+            assert is_a("Expression" if target == "Operand" else target, feature.eType.name)
+
+
+@pytest.mark.parametrize("rule", [each for each in RULES if each in CLASSES and is_abstract(each)])
+def test_the_alternatives_of_an_abstract_rule_are_kinds_of_its_class(rule: str) -> None:
+    alternatives = re.findall(r"\w+", body(rule))
+    assert alternatives
+    for each in alternatives:
+        assert each == "Operand" or is_a(each, rule)
+        assert element_class(rule) is None
+
+
+@pytest.mark.parametrize("rule", ["MessageDirection", "ResultType"])
+def test_an_enumeration_has_the_words_of_its_rule(rule: str) -> None:
+    assert [each.name for each in classifier(rule).eLiterals] == re.findall(r"'(\w+)'", body(rule))
+
+
+def test_every_word_of_the_grammar_is_reserved_and_no_other() -> None:
+    words = set(re.findall(r"'([a-z]+)'", TEXT))
+    assert words == ROBOSC_KEYWORDS
+    assert {each for each in words if not is_reserved(each)} == set()
+    assert not any(is_reserved(each) for each in ("continue", "states", "valued", "^state", "Robot"))

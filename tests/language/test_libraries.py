@@ -1,0 +1,199 @@
+"""Where libraries come from, and what goes wrong with them."""
+
+import os
+from pathlib import Path
+
+import pytest
+
+from robosc.language import read
+from robosc.metamodel import robosc as rsc
+from robosc.metamodel.files import path_of
+from robosc.resources import locate
+from tests.language.texts import places, reading, underlined
+
+ROBOT = "robot R {\n  component C from L import C\n}\n"
+
+
+def library(message: str, name: str = "L") -> str:
+    return f"library {name} {{ component C {{ outgoing message {message} with type: none }} }}"
+
+
+def message_of(base: rsc.Base | None) -> str:
+    assert base is not None
+    return str(base.definitions[0].type.definition.type.definitions[0].name)
+
+
+def test_folders_are_searched_in_order(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    names = ("beside", "first", "second", "environment")
+    for each in names:
+        (tmp_path / each).mkdir()
+        (tmp_path / each / f"some_{each}.rscd").write_text(library(each))
+    robot = tmp_path / "beside" / "robot.rscd"
+    robot.write_text(ROBOT)
+    monkeypatch.setenv("ROBOSC_PATH", os.pathsep.join(["", str(tmp_path / "nowhere"), str(tmp_path / "environment")]))
+    given = [tmp_path / "first", str(tmp_path / "second")]
+    for each in names:
+        assert message_of(read(robot, given).base) == each
+        (tmp_path / each / f"some_{each}.rscd").unlink()
+    assert underlined(read(robot, given)) == [("unresolved-reference", "L")]
+
+
+def test_the_standard_library_is_searched_last(tmp_path: Path) -> None:
+    robot = "robot R { component C from EmergencyStopLibrary import EmergencyStop }"
+    assert message_of(reading(tmp_path, robot).base) == "stop"
+    own = library("own", "EmergencyStopLibrary").replace("component C", "component EmergencyStop")
+    assert message_of(reading(tmp_path, robot, any_name=own).base) == "own"
+
+
+def test_the_standard_library_holds_no_fault() -> None:
+    files = sorted(locate("stdlib").glob("*.rscd"))
+    readings = [read(each) for each in files]
+    assert [each.findings for each in readings] == [[]] * len(files)
+    names = {each.base.name for each in readings if each.base}
+    assert names >= {"EmergencyStopLibrary", "TurtlebotLibrary"}
+
+
+@pytest.mark.parametrize(
+    "header",
+    ["library L", "\ufeff// library X\n/* library Y */ library\n// L\n ^L", "/**/library/***/L"],
+)
+def test_a_library_is_found_by_the_name_that_its_file_declares(tmp_path: Path, header: str) -> None:
+    text = library("found").replace("library L", header)
+    assert message_of(reading(tmp_path, ROBOT, whatever=text).base) == "found"
+
+
+def test_unrelated_files_are_never_reported(tmp_path: Path) -> None:
+    (tmp_path / "binary.rscd").write_bytes(bytes(range(256)))
+    (tmp_path / "folder.rscd").mkdir()
+    (tmp_path / "L.txt").write_text(library("wrong"))
+    os.mkfifo(tmp_path / "pipe.rscd")
+    found = reading(
+        tmp_path,
+        ROBOT,
+        broken="library Broken { component",
+        robot="robot L { }",
+        comment="/* library L",
+        longer=library("wrong", "L2"),
+        right=library("right"),
+        empty="",
+    )
+    assert found.findings == []
+    assert [Path(each).name for each in found.texts] == ["model.rscd", "right.rscd"]
+
+
+def test_two_files_of_one_folder_with_one_library_are_an_error(tmp_path: Path) -> None:
+    found = reading(tmp_path, ROBOT, one=library("a"), two=library("b"))
+    assert underlined(found) == [("unresolved-reference", "L")]
+    assert found.findings[0].message == (
+        f"library `L` is declared by several files of one folder: `{tmp_path}/one.rscd` and `{tmp_path}/two.rscd`"
+    )
+
+
+def test_a_library_that_is_not_there_has_a_likely_name(tmp_path: Path) -> None:
+    found = reading(tmp_path, "robot R { component C from EmergencyStoppLibrary import C }")
+    assert found.findings[0].hint == "did you mean `EmergencyStopLibrary`?"
+
+
+def test_a_library_with_errors_is_reported_as_itself_and_once(tmp_path: Path) -> None:
+    robot = """
+        robot R {
+          component A from L import C
+          component B from L import Gone
+          component D { incoming message m with type: Lost behaviour { initial state s { on response from lost } } }
+          requirement m needs A.lost and B.anything
+        }
+    """
+    broken = "library L {\n  component C { outgoing message lost with type none }\n  datatype objct Lost { }\n}"
+    found = reading(tmp_path, robot, l=broken)
+    assert places(found) == [
+        ("l.rscd", 2, "syntax"),
+        ("l.rscd", 3, "syntax"),
+        ("model.rscd", 3, "unresolved-reference"),
+    ]
+
+
+def test_unresolved_names_of_a_library_are_reported_in_it(tmp_path: Path) -> None:
+    found = reading(tmp_path, ROBOT, l=library("m").replace("none", "Missing"))
+    assert places(found) == [("l.rscd", 1, "unresolved-reference")]
+
+
+def test_libraries_import_from_libraries(tmp_path: Path) -> None:
+    robot = "robot R { component X from Outer import Y requirement m needs X.s }"
+    outer = "library Outer { component Y from Inner import Z with { m: '/outer' } }"
+    inner = (
+        "library Inner { component Z { incoming message m with type: none"
+        " behaviour { initial marked state s { on request to m } } } }"
+    )
+    found = reading(tmp_path, robot, outer=outer, inner=inner)
+    assert found.findings == []
+    assert found.base is not None
+    reference = next(each for each in found.base.eAllContents() if isinstance(each, rsc.CommunicationReference))
+    assert reference.component is found.base.definitions[0]
+    assert reference.communicationType.eContainer().eContainer().eContainer().name == "Inner"
+
+
+def test_a_library_is_looked_for_beside_the_library_that_imports_it(tmp_path: Path) -> None:
+    (tmp_path / "shelf").mkdir()
+    (tmp_path / "shelf" / "outer.rscd").write_text("library L { component C from Inner import C }")
+    (tmp_path / "shelf" / "inner.rscd").write_text(library("inner", "Inner"))
+    (tmp_path / "robot.rscd").write_text(ROBOT)
+    found = read(tmp_path / "robot.rscd", [tmp_path / "shelf"])
+    assert found.findings == []
+    assert [Path(each).name for each in found.texts] == ["robot.rscd", "outer.rscd", "inner.rscd"]
+
+
+def test_a_library_that_several_import_is_one_library(tmp_path: Path) -> None:
+    robot = "robot R { component A from One import C component B from Two import C component D from L import C }"
+    forward = "library {} {{ component C from L import C }}"
+    found = reading(tmp_path, robot, one=forward.format("One"), two=forward.format("Two"), l=library("m"))
+    assert found.findings == []
+    assert found.base is not None
+    one, two, direct = (each.type for each in found.base.definitions)
+    assert one.definition.type.library is two.definition.type.library is direct.library
+
+
+@pytest.mark.parametrize(
+    ("files", "file", "circle"),
+    [
+        ({"a": "L"}, "a.rscd", "L -> L"),
+        ({"a": "M", "b": "L"}, "b.rscd", "L -> M -> L"),
+        ({"a": "M", "b": "N", "c": "M"}, "c.rscd", "M -> N -> M"),
+    ],
+)
+def test_a_circle_of_imports_is_printed(tmp_path: Path, files: dict[str, str], file: str, circle: str) -> None:
+    texts = {
+        each: f"library {name} {{\n  component C from {imported} import C\n}}"
+        for (each, imported), name in zip(files.items(), "LMN", strict=False)
+    }
+    found = reading(tmp_path, ROBOT, **texts)
+    assert places(found) == [(file, 2, "import-cycle")]
+    assert found.findings[0].message == f"libraries import each other in a circle: {circle}"
+
+
+def test_a_library_read_by_itself_finds_the_circle_too(tmp_path: Path) -> None:
+    found = reading(
+        tmp_path,
+        "library L { component C from M import C }",
+        m="library M { component C from L import C }",
+    )
+    assert underlined(found) == [("import-cycle", "L")]
+
+
+def test_paths_are_as_the_user_gave_them(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "robots").mkdir()
+    (tmp_path / "robots" / "r.rscd").write_text(ROBOT)
+    (tmp_path / "robots" / "l.rscd").write_text(library("m").replace("none", "Missing"))
+    monkeypatch.chdir(tmp_path)
+    found = read("robots/r.rscd")
+    assert found.base is not None
+    assert (path_of(found.base), found.base.file) == ("robots/r.rscd", "r.rscd")
+    assert [each.file for each in found.findings] == ["robots/l.rscd"]
+    monkeypatch.chdir(tmp_path / "robots")
+    found = read("r.rscd")
+    assert [each.file for each in found.findings] == ["l.rscd"]
+    assert path_of(rsc.Robot(file="saved.rscd")) == "saved.rscd"
+
+
+def test_a_file_that_is_not_there_is_the_callers_fault(tmp_path: Path) -> None:
+    with pytest.raises(FileNotFoundError):
+        read(tmp_path / "nothing.rscd")

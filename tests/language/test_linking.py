@@ -1,0 +1,307 @@
+"""What a name stands for in each place (the language reference, files and names)."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from robosc.language import Reading
+from robosc.metamodel import robosc as rsc
+from tests.language.texts import reading, underlined
+
+STOP = """
+    library Safety {
+      interface flag use Flag from safety_msgs
+      datatype object Info { text: string }
+      datatype enum Level from double to { value > 1.0 -> high default -> low }
+      component Stop {
+        outgoing message stop with type: Level
+        outgoing message go with type: none
+        behaviour {
+          variable level: Level
+          initial marked state running { on response from stop do level := value goto stopped }
+          state stopped { on response from go goto running }
+        }
+      }
+    }
+"""
+
+
+def elements(found: Reading, kind: type[Any]) -> list[Any]:
+    assert found.base is not None
+    return [each for each in found.base.eAllContents() if isinstance(each, kind)]
+
+
+def test_a_bare_name_is_a_component_before_all_else(tmp_path: Path) -> None:
+    found = reading(
+        tmp_path,
+        """
+        robot R {
+          component a { }
+          component C { behaviour { variable a: boolean initial state s { transition if a } } }
+        }
+        """,
+    )
+    (access,) = elements(found, rsc.Access)
+    assert isinstance(access.item, rsc.Component)
+
+
+@pytest.mark.parametrize(
+    ("variable", "state", "expected"),
+    [("a", "a", rsc.Variable), ("x", "a", rsc.State), ("x", "s", rsc.EnumValue)],
+)
+def test_then_an_own_variable_an_own_state_an_enum_value(
+    tmp_path: Path, variable: str, state: str, expected: type[Any]
+) -> None:
+    found = reading(
+        tmp_path,
+        f"""
+        robot R {{
+          datatype enum E from boolean to {{ default -> a }}
+          component Other {{ behaviour {{ variable a: boolean initial state b {{ }} }} }}
+          component C {{ behaviour {{
+            variable {variable}: boolean
+            initial state {state} {{ transition if a }}
+          }} }}
+        }}
+        """,
+    )
+    assert found.findings == []
+    (access,) = elements(found, rsc.Access)
+    assert isinstance(access.item, expected)
+    owner = None if expected is rsc.EnumValue else "C"
+    assert (access.component and access.component.name) == owner
+
+
+def test_another_component_needs_its_name(tmp_path: Path) -> None:
+    found = reading(
+        tmp_path,
+        """
+        robot R {
+          component A { incoming message m with type: none behaviour { initial state s { } } }
+          component B { behaviour { variable v: boolean initial state t { transition if s } } }
+          requirement m needs A.s and B.v and not_there and t and A.v
+        }
+        """,
+    )
+    assert underlined(found) == [("unresolved-reference", each) for each in ("s", "not_there", "t", "v")]
+    assert [each.hint for each in found.findings] == ["write `A.s`", None, "write `B.t`", None]
+
+
+def test_every_unresolved_name_is_a_finding_with_what_may_be_meant(tmp_path: Path) -> None:
+    found = reading(
+        tmp_path,
+        """
+        robot R {
+          interface twist use Twist from geometry_msgs
+          datatype object Vector { length: double }
+          datatype enum E from Vectr to { value > 1.0 -> far default -> near }
+          datatype enum F from Vector to { value.lenght > 1.0 -> long default -> short }
+          component Motor {
+            incoming message move with type: Vectro links twits
+            incoming message turn with type: Vector links twist
+            behaviour {
+              initial marked state idle { on request to mvoe goto idel }
+              state busy { on request to Moter.move }
+            }
+          }
+          requirement Motor.movee needs Motor.idel or Motro.idle
+          requirement {move, trun} needs Motor.idle
+          provide turn with { lenght: 1.0 }
+        }
+        """,
+    )
+    assert underlined(found) == [
+        ("unresolved-reference", each)
+        for each in (
+            *("Vectr", "lenght", "Vectro", "twits", "mvoe", "idel", "Moter"),
+            *("movee", "idel", "Motro", "trun", "lenght"),
+        )
+    ]
+    assert {each.hint for each in found.findings} == {
+        f"did you mean `{each}`?" for each in ("Vector", "twist", "move", "idle", "Motor", "turn", "length")
+    }
+
+
+def test_properties_are_looked_up_in_the_type_before_them(tmp_path: Path) -> None:
+    found = reading(
+        tmp_path,
+        """
+        robot R {
+          datatype object Point { x: double }
+          datatype object Path { points: array(Point) length: double }
+          datatype enum E from double to { default -> e }
+          component C {
+            outgoing message path with type: Path
+            outgoing message level with type: E
+            incoming message send with type: none
+            behaviour {
+              variable d: double
+              on response from path do d := value.points[0].x, d := value.points.x, d := value.length.x
+              on response from level do d := value.x
+              on request to send do d := value.whatever
+              initial state s { transition if d.x > 1.0 and s.y }
+            }
+          }
+        }
+        """,
+    )
+    assert underlined(found) == [("unresolved-reference", each) for each in ("x", "x", "x", "x", "y")]
+    assert [each.message.rpartition(" is ")[2] for each in found.findings] == [
+        *("an array", "of type double", "an enum", "of type double", "of type boolean"),
+    ]
+    assert found.findings[0].hint == "write an index before it: `[0].x`"
+    segments = [each.property and each.property.name for each in elements(found, rsc.PropertySegment)]
+    assert segments == ["points", "x", "points", None, "length", None, None, None, None, None]
+
+
+def test_an_enum_sees_values_literals_and_enum_values(tmp_path: Path) -> None:
+    found = reading(
+        tmp_path,
+        """
+        robot R {
+          component C { behaviour { variable v: boolean initial state s { } } }
+          datatype enum E from double to { value > 1.0 and C.v -> a value < 0.0 or s -> b default -> c }
+        }
+        """,
+    )
+    assert underlined(found) == [("unresolved-reference", "C"), ("unresolved-reference", "s")]
+    assert {each.hint for each in found.findings} == {"an enum's rules see only `value`, literals and enum values"}
+
+
+def test_a_communication_may_be_that_of_any_component(tmp_path: Path) -> None:
+    found = reading(
+        tmp_path,
+        """
+        robot R {
+          component Stop from Safety import Stop
+          component C {
+            incoming message m with type: none
+            behaviour { initial state s { on response from stop on response from Stop.go on request to m } }
+          }
+          requirement m needs Stop.running and Stop.level = low
+        }
+        """,
+        safety=STOP,
+    )
+    assert found.findings == []
+    named = {each.communicationType.name: each.component.name for each in elements(found, rsc.CommunicationReference)}
+    assert named == {"stop": "Stop", "go": "Stop", "m": "C"}
+    read = {each.item.name: each.component and each.component.name for each in elements(found, rsc.Access)}
+    assert read == {"running": "Stop", "level": "Stop", "low": None}
+
+
+def test_two_instances_share_names_that_need_qualification(tmp_path: Path) -> None:
+    found = reading(
+        tmp_path,
+        """
+        robot R {
+          component Front from Safety import Stop
+          component Rear from Safety import Stop with { stop: "/rear/stop", gone: "/x" }
+          component C { behaviour { initial state s { on response from stop on response from Rear.stop } } }
+        }
+        """,
+        safety=STOP,
+    )
+    assert underlined(found) == [("unresolved-reference", "gone"), ("unresolved-reference", "stop")]
+    assert found.findings[1].message == "`stop` is ambiguous: it may be `Front.stop` or `Rear.stop`"
+    first, second = elements(found, rsc.CommunicationReference)
+    assert (first.component, first.communicationType) == (None, None)
+    assert (second.component.name, second.communicationType.name) == ("Rear", "stop")
+    assert [each.communicationType and each.communicationType.name for each in elements(found, rsc.TopicRemapping)] == [
+        "stop",
+        None,
+    ]
+
+
+def test_definitions_of_an_imported_library_are_usable_by_name(tmp_path: Path) -> None:
+    found = reading(
+        tmp_path,
+        """
+        robot R {
+          datatype object Info { number: integer }
+          component Stop from Safety import Stop
+          component C {
+            outgoing message m with type: Info links flag
+            behaviour { variable l: Level = high initial state s { on response from m do l := value.number } }
+          }
+        }
+        """,
+        safety=STOP,
+    )
+    assert found.findings == []
+    assert found.base is not None
+    own, level = (each.type for each in elements(found, rsc.ComplexDataTypeReference))
+    assert own.eContainer() is found.base
+    assert level.eContainer().name == "Safety"
+
+
+def test_without_an_import_they_are_not(tmp_path: Path) -> None:
+    found = reading(tmp_path, "robot R { component C { outgoing message m with type: Level } }", safety=STOP)
+    assert underlined(found) == [("unresolved-reference", "Level")]
+
+
+def test_a_name_that_two_imported_libraries_share_is_ambiguous(tmp_path: Path) -> None:
+    other = STOP.replace("Safety", "Danger").replace("message ", "message danger_").replace("from ", "from danger_")
+    other = other.replace("from danger_safety_msgs", "from safety_msgs").replace("from danger_double", "from double")
+    robot = """
+        robot R {
+          component A from Safety import Stop
+          component B from Danger import Stop
+          component C { outgoing message m with type: Info links flag }
+          datatype enum E from boolean to { value = (high = high) -> x default -> y }
+        }
+    """
+    found = reading(
+        tmp_path, robot, safety=STOP, danger=other.replace("message go", "message went").replace("from go", "from went")
+    )
+    assert underlined(found) == [("unresolved-reference", each) for each in ("Info", "flag", "high", "high")]
+    assert all("the libraries `Safety` and `Danger`" in each.message for each in found.findings)
+
+
+def test_names_in_a_library_mean_what_is_in_the_library(tmp_path: Path) -> None:
+    robot = """
+        robot R {
+          datatype enum Level from double to { default -> high }
+          component Stop from Safety import Stop
+          component C { outgoing message unrelated with type: none }
+        }
+    """
+    found = reading(tmp_path, robot, safety=STOP)
+    assert found.findings == []
+    assert found.base is not None
+    library = found.base.definitions[1].type.library
+    level = next(each for each in library.eAllContents() if isinstance(each, rsc.ComplexDataTypeReference))
+    assert level.type.eContainer() is library
+    access = next(each for each in library.eAllContents() if isinstance(each, rsc.Access) and each.item)
+    assert access.component is found.base.definitions[1].type.definition
+
+
+def test_a_library_component_speaks_of_itself_only(tmp_path: Path) -> None:
+    library = """
+        library L {
+          component A { outgoing message a with type: none behaviour { variable v: boolean initial state s { } } }
+          component B { behaviour {
+            initial state t { on response from a transition if A.v transition if B.t goto s }
+          } }
+        }
+    """
+    found = reading(tmp_path, library)
+    assert underlined(found) == [("unresolved-reference", each) for each in ("a", "A", "s")]
+
+
+def test_what_hangs_on_an_unresolved_name_is_no_finding(tmp_path: Path) -> None:
+    robot = """
+        robot R {
+          component Stop from Safety import Stopp
+          component Other from Nowhere import Thing
+          component C {
+            incoming message m with type: Unknown links nothing
+            behaviour { variable v: Level initial state s { on response from stop do v := value.x goto gone } }
+          }
+          requirement halt needs Stop.running and Other.idle
+          provide m with { x: 1.0, y: { z: 2 } }
+        }
+    """
+    found = reading(tmp_path, robot, safety=STOP)
+    assert underlined(found) == [("unresolved-reference", each) for each in ("Stopp", "Nowhere", "gone")]

@@ -1,0 +1,265 @@
+"""Syntax errors: each is found, each is found once, and none hides what is right or wrong elsewhere."""
+
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from robosc.diagnostics import as_text
+from robosc.language import read
+from robosc.metamodel import robosc as rsc
+from robosc.naming import ROBOSC_KEYWORDS
+from tests.language.texts import places, reading, underlined
+
+MODEL = """
+robot Right {
+  interface laser use LaserScan from sensor_msgs
+
+  datatype object LaserScan {
+    ranges: array(double)
+    count: integer(0..10)
+  }
+
+  datatype enum Distance from LaserScan to {
+    value.ranges[0] > 0.5 and value.ranges[90] <= 1.0 -> free
+    default -> blocked
+  }
+
+  component Scanner {
+    outgoing message scan with identifier: "/scan", type: Distance links laser
+
+    behaviour {
+      variable distance: Distance = blocked
+
+      on response from scan do distance := value
+
+      initial marked state waiting {
+        transition if distance = free goto driving
+      }
+
+      state driving {
+        transition if distance = blocked goto waiting
+      }
+    }
+  }
+
+  component Motor {
+    incoming message move with identifier: "/move", type: LaserScan links laser
+    service reset with request: none, response: boolean links laser
+    action turn with request: none, response: none, feedback: double links laser
+  }
+
+  component EmergencyStop from EmergencyStopLibrary import EmergencyStop
+
+  requirement {move, turn} needs EmergencyStop.in_service and Scanner.driving
+  requirement Scanner.waiting disables reset
+
+  provide move with { count: 3 } if Scanner.distance = free
+}
+"""
+
+
+def changed(text: str, old: str, new: str) -> str:
+    assert text.count(old) == 1, f"{old} is there {text.count(old)} times"
+    return text.replace(old, new)
+
+
+#: One fault each: what is changed, into what, the text that the finding stands at, and what it says or advises.
+FAULTS = [
+    ("robot Right", "robto Right", "robto", "expected `robot` or `library`"),
+    ("robot Right", "robot", "{", "expected a name"),
+    ("interface laser", "interfce laser", "interfce", "did you mean `interface`?"),
+    ("laser use", "laser", "LaserScan", "expected `use`"),
+    ("interface laser use", "interface use", "LaserScan", "is a name missing before `use`?"),
+    ("object LaserScan {", "object LaserScan", "ranges", "expected `{`"),
+    ("object LaserScan {", "objct LaserScan {", "objct", "did you mean `object`?"),
+    ("ranges: array", "ranges array", "array", "expected `:`"),
+    ("array(double)", "array(double", "", "expected `)`"),
+    ("0..10", "0...10", ".", "expected a whole number"),
+    ("LaserScan to {", "LaserScan to", "value", "expected `{`"),
+    ("value.ranges[0]", "value.ranges[", ">", "expected a whole number"),
+    ("<= 1.0", "=< 1.0", "=<", "write `<=`"),
+    (" and value", " && value", "&&", "write `and`"),
+    ("-> free", "=> free", "", "expected an operator or `->`"),
+    ("default -> blocked", "default -> ", "", "expected a name"),
+    ("outgoing message", "outgoing mesage", "mesage", "did you mean `message`?"),
+    ("outgoing message", "message", "message", "expected `incoming`, `outgoing`"),
+    ('"/scan"', '"/scan', '"/scan, type: Distance links laser', "this string is not closed"),
+    ('"/scan", type', '"/scan" type', "type", "expected `,`"),
+    ("links laser\n\n    behaviour", "link laser\n\n    behaviour", "link", "did you mean `links`?"),
+    ("behaviour {", "behavior {", "behavior", "did you mean `behaviour`?"),
+    ("Distance = blocked\n\n", "Distance := blocked\n\n", ":=", "write `=`"),
+    ("do distance := value", "do distance = value", "=", "write `:=`"),
+    ("do distance := value", "do distance := value;", ";", "leave it out"),
+    ("initial marked state", "intial marked state", "intial", "did you mean `initial`?"),
+    ("state driving {", "state driving", "transition", "expected `{`"),
+    ("state driving {", "state driving { {", "{", "one too many"),
+    ("goto driving\n      }", "goto driving\n", "state", "the `{` in line 22 is not closed"),
+    ("goto waiting\n      }", "goto waiting\n      } }", "}", "one too many"),
+    ("on response from scan", "on respons from scan", "respons", "did you mean `response`?"),
+    ("from scan do", "from scan if true do", "if", "a transition with an event has no condition"),
+    ("goto driving", "goto", "", "expected a name"),
+    ("response: boolean", "respnse: boolean", "respnse", "did you mean `response`?"),
+    ("feedback: double", "", "links", "expected `feedback`"),
+    ("import EmergencyStop", "", "", "expected `import`"),
+    ("{move, turn} needs", "{move, turn needs", "needs", "expected `,` or `}`"),
+    ("and Scanner.driving", "and", "", "expected an expression"),
+    ("and Scanner.driving", "and (Scanner.driving", "", "expected an operator or `)`"),
+    ("and Scanner.driving", "and not Scanner.driving", "Scanner", "write `!` for `not`"),
+    ("and Scanner.driving", "and state", "state", "write `^state`"),
+    ("disables reset", "disable reset", "disable", "did you mean `disables`?"),
+    ("{ count: 3 }", "count: 3 }", ":", "the properties of an object stand in braces"),
+    ("{ count: 3 }", "{ count: 3, }", "}", "leave out the comma before it"),
+    ("count: 3", "count = 3", "=", "write `:`"),
+    ("count: 3", "count: 3.", ".", "digits on both sides"),
+    (
+        "count: 3",
+        "co\N{LATIN SMALL LETTER U WITH DIAERESIS}nt: 3",
+        "co\N{LATIN SMALL LETTER U WITH DIAERESIS}nt",
+        "letters a to z",
+    ),
+    ("Scanner.distance = free\n}", "Scanner.distance = free\n", "", "the `{` in line 1 is not closed"),
+    ("Scanner.distance = free\n}", "Scanner.distance = free\n} }", "}", "expected the end of the file"),
+    ("Scanner.distance = free\n}", "Scanner.distance = free\n} robot X { }", "robot", "one robot or one library"),
+    ("Scanner.distance = free\n}", "Scanner.distance = free\n} /* end", "/* end", "this comment is not closed"),
+]
+
+
+def test_the_model_has_no_fault(tmp_path: Path) -> None:
+    assert reading(tmp_path, MODEL).findings == []
+
+
+@pytest.mark.parametrize(("old", "new", "at", "says"), FAULTS, ids=[f"{old}->{new}" for old, new, *_ in FAULTS])
+def test_one_fault_is_one_finding(tmp_path: Path, old: str, new: str, at: str, says: str) -> None:
+    found = reading(tmp_path, changed(MODEL, old, new))
+    assert underlined(found) == [("syntax", at)]
+    (finding,) = found.findings
+    assert says in f"{finding.message}; {finding.hint}"
+
+
+def test_ten_faults_are_ten_findings(tmp_path: Path) -> None:
+    text = MODEL
+    faults = (
+        *(("laser use", "laser used"), ("count: integer(0..10)", "count: integer(0,10)"), (" and value", " && value")),
+        *(("outgoing message scan", "outgoing message"), ("do distance := value", "do distance = value")),
+        *(("distance = free goto", "distance = fre goto"), ("service reset with", "service reset")),
+        *(("in_service and", "in_servce and"), ("disables reset", "disable reset"), ("{ count: 3 }", "{ count 3 }")),
+    )
+    for old, new in faults:
+        text = changed(text, old, new)
+    found = reading(tmp_path, text)
+    assert [(line, rule) for _, line, rule in places(found)] == [
+        *((2, "syntax"), (6, "syntax"), (10, "syntax"), (15, "syntax"), (20, "syntax")),
+        *((23, "unresolved-reference"), (34, "syntax"), (40, "unresolved-reference"), (41, "syntax"), (43, "syntax")),
+    ]
+
+
+def test_what_has_no_fault_is_read(tmp_path: Path) -> None:
+    text = changed(MODEL, "and Scanner.driving", "and (Scanner.driving")
+    text = changed(text, "service reset with request", "service reset with rquest")
+    base = reading(tmp_path, changed(text, "distance = free goto", "distance == free goto")).base
+    assert isinstance(base, rsc.Robot)
+    kinds = [each.eClass.name for each in base.definitions]
+    assert kinds == [
+        *("Interface", "ObjectDataType", "EnumDataType", "Component", "Component", "Component"),
+        *("DisablesRequirement", "ProvideStatement"),
+    ]
+    motor = base.definitions[4].type
+    assert [each.name for each in motor.definitions] == ["move", "turn"]
+    states = [each for each in base.eAllContents() if isinstance(each, rsc.State)]
+    assert [(each.name, len(each.transitions)) for each in states[:2]] == [("waiting", 0), ("driving", 1)]
+
+
+def test_a_missing_brace_keeps_definitions_in_their_places(tmp_path: Path) -> None:
+    text = changed(MODEL, "goto waiting\n      }\n    }\n  }", "goto waiting\n      }\n    }")
+    found = reading(tmp_path, text)
+    assert underlined(found) == [("syntax", "component")]
+    assert found.base is not None
+    assert [each.name for each in found.base.definitions if isinstance(each, rsc.Component)] == [
+        *("Scanner", "Motor", "EmergencyStop"),
+    ]
+
+
+def test_without_a_first_line_the_definitions_are_still_checked(tmp_path: Path) -> None:
+    text = changed(changed(MODEL, "robot Right {", "robot {"), "Scanner.waiting", "Scanner.waitng")
+    found = reading(tmp_path, text)
+    assert underlined(found) == [("syntax", "{"), ("unresolved-reference", "waitng")]
+
+
+@pytest.mark.parametrize("statement", ["requirement m needs true", "provide m with 1"])
+def test_a_library_holds_no_statements(tmp_path: Path, statement: str) -> None:
+    found = reading(
+        tmp_path,
+        f"library L {{ component C {{ incoming message m with type: none }} {statement} interface i use T of p }}",
+    )
+    assert underlined(found) == [("syntax", statement.split(maxsplit=1)[0]), ("syntax", "of")]
+    assert found.findings[0].message == f"a library holds no {statement.split(maxsplit=1)[0]} statements"
+
+
+@pytest.mark.parametrize("text", ["", " \n", "// nothing\n", "/* nothing */"])
+def test_an_empty_file_is_one_finding(tmp_path: Path, text: str) -> None:
+    found = reading(tmp_path, text)
+    assert [each.message for each in found.findings] == ["found the end of the file, expected `robot` or `library`"]
+    assert found.base is None
+
+
+@pytest.mark.parametrize(
+    ("statement", "at"),
+    [
+        (f"requirement m needs {'(' * 5000}true{')' * 5000}", "("),
+        (f"requirement m needs {'!' * 5000}true", "!"),
+        (f"provide m with {'{a:' * 5000}1{'}' * 5000}", "{"),
+        (f"datatype object O {{ p: {'array(' * 5000}none{')' * 5000} }}", "("),
+    ],
+)
+def test_what_is_nested_too_deep_is_a_finding(tmp_path: Path, statement: str, at: str) -> None:
+    found = reading(tmp_path, f"robot R {{ component C {{ incoming message m with type: none }} {statement} }}")
+    assert underlined(found) == [("syntax", at)]
+
+
+def test_forty_levels_are_not_too_deep(tmp_path: Path) -> None:
+    nested = f"{'(!' * 20}true{')' * 20}"
+    text = f"robot R {{ component C {{ incoming message m with type: none }} requirement m needs {nested} }}"
+    assert reading(tmp_path, text).findings == []
+
+
+SYMBOLS = "{ } ( ) [ ] . , : := = => -> - + * / ! != < <= > >= .. ; ^ ' \" // /* */ @"
+WORDS = [*sorted(ROBOSC_KEYWORDS), *SYMBOLS.split()]
+WORDS += ["name", "Other", "0", "1.5", '"text"', "\n", "\u00e9", "\0", "^state"]
+
+
+@settings(deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(words=st.lists(st.sampled_from(WORDS), max_size=40), framed=st.booleans())
+def test_no_words_are_too_strange(tmp_path: Path, words: list[str], framed: bool) -> None:
+    text = " ".join(words)
+    path = tmp_path / "soup.rscd"
+    path.write_text(f"robot R {{ {text} }}" if framed else text)
+    found = read(path)
+    assert found.base is not None or found.findings
+    as_text.render(found.findings, found.texts)
+
+
+PIECES = MODEL.replace("\n", " \n ").split(" ")
+
+
+@settings(deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(
+    st.lists(
+        st.tuples(st.integers(0, len(PIECES) - 1), st.sampled_from([None, *WORDS]) | st.text(max_size=3)),
+        min_size=1,
+        max_size=4,
+    )
+)
+def test_no_damage_is_too_bad(tmp_path: Path, damages: list[tuple[int, str | None]]) -> None:
+    pieces = list(PIECES)
+    for index, word in damages:
+        pieces[index] = "" if word is None else word
+    path = tmp_path / "damaged.rscd"
+    path.write_bytes(" ".join(pieces).encode("utf-8", "surrogatepass"))
+    found = read(path)
+    last = found.texts[str(path)].count("\n") + 1
+    assert all(1 <= each.span.line <= each.span.end_line <= last for each in found.findings)
+    # Whatever is left has the shape of the metamodel: each element stands in a feature that takes its kind.
+    for each in found.base.eAllContents() if found.base else ():
+        assert each.source is not None

@@ -1,0 +1,28 @@
+"""Reads texts that tests write down."""
+
+from pathlib import Path
+from textwrap import dedent
+
+from robosc.language import Reading, read
+
+
+def reading(folder: Path, text: str, **libraries: str) -> Reading:
+    """What comes of a text that stands in a file `model.rscd`, beside libraries in files of other names."""
+    for name, content in {"model": text, **libraries}.items():
+        (folder / f"{name}.rscd").write_text(dedent(content).strip("\n"), encoding="utf-8")
+    return read(folder / "model.rscd")
+
+
+def places(found: Reading) -> list[tuple[str, int, str]]:
+    """File, line and rule of each finding."""
+    return [(Path(each.file).name, each.span.line, each.rule) for each in found.findings]
+
+
+def underlined(found: Reading) -> list[tuple[str, str]]:
+    """The rule of each finding and the text that it stands at."""
+    texts = []
+    for each in found.findings:
+        lines = found.texts[each.file].split("\n")
+        assert each.span.line == each.span.end_line
+        texts.append((each.rule, lines[each.span.line - 1][each.span.column - 1 : each.span.end_column - 1]))
+    return texts
