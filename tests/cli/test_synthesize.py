@@ -108,9 +108,9 @@ def test_warnings_of_synthesis_leave_the_status_alone(run: Run, courier: Path) -
     answer = run("synthesize", courier, "-I", "parts", "--json")
     assert answer.exit_code == 0
     assert json.loads(answer.stdout)["controlled_states"] == 16
-    assert answer.stderr.startswith("parts/lamps.rscd:4:5: warning: `Lamps.light` and `Lamps.dark` go to one topic")
+    assert "parts/lamps.rscd:4:5: warning: `Lamps.light` and `Lamps.dark` go to one topic" in answer.stderr
     assert "[shared-topic-conflict]" in answer.stderr
-    assert run("check", courier, "-I", "parts").stdout == ""
+    assert "[shared-topic-conflict]" not in run("check", courier, "-I", "parts").stdout
 
 
 def test_errors_of_synthesis_are_shown_beside_the_supervisor(run: Run, self_cancelling: Path) -> None:

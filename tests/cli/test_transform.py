@@ -173,16 +173,14 @@ def test_warnings_of_synthesis(run: Run, courier: Path, form: str) -> None:
     assert answer.exit_code == 0, answer.output
     said = json.loads(answer.stdout)
     if form == "json":
-        [finding] = said
-        assert (finding["rule"], finding["severity"]) == ("shared-topic-conflict", "warning")
+        [finding] = [each for each in said if each["rule"] == "shared-topic-conflict"]
+        assert finding["severity"] == "warning"
         assert (finding["file"], finding["line"], finding["column"]) == ("parts/lamps.rscd", 4, 5)
         assert finding["hint"]
     else:
-        [rule] = said["runs"][0]["tool"]["driver"]["rules"]
-        assert (rule["id"], rule["shortDescription"]["text"]) == (
-            "shared-topic-conflict",
-            "Two messages to one topic can be sent at the same time.",
-        )
+        rules = {each["id"]: each for each in said["runs"][0]["tool"]["driver"]["rules"]}
+        summary = rules["shared-topic-conflict"]["shortDescription"]["text"]
+        assert summary == "Two messages to one topic can be sent at the same time."
     assert Path("out/Courier.cif").exists()
 
 
