@@ -69,7 +69,8 @@ class _Component(RoboscPrinter):
 
     def assignments(self, assignments: Sequence[robosc.Assignment]) -> list[str]:
         texts = [f"{self(each.item)} := {self(each.value)}" for each in assignments]
-        return [f"{'do ' if number == 0 else ''}{text}" for number, text in enumerate(texts)]
+        # A line for each, with the comma that parts it from the next.
+        return ("do " + ",\n".join(texts)).split("\n") if texts else []
 
     def communication(self, reference: robosc.CommunicationReference) -> str:
         """Its name; with its component where two share the name and it is the other's."""

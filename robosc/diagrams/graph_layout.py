@@ -28,6 +28,8 @@ MARK = 22.0
 _PORT = 16.0
 #: Between ranks, downwards and to the right.
 _GAPS = (30.0, 64.0)
+#: A page may be long; what is longer than this is folded.
+_MOST_RANKS = 60
 
 
 @dataclass(frozen=True)
@@ -98,7 +100,7 @@ class _Layouter:
 
     def arranged(self, sizes: Mapping[str, Point]) -> Arrangement:
         boxes = {key: self.swap(size) for key, size in sizes.items()}
-        return arrange(boxes, list(chain.from_iterable(self.links(sizes))), _GAPS[not self.downwards])
+        return arrange(boxes, list(chain.from_iterable(self.links(sizes))), _GAPS[not self.downwards], _MOST_RANKS)
 
     def links(self, sizes: Mapping[str, Point]) -> list[list[Link]]:
         """For each arrow the links that it consists of, from its earlier node to its later one."""

@@ -73,13 +73,16 @@ class _Item:
 
 
 def arrange(
-    sizes: Mapping[str, tuple[float, float]], links: Sequence[Link], column_gap: float = _COLUMN_GAP
+    sizes: Mapping[str, tuple[float, float]],
+    links: Sequence[Link],
+    column_gap: float = _COLUMN_GAP,
+    most_columns: int = _MOST_COLUMNS,
 ) -> Arrangement:
     """Arranges boxes of given widths and heights. Ranking links run from rank to rank, but for those in circles.
 
-    A link from a box to itself is not arranged, and must not be given.
+    More ranks than `most_columns` are folded. A link from a box to itself is not arranged, and must not be given.
     """
-    columns = _columns(sizes, links)
+    columns = _columns(sizes, links, most_columns)
     boxes = {name: _Item(name, columns[name], height) for name, (_, height) in sizes.items()}
     chains = [_chain(boxes, link) for link in links]
     layers: list[list[_Item]] = [[] for _ in range(max(columns.values(), default=-1) + 1)]
@@ -90,11 +93,11 @@ def arrange(
     return _Geometry(sizes, layers, boxes, chains, column_gap).arrangement(links)
 
 
-def _columns(names: Iterable[str], links: Sequence[Link]) -> dict[str, int]:
+def _columns(names: Iterable[str], links: Sequence[Link], most: int) -> dict[str, int]:
     """The column of each box: its rank, or on the way back."""
     ranks = _ranks(names, links)
     last = max(ranks.values(), default=0)
-    if last < _MOST_COLUMNS:
+    if last < most:
         return ranks
     middle = (last + 1) // 2
     return {name: rank if rank <= middle else 2 * middle - rank for name, rank in ranks.items()}

@@ -40,7 +40,7 @@ class _Plant(SctPrinter):
             self.plant.name,
             [f"{each.name}: {_type(each.type)} = {self(each.initial)}" for each in self.plant.variables],
             [State(each.name, each.initial, each.marked) for each in locations],
-            _joined(steps, len(locations)),
+            _joined(steps, locations, alike=self.plant.kind == sct.PlantKind.data),
         )
 
     def label(self, edge: sct.Edge) -> Label:
@@ -63,16 +63,19 @@ class _Plant(SctPrinter):
         return super().atom(expression)
 
 
-def _joined(steps: list[Step], locations: int) -> list[Step]:
-    """What happens alike in every location, said once: it leads to the same one from all, or stays in each."""
-    if locations == 1:
+def _joined(steps: list[Step], locations: list[sct.Location], *, alike: bool) -> list[Step]:
+    """What happens in every location in one way, said once: it leads to the same one from all, or stays in each.
+
+    With two locations a cycle between them is told apart from that, unless the locations are `alike` on purpose.
+    """
+    if len(locations) < (2 if alike else 3):
         return steps
     ways: dict[tuple[Label, int | None], set[int]] = {}
     for step in steps:
         ways.setdefault((step.label, step.target), set()).add(step.source)
         if step.source == step.target:
             ways.setdefault((step.label, None), set()).add(step.source)
-    common = [way for way, sources in ways.items() if len(sources) == locations]
+    common = [way for way, sources in ways.items() if len(sources) == len(locations)]
     rest = [
         step
         for step in steps
