@@ -137,7 +137,8 @@ class Outline:
         elif not self._ended():
             self._missing("{")
         items = self._body((DEFINITIONS,))
-        while self._more():
+        last = self._last_starter()
+        while self._at <= last:
             self.braces.append(Brace("}", self._at - 1, surplus=True))
             items += self.items((DEFINITIONS,))
             if self._is("}"):
@@ -146,14 +147,15 @@ class Outline:
                 self._missing("}", 0)
         return Block(None, 0, self._at, 0, self._end(), items)
 
-    def _more(self) -> bool:
-        """Whether definitions follow on the brace that seemed to be the last."""
+    def _last_starter(self) -> int:
+        """Where the last definition behind the brace that seemed to end the file begins; -1 where there is none."""
+        last = -1
         for index in range(self._at, self._limit):
             if self._tokens[index].is_keyword("robot", "library"):
-                return False
+                break
             if self._tokens[index].is_keyword(*DEFINITIONS.starters):
-                return True
-        return False
+                last = index
+        return last
 
     def items(self, levels: tuple[Level, ...]) -> tuple[Block, ...]:
         """The items of the last of these levels, up to where one of the others goes on."""
@@ -247,13 +249,19 @@ class Outline:
         named = tokens[at + 1].is_keyword(":")
         if level is PROPERTIES:
             return tokens[at].kind is Kind.WORD and named
-        if level is RULES and tokens[at - 2].is_keyword("->") and tokens[at - 1].kind is Kind.WORD:
+        named_value = tokens[at - 1].kind is Kind.WORD and not self._is_starter(RULES, at - 1)
+        if level is RULES and tokens[at - 2].is_keyword("->") and named_value:
             return not self._is("}") and not tokens[at].is_keyword(*DEFINITIONS.starters)
-        if named or not (tokens[at].is_keyword(*level.starters) or self._misspelt(level)):
+        if named or not (self._is_starter(level, at) or self._misspelt(level)):
             return False
         if tokens[at].text == "message" and not tokens[at].is_first:
             return False
         return not self._continues(level, _CONTINUED.get(tokens[at].text, ()))
+
+    def _is_starter(self, level: Level, at: int) -> bool:
+        """Whether a token is a starter; one that begins a line is, even if a name is missing before it."""
+        token = self._tokens[at]
+        return token.is_keyword(*level.starters) or (token.is_name and token.is_first and token.text in level.starters)
 
     def _continues(self, level: Level, starters: tuple[str, ...]) -> bool:
         """Whether the token before the current one is one of these keywords, if misspelt then in the same line."""

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import codecs
-import sys
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from pathlib import Path
@@ -14,8 +12,7 @@ from robosc.language.libraries import LibraryPath
 from robosc.language.linking import RULE, link
 from robosc.language.recovery import parse_file
 from robosc.language.scopes import File
-from robosc.language.text import Text
-from robosc.language.tokens import LONGEST
+from robosc.language.text import decode
 from robosc.metamodel import robosc as rsc
 from robosc.metamodel.files import set_path
 
@@ -47,8 +44,6 @@ def read(path: Path | str, library_paths: Iterable[Path | str] = ()) -> Reading:
     OSError where the file itself can't be read; all other faults are findings of the rules `syntax`,
     `unresolved-reference` and `import-cycle`.
     """
-    # Expressions are trees that everything follows by recursion, a few calls for each operator in a row.
-    sys.setrecursionlimit(max(sys.getrecursionlimit(), 20 * LONGEST))
     reader = _Reader(library_paths)
     file = reader.read(Path(path), str(path))
     return Reading(file.base, in_order(reader.findings), reader.texts)
@@ -67,9 +62,9 @@ class _Reader:
     def read(self, path: Path, shown: str) -> File:
         """The file at a path, linked; `shown` is what findings call it."""
         identity = path.resolve()
-        content = self._decode(path.read_bytes(), shown)
-        text = Text(shown, content)
-        self.texts[shown] = content
+        text, findings = decode(shown, path.read_bytes())
+        self.findings += findings
+        self.texts[shown] = text.content
         parsed = parse_file(text)
         self.findings += parsed.findings
         file = File(text, parsed.base, parsed.references, parsed.unread)
@@ -81,19 +76,6 @@ class _Reader:
             self.findings += link(file)
         self._reading.pop()
         return file
-
-    def _decode(self, content: bytes, shown: str) -> str:
-        content = content.removeprefix(codecs.BOM_UTF8)
-        try:
-            text = content.decode("utf-8")
-        except UnicodeDecodeError as fault:
-            before = Text(shown, content[: fault.start].decode("utf-8"))
-            message = f"the byte 0x{content[fault.start]:02x} is no UTF-8"
-            hint = "save the file in the encoding UTF-8"
-            self.findings.append(before.error("syntax", len(before.content), len(before.content), message, hint))
-            # The rest is checked with blanks in such places, so that one fault draws one finding.
-            text = content.decode("utf-8", errors="replace").replace("\N{REPLACEMENT CHARACTER}", " ")
-        return text.replace("\r\n", "\n").replace("\r", "\n")
 
     def _libraries(self, file: File, path: Path) -> None:
         """Reads the libraries that a file names, in the order of its text."""

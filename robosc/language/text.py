@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 from bisect import bisect_right
 from dataclasses import dataclass
 from functools import cached_property
@@ -41,3 +42,19 @@ class Text:
     def error(self, rule: str, start: int, end: int, message: str, hint: str | None = None) -> Diagnostic:
         """A finding between two offsets."""
         return Diagnostic(self.file, self.span(start, end), Severity.ERROR, rule, message, hint)
+
+
+def decode(file: str, content: bytes) -> tuple[Text, list[Diagnostic]]:
+    """The text in the bytes of a file, and what is wrong with them: a finding of the rule `syntax`, or none."""
+    content = content.removeprefix(codecs.BOM_UTF8)
+    findings = []
+    try:
+        text = content.decode("utf-8")
+    except UnicodeDecodeError as fault:
+        before = Text(file, content[: fault.start].decode("utf-8"))
+        message = f"the byte 0x{content[fault.start]:02x} is no UTF-8"
+        hint = "save the file in the encoding UTF-8"
+        findings.append(before.error("syntax", len(before.content), len(before.content), message, hint))
+        # The rest is checked with blanks in such places, so that one fault draws one finding.
+        text = content.decode("utf-8", errors="replace").replace("\N{REPLACEMENT CHARACTER}", " ")
+    return Text(file, text.replace("\r\n", "\n").replace("\r", "\n")), findings

@@ -181,6 +181,13 @@ def test_a_missing_brace_keeps_definitions_in_their_places(tmp_path: Path) -> No
     ]
 
 
+def test_a_name_that_is_missing_is_not_taken_from_the_next_line(tmp_path: Path) -> None:
+    text = changed(changed(MODEL, "1.0 -> free", "1.0 ->"), "goto waiting", "goto\n        on response from scan")
+    found = reading(tmp_path, text)
+    assert places(found) == [("model.rscd", 10, "syntax"), ("model.rscd", 27, "syntax")]
+    assert {each.message.rpartition(", ")[2] for each in found.findings} == {"expected a name"}
+
+
 def test_without_a_first_line_the_definitions_are_still_checked(tmp_path: Path) -> None:
     text = changed(changed(MODEL, "robot Right {", "robot {"), "Scanner.waiting", "Scanner.waitng")
     found = reading(tmp_path, text)
