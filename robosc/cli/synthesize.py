@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from robosc.cli.options import library_path, model
+from robosc.cli.options import interface_path, library_path, model
 from robosc.cli.progress import progress
 from robosc.cli.reading import read_models
 from robosc.cli.report import Report
@@ -26,7 +26,8 @@ if TYPE_CHECKING:
 @model
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 @library_path
-def command(model: str, as_json: bool, library_paths: Sequence[str]) -> None:
+@interface_path
+def command(model: str, as_json: bool, library_paths: Sequence[str], interface_paths: Sequence[str]) -> None:
     """Synthesize the supervisor of a robot: its states, and when it allows what.
 
     MODEL is a .rscd file with a robot, or an .xmi file that `transform --to xmi` wrote. A guard says where the
@@ -41,7 +42,7 @@ def command(model: str, as_json: bool, library_paths: Sequence[str]) -> None:
     Exit status: 0 done, 1 errors in the model, 2 a wrong call, 3 no supervisor exists.
     """
     with Report(aside=True) as report:
-        plants = read_models(model, library_paths, report).sct
+        plants = read_models(model, library_paths, report, interface_paths).sct
         try:
             with progress("synthesizing the supervisor"):
                 supervision = supervise(plants)
@@ -55,19 +56,23 @@ def command(model: str, as_json: bool, library_paths: Sequence[str]) -> None:
 
 
 def _show_json(model: sct.SupervisoryControlModel, synthesis: Synthesis) -> None:
+    guards = {each.event: each for each in synthesis.supervisor.guards} if synthesis.supervisor else {}
+    events = [event for plant in model.plants for event in plant.events] if synthesis.supervisor else []
     answer = {
         "robot": model.name,
         "uncontrolled_states": synthesis.uncontrolled_states,
         "controlled_states": synthesis.controlled_states,
         "empty": synthesis.supervisor is None,
-        "events": [_event(each) for each in synthesis.supervisor.guards] if synthesis.supervisor else [],
+        "events": [
+            _controllable(guards[each]) if each in guards else _uncontrollable(each, synthesis) for each in events
+        ],
         "seconds": round(synthesis.seconds, 3),
         "bdd_nodes": synthesis.bdd_nodes,
     }
     click.echo(json.dumps(answer, indent=2))
 
 
-def _event(guard: sct.EventGuard) -> dict[str, Any]:
+def _controllable(guard: sct.EventGuard) -> dict[str, Any]:
     shown = SctPrinter()
     whole = conjunction(copied(part) for part in (guard.requirement, guard.synthesis) if part)
     return {
@@ -79,11 +84,22 @@ def _event(guard: sct.EventGuard) -> dict[str, Any]:
     }
 
 
+def _uncontrollable(event: sct.Event, synthesis: Synthesis) -> dict[str, Any]:
+    """No supervisor restricts it; whether the plants ever let it happen still depends on what else may."""
+    return {
+        "name": event_name(event),
+        "controllable": False,
+        "guard": "true",
+        "added_by_synthesis": None,
+        "ever_enabled": event in synthesis.possible,
+    }
+
+
 def _show(model: sct.SupervisoryControlModel, synthesis: Synthesis) -> None:
     assert synthesis.supervisor is not None
     states = f"{synthesis.controlled_states} states, of {synthesis.uncontrolled_states} without requirements"
     click.echo(f"{model.name}: {states}")
-    for event in map(_event, synthesis.supervisor.guards):
+    for event in map(_controllable, synthesis.supervisor.guards):
         click.echo(f"\n{event['name']}{'' if event['ever_enabled'] else ' (never enabled)'}")
         click.echo(f"    guard: {event['guard']}")
         if event["added_by_synthesis"]:

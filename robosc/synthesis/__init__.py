@@ -45,6 +45,8 @@ class Synthesis:
     controlled_states: int
     bdd_nodes: int
     seconds: float
+    #: The events that can happen under the supervisor, in the order of the plants.
+    possible: tuple[sct.Event, ...] = ()
 
 
 def synthesize(model: sct.SupervisoryControlModel, *, memory: int = 4 << 30) -> Synthesis:
@@ -98,6 +100,7 @@ def _synthesize(model: sct.SupervisoryControlModel, layout: Layout, capacity: in
         for each in relations
         if each.event.controllable
     ]
+    permitted = {each.relation.event: each.allowed for each in permissions}
     supervisor = sct.Supervisor(
         uncontrolledStates=encoding.count(uncontrolled),
         controlledStates=encoding.count(found.controlled),
@@ -112,4 +115,9 @@ def _synthesize(model: sct.SupervisoryControlModel, layout: Layout, capacity: in
         supervisor.controlledStates,
         supervisor.bddNodes,
         0.0,
+        tuple(
+            each.event
+            for each in relations
+            if (permitted[each.event] if each.event in permitted else found.controlled & each.enabled).satisfiable()
+        ),
     )

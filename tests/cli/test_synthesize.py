@@ -118,3 +118,27 @@ def test_errors_of_synthesis_are_shown_beside_the_supervisor(run: Run, self_canc
     assert answer.exit_code == 1
     assert json.loads(answer.stdout)["empty"] is False
     assert f"{self_cancelling}:20:3: error: `Base.drive` is cancelled as soon as it has started" in answer.stderr
+
+
+def test_events_that_come_from_the_robot_are_listed_too(run: Run, tmp_path: Path) -> None:
+    path = tmp_path / "tank.rscd"
+    path.write_text(
+        """robot Tank {
+  component Level {
+    outgoing message full with type: none
+    outgoing message drained with type: none
+    incoming message drain with type: none
+    behaviour {
+      initial marked state low { on response from full goto high }
+      marked state high { on request to drain goto low }
+    }
+  }
+}
+"""
+    )
+    events = json.loads(run("synthesize", path, "--json").stdout)["events"]
+    assert [(each["name"], each["controllable"], each["ever_enabled"]) for each in events] == [
+        ("message_full.u_response", False, True),
+        ("message_drained.u_response", False, True),
+        ("message_drain.c_trigger", True, True),
+    ]
