@@ -87,11 +87,16 @@ def load(path: str | PathLike[str], library_paths: Sequence[str | PathLike[str]]
     return base
 
 
-def check(robot: Base) -> list[Diagnostic]:
-    """All that the rules of the language say about a robot or library and what it imports, in order (thesis 4.5)."""
-    from robosc.checks import check as checked
+def check(robot: Base, interface_paths: Sequence[str | PathLike[str]] = ()) -> list[Diagnostic]:
+    """All that the rules of the language say about a robot or library and what it imports, in order (thesis 4.5).
 
-    return checked(robot)
+    `interface_paths` are folders with ROS packages below them; types of other packages are looked for in those of
+    ROBOSC_INTERFACE_PATH, in the ROS installation and among the standard types.
+    """
+    from robosc.checks import check as checked
+    from robosc.interfaces import Interfaces
+
+    return checked(robot, (), Interfaces(interface_paths))
 
 
 def to_sct(robot: Robot) -> SupervisoryControlModel:
@@ -103,11 +108,15 @@ def to_sct(robot: Robot) -> SupervisoryControlModel:
     return _plants(robot)[0]
 
 
-def to_rosgraph(robot: Robot) -> RosGraph:
-    """The ROS side of a robot in which `check` finds no error (thesis 5.3); its `model` is what `to_sct` gives."""
+def to_rosgraph(robot: Robot, interface_paths: Sequence[str | PathLike[str]] = ()) -> RosGraph:
+    """The ROS side of a robot in which `check` finds no error (thesis 5.3); its `model` is what `to_sct` gives.
+
+    ROS types are looked up as `check` does: the field of a basic value is the only one of its type, else `data`.
+    """
+    from robosc.interfaces import Interfaces
     from robosc.m2m import robosc_to_rosgraph
 
-    return robosc_to_rosgraph.transform(_plants(robot)[1])
+    return robosc_to_rosgraph.transform(_plants(robot)[1], Interfaces(interface_paths))
 
 
 def _plants(robot: Robot) -> tuple[SupervisoryControlModel, Trace]:

@@ -45,6 +45,7 @@ LIBRARIES = {
     "pydantic": {"config"},
     "pyecore": {"metamodel"},
     "rich": {"cli", "diagnostics"},
+    "rosbags": {"interfaces"},
     "textx": {"language"},
 }
 

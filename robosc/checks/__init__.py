@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from robosc.checks.libraries import reachable
 from robosc.checks.rule import RULES
 from robosc.diagnostics import Diagnostic, in_order
+from robosc.interfaces import Interfaces
 from robosc.metamodel.files import path_of
 from robosc.metamodel.places import place
 
@@ -26,12 +27,15 @@ for _module in iter_modules(__path__):
     import_module(f"{__name__}.{_module.name}")
 
 
-def check(base: rsc.Base | None, known: Iterable[Diagnostic] = ()) -> list[Diagnostic]:
+def check(
+    base: rsc.Base | None, known: Iterable[Diagnostic] = (), interfaces: Interfaces | None = None
+) -> list[Diagnostic]:
     """All breaches of rules in a robot or library and in every library that its imports reach, in order.
 
     `known` are the findings from reading the text: a rule that concludes something from what is absent keeps silent
-    where text could not be read or a name not be resolved. They are not repeated in the answer. Nothing is wrong with a
-    base that is None: reading has said why there is none.
+    where text could not be read or a name not be resolved. They are not repeated in the answer. `interfaces` is what
+    is known of ROS types; None: what is known without folders of the call. Nothing is wrong with a base that is None:
+    reading has said why there is none.
     """
     if base is None:
         return []
@@ -39,15 +43,16 @@ def check(base: rsc.Base | None, known: Iterable[Diagnostic] = ()) -> list[Diagn
     for each in known:
         unread.setdefault(each.file, []).append(each.span)
     findings: list[Diagnostic] = []
+    interfaces = interfaces or Interfaces()
     for each_base in [base, *reachable(base)]:
-        findings += _findings(each_base, unread.get(path_of(each_base), []))
+        findings += _findings(each_base, unread.get(path_of(each_base), []), interfaces)
     return in_order(findings)
 
 
-def _findings(base: rsc.Base, unread: Iterable[Span]) -> Iterator[Diagnostic]:
+def _findings(base: rsc.Base, unread: Iterable[Span], interfaces: Interfaces) -> Iterator[Diagnostic]:
     file = path_of(base)
     for rule in RULES.values():
-        for each in rule.check(base):
+        for each in rule.check(base, interfaces):
             if each.relies_on is None or not any(place(each.relies_on)[1].contains(span) for span in unread):
                 span = place(each.element)[1]
                 yield Diagnostic(file, span, rule.severity, rule.id, each.message, each.hint)

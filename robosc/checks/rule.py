@@ -10,6 +10,7 @@ from robosc.diagnostics import Severity
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
+    from robosc.interfaces import Interfaces
     from robosc.metamodel import expression as ex
     from robosc.metamodel import robosc as rsc
 
@@ -29,6 +30,7 @@ class Finding:
 
 
 Check: TypeAlias = "Callable[[rsc.Base], Iterator[Finding]]"
+InterfaceCheck: TypeAlias = "Callable[[rsc.Base, Interfaces], Iterator[Finding]]"
 
 
 @dataclass(frozen=True)
@@ -37,7 +39,7 @@ class Rule:
 
     id: str
     severity: Severity
-    check: Check
+    check: InterfaceCheck
 
 
 #: All rules by identifier, once their modules are imported.
@@ -52,6 +54,16 @@ def rule(identifier: str, severity: Severity = Severity.ERROR) -> Callable[[Chec
     """
 
     def register(check: Check) -> Check:
+        interface_rule(identifier, severity)(lambda base, _: check(base))
+        return check
+
+    return register
+
+
+def interface_rule(identifier: str, severity: Severity = Severity.ERROR) -> Callable[[InterfaceCheck], InterfaceCheck]:
+    """As `rule`, for a function that is also called with what ROS knows of its types."""
+
+    def register(check: InterfaceCheck) -> InterfaceCheck:
         assert identifier not in RULES, f"two checks for the rule {identifier}"
         RULES[identifier] = Rule(identifier, severity, check)
         return check

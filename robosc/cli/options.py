@@ -16,6 +16,15 @@ library_path = click.option(
     help="A folder with libraries, searched after the model's own; may be repeated. Then come those in ROBOSC_PATH.",
 )
 
+interface_path = click.option(
+    "--interface-path",
+    "interface_paths",
+    multiple=True,
+    type=click.Path(exists=True, file_okay=False),
+    help="A folder with ROS packages below it, searched for .msg, .srv and .action files; may be repeated."
+    " Then come those in ROBOSC_INTERFACE_PATH.",
+)
+
 findings_format = click.option(
     "--format",
     "form",

@@ -9,7 +9,7 @@ import click
 
 from robosc import config
 from robosc.cli import CallError
-from robosc.cli.options import FILE, findings_format, library_path, model
+from robosc.cli.options import FILE, findings_format, interface_path, library_path, model
 from robosc.cli.progress import progress
 from robosc.cli.reading import read_models
 from robosc.cli.report import Report
@@ -43,6 +43,7 @@ _EPILOG = "\n".join(["\b", "Targets:", *(f"  {each.name:<11} {each.description}"
 )
 @findings_format
 @library_path
+@interface_path
 def command(
     model: str,
     targets: Sequence[Target],
@@ -50,6 +51,7 @@ def command(
     chosen: str | None,
     form: str,
     library_paths: Sequence[str],
+    interface_paths: Sequence[str],
 ) -> None:
     """Check a robot, synthesize its supervisor and generate the TARGETs from it, all of them or none.
 
@@ -64,7 +66,7 @@ def command(
     Exit status: 0 done, 1 errors in the model, 2 a wrong call, 3 no supervisor exists.
     """
     with Report(form) as report:
-        models = read_models(model, library_paths, report)
+        models = read_models(model, library_paths, report, interface_paths)
         for target in targets:
             if target.needs_graph and models.rosgraph is None:
                 raise CallError(f"{model} has no ROS graph, which {target.name} needs: give its .rosgraph.xmi or .rscd")

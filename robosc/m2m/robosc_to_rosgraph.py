@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from robosc.instances import Instance, InstanceVariable, Occurrence
+from robosc.interfaces import Interfaces, Part
 from robosc.m2m.constants import default_value, initial_value, literal
 from robosc.m2m.enumerations import Enumerations
 from robosc.m2m.node_expressions import NodeExpressions, as_double
@@ -28,29 +29,32 @@ _BASIC = {
     robosc.StringDataType: "String",
     robosc.NoneDataType: "Empty",
 }
-#: The field that holds a basic value.
+#: The field that holds a basic value in a type of std_msgs.
 _FIELD = "data"
 
 
 class _Part(NamedTuple):
-    """What one event of a communication carries."""
+    """What one event of a communication carries, in which part of its ROS type."""
 
     occurrence: Occurrence
     type: robosc.DataType
+    part: Part
 
 
-def transform(trace: Trace) -> rosgraph.RosGraph:
+def transform(trace: Trace, interfaces: Interfaces | None = None) -> rosgraph.RosGraph:
     """The ROS graph of the robot whose transformation to the sct model left this trace.
 
+    `interfaces` is what is known of ROS types; None: what is known without folders of the call.
     Topics, services and actions stand in the order of the text. All messages that one topic feeds with one ROS type
     are one subscription.
     """
-    return _Transformation(trace).run()
+    return _Transformation(trace, interfaces or Interfaces()).run()
 
 
 class _Transformation:
-    def __init__(self, trace: Trace) -> None:
+    def __init__(self, trace: Trace, interfaces: Interfaces) -> None:
         self.trace = trace
+        self.known = interfaces
         self.instances = trace.instances
         robot = self.instances.base
         self.graph = rosgraph.RosGraph(name=robot.name, model=trace.model, source=source(robot, robot))
@@ -121,8 +125,7 @@ class _Transformation:
                 subscription = rosgraph.Subscription(topic=topic, interface=interface, source=where)
                 self.subscriptions[topic, interface] = subscription
                 self.graph.subscriptions.append(subscription)
-            part = _Part(occurrence, message.type)
-            subscription.receptions.append(self.reception(part, robosc.ResultType.response))
+            subscription.receptions.append(self.reception(occurrence, robosc.ResultType.response))
         else:
             publisher = self.publishers.get((topic, interface))
             if publisher is None:
@@ -137,7 +140,7 @@ class _Transformation:
                 identifier=occurrence.instance.topic(service),
                 interface=self.interface(service, service.requestType, rosgraph.InterfaceKind.service),
                 request=self.sending(occurrence),
-                response=self.reception(_Part(occurrence, service.responseType), robosc.ResultType.response),
+                response=self.reception(occurrence, robosc.ResultType.response),
                 error=self.trace.event(occurrence, sct.EventKind.error),
                 reset=self.trace.event(occurrence, sct.EventKind.reset),
                 source=source(service, occurrence.instance.home),
@@ -150,8 +153,8 @@ class _Transformation:
                 identifier=occurrence.instance.topic(action),
                 interface=self.interface(action, action.requestType, rosgraph.InterfaceKind.action),
                 request=self.sending(occurrence),
-                feedback=self.reception(_Part(occurrence, action.feedbackType), robosc.ResultType.feedback),
-                response=self.reception(_Part(occurrence, action.responseType), robosc.ResultType.response),
+                feedback=self.reception(occurrence, robosc.ResultType.feedback),
+                response=self.reception(occurrence, robosc.ResultType.response),
                 error=self.trace.event(occurrence, sct.EventKind.error),
                 cancel=self.trace.event(occurrence, sct.EventKind.cancel),
                 reset=self.trace.event(occurrence, sct.EventKind.reset),
@@ -192,8 +195,9 @@ class _Transformation:
                 alternative = rosgraph.ProvidedData(
                     location=self.trace.provided[statement], source=source(statement, robot)
                 )
-                declared = _request_type(occurrence.communication)
-                for field in self.fields(statement.data, (), declared):
+                sent = _sent(occurrence)
+                lone = () if isinstance(statement.data, robosc.ObjectValue) else (self.field(sent),)
+                for field in self.fields(statement.data, lone, sent.type):
                     alternative.fields.append(field)
                 sending.alternatives.append(alternative)
         return sending
@@ -210,7 +214,7 @@ class _Transformation:
         value = self.expressions(data, None)
         return [
             rosgraph.FieldAssignment(
-                path=list(path or (_FIELD,)),
+                path=list(path),
                 type=self.type(declared),
                 value=as_double(value) if isinstance(declared, robosc.DoubleDataType) else value,
                 source=source(data, self.instances.base),
@@ -219,8 +223,9 @@ class _Transformation:
 
     # Data that comes in
 
-    def reception(self, part: _Part, result_type: robosc.ResultType) -> rosgraph.Reception:
-        occurrence = part.occurrence
+    def reception(self, occurrence: Occurrence, result_type: robosc.ResultType) -> rosgraph.Reception:
+        part = _received(occurrence, result_type)
+        assert part is not None
         reception = rosgraph.Reception(
             name=occurrence.communication.name,
             event=self.trace.event(occurrence, EVENT_OF[result_type.name]),
@@ -229,16 +234,22 @@ class _Transformation:
         for data, declared in self.trace.inputs.items():
             if data.occurrence == occurrence and data.result_type == result_type:
                 segments = [robosc.PropertySegment(property=each) for each in data.path]
-                reception.inputs.append(rosgraph.InputAssignment(input=declared, value=self.wire(part.type)(segments)))
+                reception.inputs.append(rosgraph.InputAssignment(input=declared, value=self.wire(part)(segments)))
         return reception
 
-    def wire(self, whole: robosc.DataType) -> Callable[[Sequence[robosc.AccessSegment]], ex.Expression]:
-        """What `value` with its segments means where the ROS message carries data of this type."""
+    def field(self, part: _Part) -> str:
+        """The field that holds a basic value."""
+        linked = part.occurrence.communication.interface
+        return _FIELD if linked is None else self.known.field_of_basic(linked.package, linked.type, part.part)
+
+    def wire(self, part: _Part) -> Callable[[Sequence[robosc.AccessSegment]], ex.Expression]:
+        """What `value` with its segments means where the ROS message carries this part."""
+        is_basic = not isinstance(_wire_type(part.type), robosc.ComplexDataTypeReference)
 
         def access(segments: Sequence[robosc.AccessSegment]) -> ex.Expression:
-            steps, reached = _steps(segments, whole)
-            if not isinstance(_wire_type(whole), robosc.ComplexDataTypeReference):
-                steps.insert(0, rosgraph.FieldStep(name=_FIELD))
+            steps, reached = _steps(segments, part.type)
+            if is_basic:
+                steps.insert(0, rosgraph.FieldStep(name=self.field(part)))
             if isinstance(reached, robosc.ComplexDataTypeReference) and isinstance(reached.type, robosc.EnumDataType):
                 conversion = self.conversion(reached.type)
                 argument = rosgraph.WireAccess(steps=steps, type=self.basic_type(reached.type.type))
@@ -319,7 +330,7 @@ class _Transformation:
         occurrence = self.instances.occurrence(transition.communicationType, instance)
         assert occurrence is not None
         event = self.trace.event(occurrence, EVENT_OF[transition.resultType.name])
-        carried = _received_type(occurrence.communication, transition.resultType)
+        carried = _received(occurrence, transition.resultType)
         return event, None if carried is None else self.wire(carried)
 
 
@@ -348,20 +359,27 @@ def _steps(
     return steps, reached
 
 
-def _request_type(communication: robosc.CommunicationType) -> robosc.DataType:
-    if isinstance(communication, robosc.Message):
-        return communication.type
-    assert isinstance(communication, (robosc.Service, robosc.Action))
-    return communication.requestType
+def _sent(occurrence: Occurrence) -> _Part:
+    match occurrence.communication:
+        case robosc.Message() as message:
+            return _Part(occurrence, message.type, Part.MESSAGE)
+        case robosc.Service() as service:
+            return _Part(occurrence, service.requestType, Part.REQUEST)
+    assert isinstance(occurrence.communication, robosc.Action)
+    return _Part(occurrence, occurrence.communication.requestType, Part.GOAL)
 
 
-def _received_type(communication: robosc.CommunicationType, result_type: robosc.ResultType) -> robosc.DataType | None:
+def _received(occurrence: Occurrence, result_type: robosc.ResultType) -> _Part | None:
     """The data that an event of a communication brings; None for the events that bring none."""
+    communication = occurrence.communication
     if result_type == robosc.ResultType.feedback and isinstance(communication, robosc.Action):
-        return communication.feedbackType
+        return _Part(occurrence, communication.feedbackType, Part.FEEDBACK)
     if result_type != robosc.ResultType.response:
         return None
-    if isinstance(communication, robosc.Message):
-        return communication.type
-    assert isinstance(communication, (robosc.Service, robosc.Action))
-    return communication.responseType
+    match communication:
+        case robosc.Message():
+            return _Part(occurrence, communication.type, Part.MESSAGE)
+        case robosc.Service():
+            return _Part(occurrence, communication.responseType, Part.RESPONSE)
+    assert isinstance(communication, robosc.Action)
+    return _Part(occurrence, communication.responseType, Part.RESULT)

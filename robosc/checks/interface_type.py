@@ -1,0 +1,87 @@
+"""`interface-type`, `interface-unused` and `interface-unknown`: the model's view of a ROS type, and ROS' own."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from robosc.checks.libraries import reachable
+from robosc.checks.rule import Finding, interface_rule
+from robosc.checks.wire_data import Carried, UsedData, Uses, carried
+from robosc.checks.wire_faults import Fault, Unknown, faults
+from robosc.diagnostics import Severity
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from robosc.interfaces import Interfaces
+    from robosc.metamodel import expression as ex
+    from robosc.metamodel import robosc as rsc
+
+
+@interface_rule("interface-type")
+def interface_type(base: rsc.Base, interfaces: Interfaces) -> Iterator[Finding]:
+    """What the model uses of data is in the ROS type, and fits it."""
+    for element, message, hint, used in _faulty(base, interfaces):
+        if used:
+            yield Finding(element, message, hint)
+
+
+@interface_rule("interface-unused", Severity.WARNING)
+def interface_unused(base: rsc.Base, interfaces: Interfaces) -> Iterator[Finding]:
+    """What the model declares without using it is in the ROS type, too, and fits it."""
+    for element, message, hint, used in _faulty(base, interfaces):
+        if not used:
+            # A use may stand in text that could not be read.
+            yield Finding(element, message, hint, relies_on=base)
+
+
+@interface_rule("interface-unknown", Severity.WARNING)
+def interface_unknown(base: rsc.Base, interfaces: Interfaces) -> Iterator[Finding]:
+    """The definitions of all ROS types that interfaces name are at hand."""
+    reported: set[tuple[object, str]] = set()
+    for data in carried(base):
+        for each in _unknown(data, interfaces):
+            wanted: ex.Located | None = each.property if isinstance(each, Fault) else data.interface
+            other = data.declared if isinstance(each, Fault) else data.communication
+            element = wanted if wanted is not None and _root(wanted) is base else other
+            if (element, each.message) not in reported:
+                reported.add((element, each.message))
+                yield Finding(element, each.message, each.hint)
+
+
+def _unknown(data: Carried, interfaces: Interfaces) -> list[Fault] | list[Unknown]:
+    found = faults(data, interfaces, {})
+    return [found] if isinstance(found, Unknown) else [each for each in found if each.unknown]
+
+
+def _faulty(base: rsc.Base, interfaces: Interfaces) -> Iterator[tuple[ex.Located, str, str, bool]]:
+    """Where the base's text must change, why, how, and whether the model uses what is faulty there."""
+    found: dict[tuple[ex.Located, str, str], bool] = {}
+    homes = {home: list(carried(home)) for home in [base, *reachable(base)]}
+    everything = UsedData(homes if any(homes.values()) else ())
+    for home, communicated in homes.items():
+        itself = everything if home is base else UsedData([home, *reachable(home)] if communicated else ())
+        for data in communicated:
+            uses, reported = everything.uses(data), {} if home is base else itself.uses(data)
+            answer = faults(data, interfaces, uses)
+            for fault in () if isinstance(answer, Unknown) else answer:
+                if fault.unknown or (home is not base and (fault.property is None or fault.property in reported)):
+                    continue  # the library's own matter
+                element = _place(base, data, fault, uses)
+                if element is not None:
+                    key = (element, fault.message, fault.hint)
+                    found[key] = found.get(key, False) or fault.is_used(uses)
+    yield from ((*key, used) for key, used in found.items())
+
+
+def _place(base: rsc.Base, data: Carried, fault: Fault, uses: Uses) -> ex.Located | None:
+    """The property, else what uses it, else the data that it is a part of: the first that is in the base's text."""
+    use = None if fault.property is None else uses.get(fault.property)
+    candidates: list[ex.Located | None] = [fault.property, use, data.declared]
+    return next((each for each in candidates if each is not None and _root(each) is base), None)
+
+
+def _root(element: Any) -> Any:
+    while element.eContainer() is not None:
+        element = element.eContainer()
+    return element

@@ -1,0 +1,123 @@
+"""The data that communication with an interface carries, and what of it the model uses."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, TypeAlias
+
+from robosc.checks.declarations import communications
+from robosc.interfaces.wire import Nested, Part
+from robosc.metamodel import robosc as rsc
+from robosc.metamodel.reflection import tree
+from robosc.needed import accesses
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from robosc.metamodel import expression as ex
+
+#: The properties that a text touches, each with the first place that does.
+Uses: TypeAlias = "dict[rsc.ObjectProperty, ex.Located]"
+_PARTS: dict[tuple[type[rsc.CommunicationType], str], Part] = {
+    (rsc.Message, "response"): Part.MESSAGE,
+    (rsc.Service, "response"): Part.RESPONSE,
+    (rsc.Action, "response"): Part.RESULT,
+    (rsc.Action, "feedback"): Part.FEEDBACK,
+}
+_SENT = {rsc.Message: Part.MESSAGE, rsc.Service: Part.REQUEST, rsc.Action: Part.GOAL}
+
+
+@dataclass(frozen=True)
+class Carried:
+    """The data of one part of a communication with an interface."""
+
+    communication: rsc.CommunicationType
+    interface: rsc.Interface
+    declared: rsc.DataType
+    part: Part
+
+    @property
+    def ros_type(self) -> Nested:
+        """The ROS type that the interface names."""
+        return Nested(self.interface.package, self.interface.type)
+
+
+def carried(base: rsc.Base) -> Iterator[Carried]:
+    """The data of all communications with an interface that the base itself defines, in the order of the text."""
+    for _, each in communications(base):
+        interface = each.interface
+        if interface is not None and interface.package and interface.type:
+            for declared, part in _parts(each):
+                if declared is not None:
+                    yield Carried(each, interface, declared, part)
+
+
+def _parts(communication: rsc.CommunicationType) -> list[tuple[rsc.DataType | None, Part]]:
+    match communication:
+        case rsc.Message():
+            return [(communication.type, Part.MESSAGE)]
+        case rsc.Service():
+            return [(communication.requestType, Part.REQUEST), (communication.responseType, Part.RESPONSE)]
+        case rsc.Action():
+            return [
+                (communication.requestType, Part.GOAL),
+                (communication.responseType, Part.RESULT),
+                (communication.feedbackType, Part.FEEDBACK),
+            ]
+    return []
+
+
+class UsedData:
+    """What expressions and provided data of some texts touch of the data that is carried."""
+
+    def __init__(self, bases: Iterable[rsc.Base]) -> None:
+        self._touched: dict[object, list[rsc.PropertySegment | rsc.ObjectPropertyValue]] = {}
+        for base in bases:
+            for _, element in tree(base):
+                if isinstance(element, rsc.ResultTransition):
+                    self._received(element)
+                elif isinstance(element, rsc.ProvideStatement):
+                    self._provided(element)
+                elif isinstance(element, rsc.EnumTransformationRule):
+                    self._read(element.eContainer(), element.condition)
+
+    def uses(self, data: Carried) -> Uses:
+        """The properties that are touched of some data; enums touch what their rules read."""
+        uses: Uses = {}
+        sources: dict[object, None] = dict.fromkeys([(data.communication, data.part), *_enums(data.declared)])
+        pending = list(sources)
+        while pending:
+            for each in self._touched.get(pending.pop(0), ()):
+                if each.property is not None and each.property not in uses:
+                    uses[each.property] = each
+                    new = [enum for enum in _enums(each.property.type) if enum not in sources]
+                    sources |= dict.fromkeys(new)
+                    pending += new
+        return uses
+
+    def _received(self, transition: rsc.ResultTransition) -> None:
+        communication = transition.communicationType.communicationType if transition.communicationType else None
+        part = _PARTS.get((type(communication), str(transition.resultType)))  # type: ignore[arg-type]
+        if part is not None:
+            for assignment in transition.assignments:
+                self._read((communication, part), assignment.value)
+
+    def _provided(self, statement: rsc.ProvideStatement) -> None:
+        communication = statement.communicationType.communicationType if statement.communicationType else None
+        if communication is not None:
+            touched = self._touched.setdefault((communication, _SENT[type(communication)]), [])
+            touched += [each for _, each in tree(statement) if isinstance(each, rsc.ObjectPropertyValue)]
+
+    def _read(self, source: object, expression: ex.Expression | None) -> None:
+        touched = self._touched.setdefault(source, [])
+        for access in accesses(expression):
+            if access.value:
+                touched += [each for each in access.segments if isinstance(each, rsc.PropertySegment)]
+
+
+def _enums(declared: rsc.DataType | None) -> list[rsc.EnumDataType]:
+    """The enum that a type names, within arrays too; none where it names something else."""
+    while isinstance(declared, rsc.Array):
+        declared = declared.type
+    named = declared.type if isinstance(declared, rsc.ComplexDataTypeReference) else None
+    return [named] if isinstance(named, rsc.EnumDataType) else []

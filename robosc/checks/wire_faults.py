@@ -1,0 +1,212 @@
+"""What of a data type does not fit the ROS type that carries its data."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from difflib import get_close_matches
+from typing import TYPE_CHECKING
+
+from robosc.interfaces.wire import FOLDERS, Basic, DefinitionError, Fields, Nested, Part, Sequence, WireType
+from robosc.metamodel import robosc as rsc
+from robosc.naming import written
+from robosc.typing import declared_type
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from robosc.checks.wire_data import Carried, Uses
+    from robosc.interfaces import Edition, Interfaces
+
+_INTEGERS = frozenset({f"{sign}int{width}" for sign in ("", "u") for width in (8, 16, 32, 64)} | {"byte", "char"})
+#: The wire types that hold values of a type, and the type to write for them.
+_FITTING: dict[type[rsc.DataType], tuple[frozenset[str], str]] = {
+    rsc.BooleanDataType: (frozenset({"bool"}), "boolean"),
+    rsc.IntegerDataType: (_INTEGERS, "integer"),
+    rsc.DoubleDataType: (frozenset({"float32", "float64"}), "double"),
+    rsc.StringDataType: (frozenset({"string"}), "string"),
+}
+
+_REPAIR = "repair it: until then nothing is checked against it"
+_MAKE_KNOWN = (
+    "give the folder of its package with --interface-path, or list it in ROBOSC_INTERFACE_PATH; until then nothing is"
+    " checked against it"
+)
+
+
+@dataclass(frozen=True)
+class Fault:
+    """A property that does not fit, or, without one, the data as a whole; `unknown`: nobody can say whether it fits."""
+
+    property: rsc.ObjectProperty | None
+    message: str
+    hint: str
+    unknown: bool = False
+
+    def is_used(self, uses: Uses) -> bool:
+        """Whether it is among the uses of the data; the whole always is."""
+        return self.property is None or self.property in uses
+
+
+@dataclass(frozen=True)
+class Unknown:
+    """Why nothing is known of the ROS type itself."""
+
+    message: str
+    hint: str
+
+
+def faults(data: Carried, interfaces: Interfaces, uses: Uses) -> list[Fault] | Unknown:
+    """What of some data does not fit its ROS type, in the one of the two ROS in which what is used fits best."""
+    ros_type, part = data.ros_type, data.part
+    answers = []
+    for edition in interfaces.editions:
+        try:
+            fields = edition.fields(ros_type.package, ros_type.name, part)
+        except DefinitionError as fault:
+            return Unknown(f"the definition of {ros_type} can't be read: {fault}", _REPAIR)
+        if fields is not None:
+            answers.append(list(_Comparison(edition).whole(data.declared, fields, _name(ros_type, part))))
+    if not answers:
+        return _unknown(ros_type, part, interfaces)
+    return min(answers, key=lambda each: (sum(fault.is_used(uses) for fault in each), len(each)))
+
+
+class _Comparison:
+    def __init__(self, edition: Edition) -> None:
+        self._edition = edition
+        self._around: list[tuple[object, Nested]] = []
+
+    def whole(self, declared: rsc.DataType, fields: Fields, name: str) -> Iterator[Fault]:
+        """Data that goes as a whole with a part; its fields are those of an object, or one holds the value."""
+        carried = wire_type(declared)
+        if isinstance(carried, rsc.ComplexDataTypeReference):
+            if isinstance(carried.type, rsc.ObjectDataType):
+                yield from self._object(carried.type, fields, name)
+        elif carried is not None and type(carried) in _FITTING:
+            field = next(iter(fields)) if len(fields) == 1 else "data"
+            if field not in fields:
+                yield Fault(None, f"{name} has no field for a lone {_text(carried)}: {_listed(fields)}", _lone(fields))
+            elif not _holds(fields[field], carried):
+                message = f"the data is {_text(carried)} here, and {fields[field]} in `{field}` of {name}"
+                yield Fault(None, message, _repair(fields[field], None))
+
+    def _object(self, definition: rsc.ObjectDataType, fields: Fields, name: str) -> Iterator[Fault]:
+        for each in definition.properties:
+            if each.name in fields:
+                yield from self._property(each, fields[each.name], name)
+            else:
+                close = get_close_matches(each.name, fields, n=1)
+                hint = f"did you mean `{close[0]}`?" if close else "write a field that it has, or leave this one out"
+                yield Fault(each, f"`{each.name}` is no field of {name}: {_listed(fields)}", hint)
+
+    def _property(self, owner: rsc.ObjectProperty, wire: WireType, name: str) -> Iterator[Fault]:
+        declared, element = wire_type(owner.type), wire
+        while isinstance(declared, rsc.Array) and isinstance(element, Sequence):
+            declared, element = wire_type(declared.type), element.element
+        definition = declared.type if isinstance(declared, rsc.ComplexDataTypeReference) else None
+        if isinstance(definition, rsc.ObjectDataType) and isinstance(element, Nested):
+            yield from self._nested(owner, definition, element)
+        elif declared is not None and not _is_open(declared) and not _holds(element, declared):
+            message = f"`{owner.name}` is {_text(owner.type)} here, and {wire} in {name}"
+            yield Fault(owner, message, _repair(wire, owner.name))
+
+    def _nested(self, owner: rsc.ObjectProperty, definition: rsc.ObjectDataType, wire: Nested) -> Iterator[Fault]:
+        if (definition, wire) in self._around:
+            return  # A type that contains itself; ROS has none, and for models `data-type` says so.
+        try:
+            fields = self._edition.fields(wire.package, wire.name, Part.MESSAGE)
+        except DefinitionError as fault:
+            message = f"the definition of {wire}, the type of `{owner.name}`, can't be read: {fault}"
+            yield Fault(owner, message, _REPAIR, unknown=True)
+            return
+        if fields is None:
+            yield Fault(owner, f"{wire}, the type of `{owner.name}` in ROS, is unknown", _MAKE_KNOWN, unknown=True)
+            return
+        self._around.append((definition, wire))
+        yield from self._object(definition, fields, str(wire))
+        self._around.pop()
+
+
+def _name(ros_type: Nested, part: Part) -> str:
+    return str(ros_type) if part is Part.MESSAGE else f"the {part.name.lower()} of {ros_type}"
+
+
+def wire_type(declared: rsc.DataType | None) -> rsc.DataType | None:
+    """An enum has the wire type of its base; the type itself for any other."""
+    seen: list[rsc.DataType] = []
+    while (
+        isinstance(declared, rsc.ComplexDataTypeReference)
+        and isinstance(declared.type, rsc.EnumDataType)
+        and declared not in seen
+    ):
+        seen.append(declared)
+        declared = declared.type.type
+    return declared
+
+
+def _is_open(declared: rsc.DataType) -> bool:
+    """Whether nothing can be said: a name without definition, or no data at all."""
+    return isinstance(declared, rsc.NoneDataType) or (
+        isinstance(declared, rsc.ComplexDataTypeReference) and not isinstance(declared.type, rsc.ObjectDataType)
+    )
+
+
+def _holds(wire: WireType, declared: rsc.DataType) -> bool:
+    return isinstance(wire, Basic) and type(declared) in _FITTING and wire.name in _FITTING[type(declared)][0]
+
+
+def _text(declared: rsc.DataType) -> str:
+    return str(declared_type(declared))
+
+
+def _listed(fields: Fields) -> str:
+    return f"it has {', '.join(f'`{each}`' for each in fields)}" if fields else "it has none"
+
+
+def _lone(fields: Fields) -> str:
+    return "declare an object with the fields that you use" if fields else "write `none`"
+
+
+def _repair(wire: WireType, name: str | None) -> str:
+    fitting = _type_for(wire)
+    if fitting is None:
+        return f"leave it out: no data type fits {wire}" if name else f"write `none`: no data type fits {wire}"
+    if isinstance(wire, Nested):
+        return f"declare an object with fields of {wire}, and write its name"
+    if "…" in fitting:
+        return f"declare an object with fields of {_core(wire)}, and write `{fitting}` with its name for `…`"
+    return f"write `{written(name)}: {fitting}`" if name else f"write `{fitting}`"
+
+
+def _type_for(wire: WireType) -> str | None:
+    if isinstance(wire, Sequence):
+        element = _type_for(wire.element)
+        return None if element is None else f"array({element})"
+    if isinstance(wire, Nested):
+        return "…"
+    return next((each for names, each in _FITTING.values() if wire.name in names), None)
+
+
+def _core(wire: WireType) -> WireType:
+    return _core(wire.element) if isinstance(wire, Sequence) else wire
+
+
+def _unknown(ros_type: Nested, part: Part, interfaces: Interfaces) -> Unknown:
+    package, kind = ros_type.package, part.kind
+    for other in Part:
+        if other.kind != kind and any(_has(each, ros_type, other) for each in interfaces.editions):
+            message = f"{ros_type} is of kind {other.kind}, expected a type of kind {kind}"
+            return Unknown(message, f"link a type of kind {kind}")
+    if not any(each.names(package, other) for each in interfaces.editions for other in FOLDERS):
+        return Unknown(f"the package `{package}` is unknown", _MAKE_KNOWN)
+    names = sorted({name for each in interfaces.editions for name in each.names(package, kind)})
+    close = get_close_matches(ros_type.name, names, n=1)
+    hint = f"did you mean `{close[0]}`?" if close else _MAKE_KNOWN
+    return Unknown(f"no {kind} type `{ros_type.name}` of the package `{package}` is known", hint)
+
+
+def _has(edition: Edition, ros_type: Nested, part: Part) -> bool:
+    try:
+        return edition.fields(ros_type.package, ros_type.name, part) is not None
+    except DefinitionError:
+        return True

@@ -1,0 +1,74 @@
+"""What the definition of a ROS type says: its parts, their fields, and the types of these."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import Enum
+from typing import TypeAlias
+
+
+class DefinitionError(ValueError):
+    """The text of a definition can't be read; says what is wrong with which file."""
+
+
+class Part(Enum):
+    """What one ROS message of a type carries: the kind of the type, and which of the definition's sections it is."""
+
+    MESSAGE = "message", 0
+    REQUEST = "service", 0
+    RESPONSE = "service", 1
+    GOAL = "action", 0
+    RESULT = "action", 1
+    FEEDBACK = "action", 2
+
+    @property
+    def kind(self) -> str:
+        """`message`, `service` or `action`."""
+        return self.value[0]
+
+    @property
+    def section(self) -> int:
+        """Its place among the sections of the definition, from 0."""
+        return self.value[1]
+
+
+#: The folder in a package that holds the definitions of a kind; the same word ends the names of its files.
+FOLDERS = {"message": "msg", "service": "srv", "action": "action"}
+
+
+@dataclass(frozen=True)
+class Basic:
+    """A type without fields: `bool`, `float64`, `string`."""
+
+    name: str
+
+    def __str__(self) -> str:
+        return self.name
+
+
+@dataclass(frozen=True)
+class Sequence:
+    """Several values of one type; `length` is None where it varies."""
+
+    element: WireType
+    length: int | None = None
+
+    def __str__(self) -> str:
+        return f"{self.element}[{'' if self.length is None else self.length}]"
+
+
+@dataclass(frozen=True)
+class Nested:
+    """A message type of a package."""
+
+    package: str
+    name: str
+
+    def __str__(self) -> str:
+        return f"{self.package}/{self.name}"
+
+
+WireType: TypeAlias = Basic | Sequence | Nested
+#: The fields of one part, in the order of its definition.
+Fields: TypeAlias = Mapping[str, WireType]
