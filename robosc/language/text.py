@@ -31,6 +31,7 @@ class Text:
         return Span(*self._place(start), *self._place(end))
 
     def _place(self, offset: int) -> tuple[int, int]:
+        offset = min(offset, len(self.content))  # Braces that are missing are added behind the end.
         line = bisect_right(self._line_starts, offset)
         return line, offset - self._line_starts[line - 1] + 1
 

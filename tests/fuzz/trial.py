@@ -1,0 +1,112 @@
+"""One text through the whole pipeline: what must hold whatever stands in it, and how it ends."""
+
+from __future__ import annotations
+
+import signal
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, NoReturn
+
+import robosc
+from robosc.checks import check
+from robosc.diagnostics import START, Diagnostic, ModelError, as_json, as_sarif, as_text, has_errors
+from robosc.language import read
+from robosc.metamodel import robosc as rsc
+from robosc.metamodel.validity import faults
+from robosc.models import Models
+from robosc.supervision import EmptySupervisorError, supervise
+from robosc.targets import TARGETS
+from tests.fuzz.mutants import LIBRARIES
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+    from pathlib import Path
+
+
+class HangError(Exception):
+    """A model took too long."""
+
+
+@contextmanager
+def time_limit(seconds: float) -> Iterator[None]:
+    """Raises HangError after so many seconds of the process' own time, which a busy machine does not use up."""
+
+    def ended(*_: Any) -> NoReturn:
+        raise HangError(f"more than {seconds} s")
+
+    before = signal.signal(signal.SIGPROF, ended)
+    signal.setitimer(signal.ITIMER_PROF, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0)
+        signal.signal(signal.SIGPROF, before)
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """How a trial ended: the exit statuses that `check` and `transform` owe, and the models where there are some."""
+
+    check_status: int
+    status: int
+    findings: Sequence[Diagnostic]
+    models: Models | None = None
+
+
+def tried(path: Path, targets: Sequence[str]) -> Outcome:
+    """Reads, checks, transforms, synthesizes and generates; every error is to be a located finding.
+
+    Raises AssertionError for a finding outside its text and for a model that breaks its metamodel.
+    """
+    reading = read(path, [LIBRARIES])
+    found = [*reading.findings, *check(reading.base, reading.findings)]
+    _located(found, reading.texts)
+    if has_errors(found) or not isinstance(reading.base, rsc.Robot):
+        status = int(has_errors(found))
+        return Outcome(status, status or 2, found)
+    try:
+        return _generated(reading.base, found, reading.texts, targets)
+    except ModelError as error:
+        assert has_errors(error.diagnostics)
+        _located(error.diagnostics, reading.texts)
+        return Outcome(0, 3 if isinstance(error, EmptySupervisorError) else 1, [*found, *error.diagnostics])
+
+
+def _generated(robot: rsc.Robot, found: list[Diagnostic], texts: dict[str, str], targets: Sequence[str]) -> Outcome:
+    models = Models(robosc.to_sct(robot), robosc.to_rosgraph(robot), robot)
+    for model in (models.sct, models.rosgraph):
+        assert [fault for _, fault in faults(model)] == []
+    supervision = supervise(models.sct)
+    _located(supervision.findings, texts)
+    if has_errors(supervision.findings):
+        raise ModelError(supervision.findings)
+    configuration = robosc.Configuration()
+    refused = [each for target in targets for each in TARGETS[target].findings(models, configuration)]
+    _located(refused, texts)
+    if has_errors(refused):
+        raise ModelError(refused)
+    for target in targets:
+        for name, text in robosc.generate(target, models).items():
+            assert text.endswith("\n"), f"{target}: {name}"
+    return Outcome(0, 0, [*found, *supervision.findings, *refused], models)
+
+
+def _located(findings: Sequence[Diagnostic], texts: dict[str, str]) -> None:
+    """Findings stand in their texts, say something, and can be shown in each form."""
+    by_name = {each.rpartition("/")[2]: text for each, text in texts.items()}
+    for each in findings:
+        text = texts[each.file] if each.file in texts else by_name[each.file]
+        assert each.message, each
+        assert each.span == START or _inside(each, text.split("\n")), each
+    if findings:
+        assert as_text.render(findings, texts)
+        assert as_json.render(findings)
+        assert as_sarif.render(findings, robosc.__version__)
+
+
+def _inside(finding: Diagnostic, lines: list[str]) -> bool:
+    span = finding.span
+    ends = ((span.line, span.column), (span.end_line, span.end_column))
+    return ends[0] <= ends[1] and all(
+        1 <= line <= len(lines) and 1 <= column <= len(lines[line - 1]) + 1 for line, column in ends
+    )
