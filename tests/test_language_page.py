@@ -1,0 +1,39 @@
+"""The snippets of docs/language.md, put together, are a model that draws nothing and has a supervisor."""
+
+import re
+from pathlib import Path
+
+import robosc
+from robosc.resources import locate
+
+PAGE = Path(__file__).parent.parent / "docs" / "language.md"
+
+
+def snippet(heading: str) -> str:
+    section = PAGE.read_text(encoding="utf-8").partition(f"\n## {heading}\n")[2].partition("\n## ")[0]
+    return re.findall(r"^```\n(.*?)^```$", section, flags=re.MULTILINE | re.DOTALL)[-1]
+
+
+def test_the_snippets_make_a_model(tmp_path: Path) -> None:
+    components = snippet("Components and their communication").rstrip()
+    assert components.endswith("}")
+    parts = [
+        snippet("Robot and library"),
+        components[:-1] + snippet("Behaviour") + "}",
+        *(snippet(each) for each in ("Data types", "Requirements", "Provided data")),
+    ]
+    path = tmp_path / "porter.rscd"
+    path.write_text("robot Porter {\n" + "\n".join(parts) + "}\n")
+    robot = robosc.load(path)
+    # nav2_msgs and its like are not known here, and the page's data is not really theirs.
+    assert [each for each in robosc.check(robot) if not each.rule.startswith("interface-")] == []
+    assert robosc.synthesize(robosc.to_sct(robot)).controlledStates > 1
+
+
+def test_the_standard_library_is_what_the_page_says() -> None:
+    page = PAGE.read_text(encoding="utf-8")
+    for file in locate("robosc/stdlib").glob("*.rscd") if locate("metamodel").is_dir() else ():
+        text = file.read_text(encoding="utf-8")
+        for kind in ("library", "component", "message"):
+            for name in re.findall(rf"\b{kind} (\w+)", text):
+                assert f"`{name}`" in page
