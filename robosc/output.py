@@ -80,6 +80,8 @@ def _replace(changed: Mapping[Path, Mapping[Path, bytes]]) -> None:
                 staged.append((stage / f"{number}.new", stage / f"{number}.old", path))
         for new, old, path in staged:
             _make(path.parent, moved)
+            if path.is_file():
+                shutil.copymode(path, new)
             if path.exists() or path.is_symlink():
                 path.replace(old)
                 moved.callback(old.replace, path)

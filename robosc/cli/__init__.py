@@ -24,6 +24,7 @@ _COMMANDS = {
     "check": "Say what is wrong with models.",
     "transform": "Generate code and models.",
     "synthesize": "Show the supervisor.",
+    "format": "Lay out models in the one canonical way.",
     "rule": "Say what a rule means.",
     "diagram": "Draw a metamodel.",
 }

@@ -1,0 +1,99 @@
+"""`robosc format`."""
+
+from __future__ import annotations
+
+import os
+from difflib import unified_diff
+from pathlib import Path
+from typing import TYPE_CHECKING, NoReturn
+
+import click
+
+from robosc.cli import ERRORS_FOUND, CallError
+from robosc.cli.report import Report
+from robosc.language.formatting import format_text
+from robosc.language.text import decode
+from robosc.output import OutputError, write
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+#: What findings call the standard input.
+_STDIN = "<stdin>"
+
+
+@click.command("format")
+@click.argument("models", type=click.Path(exists=True, allow_dash=True), nargs=-1, required=True, metavar="MODEL...")
+@click.option("--check", is_flag=True, help="Write nothing; list the files that would change.")
+@click.option("--diff", is_flag=True, help="Write nothing; show what would change.")
+def command(models: Sequence[str], check: bool, diff: bool) -> None:
+    """Lay out robots and libraries in the one canonical way; what they mean and their comments stay.
+
+    MODEL is a .rscd file, a folder, for all .rscd files in it and below, or `-`: then the standard input is written to
+    the standard output. A file with syntax errors is left alone. Names need not resolve.
+
+    \b
+    Examples:
+      robosc format line_follower.rscd
+      robosc format --check --diff robots libraries
+      robosc format - < line_follower.rscd
+
+    Exit status: 0 done, 1 syntax errors or, with --check, files that would change, 2 a wrong call.
+    """
+    changing = False
+    with Report(aside=True) as report:
+        for file in dict.fromkeys(file for model in models for file in _files(model)):
+            before = click.open_file("-", "rb").read() if file == _STDIN else Path(file).read_bytes()
+            text, findings = decode(file, before)
+            after = None
+            if not findings:
+                after, findings = format_text(text)
+            report.add(findings, {file: text.content})
+            if after is not None:
+                changing = changing or after.encode() != before
+                _show(file, before, after, diff=diff) if check or diff else _write(file, after)
+    if check and changing:
+        raise click.exceptions.Exit(ERRORS_FOUND)
+
+
+def _files(model: str) -> Iterator[str]:
+    """The files of one argument, those of a folder in the order of their paths, hidden folders left out."""
+    if model == "-":
+        yield _STDIN
+    elif model.endswith(".xmi"):
+        raise CallError(f"{model} is no .rscd file: only a text has a layout")
+    elif not Path(model).is_dir():
+        yield model
+    else:
+        for folder, inner, names in os.walk(model, onerror=_refuse):
+            inner[:] = sorted(each for each in inner if not each.startswith("."))
+            yield from (str(Path(folder, each)) for each in sorted(names) if each.endswith(".rscd"))
+
+
+def _refuse(error: OSError) -> NoReturn:
+    raise error
+
+
+def _show(file: str, before: bytes, after: str, *, diff: bool) -> None:
+    if diff:
+        old, new = (_lines(each) for each in (before.decode(), after))
+        click.echo("".join(unified_diff(old, new, file, file)), nl=False)
+    elif after.encode() != before:
+        click.echo(file)
+
+
+def _lines(text: str) -> list[str]:
+    lines = text.split("\n")
+    last = [f"{lines[-1]}\n\\ No newline at end of file\n"] if lines[-1] else []
+    return [f"{each}\n" for each in lines[:-1]] + last
+
+
+def _write(file: str, text: str) -> None:
+    if file == _STDIN:
+        click.open_file("-", "wb").write(text.encode())
+        return
+    path = Path(file).resolve()
+    try:
+        write({path.parent: {path.name: text}})
+    except OutputError as error:
+        raise CallError(str(error)) from error

@@ -1,0 +1,190 @@
+"""Documents: words with gaps between them that may become line breaks, and how they are laid out in lines.
+
+What fits into a line stays in it; of what does not, the outer groups break before the inner ones (Wadler, "A prettier
+printer", 2003; Lindig, "Strictly pretty", 2000).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from functools import cached_property
+
+#: Columns of a line of words, and of one step of indentation.
+WIDTH = 100
+INDENTATION = 2
+
+#: What stands in a line right beside what follows, or right behind what is before, whatever gap is between.
+_OPENING, _CLOSING = ("(", "["), (")", "]", ",")
+
+
+class Gap(Enum):
+    """What is between two words."""
+
+    NONE = "nothing"
+    SPACE = "a space"
+    SOFT = "nothing, or a line break where the group around it breaks"
+    BREAK = "a space, or a line break where the group around it breaks"
+    LINE = "a line break"
+    BLANK = "a line break and an empty line"
+
+
+_ALWAYS = {Gap.LINE, Gap.BLANK}
+_MAYBE = {Gap.SOFT, Gap.BREAK}
+
+
+@dataclass(frozen=True)
+class Comment:
+    """A comment, and the column in which it began in the source."""
+
+    text: str
+    column: int
+
+
+@dataclass(frozen=True)
+class Indent:
+    """A document whose line breaks lead to lines that are one step further in."""
+
+    content: Document
+
+
+@dataclass(frozen=True)
+class Group:
+    """A document whose gaps all break, or none does."""
+
+    content: Document
+
+    @cached_property
+    def breaks(self) -> bool:
+        """Whether there is a line break in it that nothing can avoid."""
+        return _breaks(self.content)
+
+
+Document = str | Gap | Comment | Indent | Group | tuple["Document", ...]
+
+
+def _breaks(document: Document) -> bool:
+    match document:
+        case Gap():
+            return document in _ALWAYS
+        case Comment():
+            return "\n" in document.text
+        case Indent():
+            return _breaks(document.content)
+        case Group():
+            return document.breaks
+        case tuple():
+            return any(map(_breaks, document))
+    return False
+
+
+def render(document: Document) -> str:
+    """The lines of a document, each ended by a line feed."""
+    lines = _Lines()
+    todo: list[tuple[int, bool, Document]] = [(0, False, document)]
+    while todo:
+        indentation, flat, top = todo.pop()
+        match top:
+            case Gap.LINE | Gap.BLANK:
+                lines.end(indentation, blank=top is Gap.BLANK)
+            case Gap.SOFT | Gap.BREAK if not flat:
+                lines.end(indentation)
+            case Gap.SPACE | Gap.BREAK:
+                lines.space()
+            case str():
+                lines.add(top)
+            case Comment():
+                lines.add_comment(top)
+            case Indent():
+                todo.append((indentation + INDENTATION, flat, top.content))
+            case Group():
+                flat = flat or (not top.breaks and _fits(WIDTH - lines.column, top.content, todo))
+                todo.append((indentation, flat, top.content))
+            case tuple():
+                todo += [(indentation, flat, each) for each in reversed(top)]
+    return lines.text()
+
+
+def _fits(room: int, document: Document, following: list[tuple[int, bool, Document]]) -> bool:
+    """Whether a document fits into the room of a line, with what follows up to the next place for a line break."""
+    todo: list[tuple[bool, Document]] = [(True, document)]
+    rest = ((flat, each) for _, flat, each in reversed(following))
+    while room >= 0:
+        flat, top = todo.pop() if todo else next(rest, (False, Gap.LINE))
+        match top:
+            case Indent() | Group():
+                todo.append((flat, top.content))
+            case tuple():
+                todo += [(flat, each) for each in reversed(top)]
+            case Gap() if top in _ALWAYS or (top in _MAYBE and not flat):
+                return True
+            case _:
+                room -= _width(top)
+                if isinstance(top, Comment) and ("\n" in top.text or top.text.startswith("//")):
+                    return room >= 0
+    return False
+
+
+def _width(part: str | Gap | Comment) -> int:
+    """The columns that a part takes. However long a comment up to the end of its line is, no line break would help."""
+    match part:
+        case Gap():
+            return int(part in {Gap.SPACE, Gap.BREAK})
+        case Comment():
+            return 0 if part.text.startswith("//") else len(part.text.partition("\n")[0])
+    return len(part)
+
+
+class _Lines:
+    """The lines so far. A gap waits for the word behind it; of several, line breaks outdo spaces, the last counts."""
+
+    def __init__(self) -> None:
+        self._parts: list[str] = []
+        self._column = 0
+        self._indentation: int | None = None
+        self._blank = False
+        self._space = False
+
+    @property
+    def column(self) -> int:
+        """Where the next word will begin, counted from 0."""
+        return self._column + self._space if self._indentation is None else self._indentation
+
+    def end(self, indentation: int, *, blank: bool = False) -> None:
+        self._indentation = indentation
+        self._blank = self._blank or blank
+
+    def space(self) -> None:
+        self._space = True
+
+    def add(self, word: str) -> None:
+        if not self._parts:
+            pass
+        elif self._indentation is not None:
+            self._parts.append("\n\n" if self._blank else "\n")
+            self._parts.append(" " * self._indentation)
+            self._column = self._indentation
+        elif self._space and word not in _CLOSING and self._parts[-1] not in _OPENING:
+            self._parts.append(" ")
+            self._column += 1
+        self._parts.append(word)
+        self._column += len(word)
+        self._indentation, self._blank, self._space = None, False, False
+
+    def add_comment(self, comment: Comment) -> None:
+        """Adds a comment. Its further lines move in or out together with its first one."""
+        self.space()
+        first, *others = comment.text.split("\n")
+        self.add(first.rstrip())
+        moved = self._column - len(first.rstrip()) - comment.column
+        for line in others:
+            content = line.strip()
+            before = len(line.expandtabs(INDENTATION)) - len(line.expandtabs(INDENTATION).lstrip())
+            shown = " " * (before + moved) + content if content else ""
+            self._parts.append("\n" + shown)
+            self._column = len(shown)
+        self.space()
+
+    def text(self) -> str:
+        """All lines."""
+        return "".join(self._parts) + "\n"

@@ -1,0 +1,231 @@
+"""The layout of a parse tree: where a line breaks, and where it may."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+from robosc.expressions import PRECEDENCE
+from robosc.language.building import element_class
+from robosc.language.formatting.comments import Space, spaces
+from robosc.language.formatting.documents import Document, Gap, Group, Indent
+from robosc.language.grammar import attribute
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterator, Sequence
+
+    from robosc.language.grammar import Node
+
+#: What has items in lines of their own between its braces; what has them in one line where they fit.
+_BLOCKS = {"Robot", "Library", "Component", "ComponentBehaviour", "State", "ObjectDataType", "EnumDataType"}
+_LISTS = {"ObjectValue", "CommunicationTypeSet"}
+#: What belongs to the block around it.
+_INLINED = {"", "ComponentType", "LocalComponent", "ImportedComponent", "Automaton"}
+#: Rules without a space between their words.
+_TIGHT = {"Access", "CommunicationReference", "PropertySegment", "IndexSegment", "IntegerDataType", "Array"}
+_TIGHT |= {"Negation", "UnaryMinus"}
+#: The words that a line may break before, and those that it may break behind.
+_COMMUNICATION: tuple[set[str], set[str]] = (set(), {"with", ","})
+_CLAUSES: dict[str, tuple[set[str], set[str]]] = {
+    "Interface": ({"use", "from"}, set()),
+    "Component": ({"from", "import"}, set()),
+    "Message": _COMMUNICATION,
+    "Service": _COMMUNICATION,
+    "Action": _COMMUNICATION,
+    "ResultTransition": ({"do", "goto"}, set()),
+    "TauTransition": ({"if", "do", "goto"}, set()),
+    "EnumTransformationRule": ({"->"}, set()),
+    "NeedsRequirement": (set(), {"needs"}),
+    "DisablesRequirement": ({"disables"}, set()),
+    "ProvideStatement": ({"if"}, set()),
+}
+#: Rules whose clauses each find room for themselves: what they begin with may be a list that breaks.
+_LOOSE = {"NeedsRequirement", "ProvideStatement"}
+
+
+def layout(text: str, tree: Node) -> Document:
+    """The document of a text and its parse tree by the rule `Base`."""
+    return _Layout(spaces(text, _words(tree))).file(tree, len(text))
+
+
+class _Layout:
+    """Documents of nodes. A node comes without the space before it, which belongs to what is around it."""
+
+    def __init__(self, spaces: dict[int, Space]) -> None:
+        self._spaces = spaces
+
+    def file(self, tree: Node, end: int) -> Document:
+        """The document of a whole file."""
+        return self._line(tree.position, first=True), self._document(tree), self._line(end)
+
+    def _document(self, node: Node) -> Document:
+        if _is_leaf(node):
+            # The one word with blanks inside is a number with a sign.
+            return "".join(node.value.split()) if node.rule_name == "SignedInteger" else str(node.value)
+        rule, parts = node.rule_name, list(_parts(node))
+        if rule in _BLOCKS:
+            return self._block(parts)
+        if rule in _LISTS and len(parts) > 1:
+            return self._list(parts)
+        if rule in _CLAUSES:
+            return self._clauses(parts, rule)
+        if rule == "Expression":
+            return self._chain(parts[0], [(each[0], *_parts(each[0])) for each in parts[1:]])
+        if rule == "Operand" and len(parts) > 1:
+            return self._brackets(*parts)
+        return self._row(parts, Gap.NONE if rule in _TIGHT else Gap.SPACE)
+
+    # In a row
+
+    def _row(
+        self, parts: Sequence[Node], gap: Gap = Gap.SPACE, before: Collection[str] = (), after: Collection[str] = ()
+    ) -> Document:
+        """Parts in a line, which may break before and after certain words; where it does, it goes on further in."""
+        row = [self._document(parts[0])]
+        for left, right in pairwise(parts):
+            breaks = _is_word(left, after) or _is_word(right, before)
+            between = Gap.NONE if _is_word(right, {",", ":"}) else Gap.BREAK if breaks else gap
+            row.append(Indent(self._gap(right, between)))
+            # What has brackets closes them where it began.
+            document = self._document(right)
+            row.append(document if gap is Gap.NONE or right.rule_name in _LISTS else Indent(document))
+        return tuple(row)
+
+    def _clauses(self, parts: Sequence[Node], rule: str) -> Document:
+        """A row of rows."""
+        starts, ends = _CLAUSES[rule]
+        clauses = [[parts[0]]]
+        for left, right in pairwise(parts):
+            if _is_word(right, starts) or _is_word(left, ends):
+                clauses.append([])
+            clauses[-1].append(right)
+        first = self._row(clauses[0])
+        found: list[Document] = [Indent(first) if parts[0].rule_name == "Expression" else first]
+        for clause in clauses[1:]:
+            content = Group(self._row(clause, before={"links"}, after={"do", ","}))
+            found.append(Indent((self._gap(clause[0], Gap.BREAK), content)))
+        return tuple(map(Group, found)) if rule in _LOOSE else Group(tuple(found))
+
+    def _chain(self, first: Node, others: Sequence[tuple[Node, Node, Node]]) -> Document:
+        """Operands, each but the first with its binary expression and operator: the loosest operators break first."""
+        loosest = min((_precedence(each) for each, _, _ in others), default=0)
+        links: list[tuple[Node | None, Node, list[tuple[Node, Node, Node]]]] = [(None, first, [])]
+        for each, operator, operand in others:
+            if _precedence(each) == loosest:
+                links.append((operator, operand, []))
+            else:
+                links[-1][2].append((each, operator, operand))
+        if len(links) == 1:
+            return self._document(first)
+        chain: list[Document] = []
+        for operator, operand, tighter in links:
+            if operator is not None:
+                chain += self._gap(operator, Gap.BREAK), self._document(operator), self._gap(operand, Gap.SPACE)
+            inner = self._chain(operand, tighter)
+            chain.append(Indent(inner) if tighter else inner)
+        return Group(tuple(chain))
+
+    # Between brackets
+
+    def _brackets(self, opening: Node, content: Node, closing: Node) -> Document:
+        inside = Indent((self._gap(content, Gap.SOFT), self._document(content)))
+        return Group((self._document(opening), inside, self._closing(closing, Gap.SOFT)))
+
+    def _list(self, parts: Sequence[Node]) -> Document:
+        """Items between braces, in one line or in one each."""
+        opening, *items, closing = parts
+        if not items:
+            return self._empty(opening, closing)
+        row: list[Document] = []
+        for each in parts[1:-1]:
+            row += self._gap(each, Gap.NONE if _is_word(each, {","}) else Gap.BREAK), self._document(each)
+        return Group((self._document(opening), Indent(tuple(row)), self._closing(closing, Gap.BREAK)))
+
+    def _block(self, parts: Sequence[Node]) -> Document:
+        """What stands before braces, and items between them, each in a line of its own."""
+        at = next((index for index, each in enumerate(parts) if _is_word(each, {"{"})), len(parts))
+        header = self._row(parts[:at])
+        if any(_is_word(each, {"import"}) for each in parts):
+            header = self._clauses(parts[:at], "Component")
+            return (header, self._gap(parts[at], Gap.SPACE), self._list(parts[at:])) if at < len(parts) else header
+        opening, *items, closing = parts[at:]
+        start = header, self._gap(opening, Gap.SPACE)
+        if not items:
+            return *start, self._empty(opening, closing)
+        lines = tuple((self._line(each.position, first=each is items[0]), self._document(each)) for each in items)
+        return *start, self._document(opening), Indent(lines), self._closing(closing, Gap.LINE)
+
+    def _empty(self, opening: Node, closing: Node) -> Document:
+        gap = Gap.LINE if self._spaces[closing.position].comments else Gap.NONE
+        return self._document(opening), self._closing(closing, gap, first=True)
+
+    # Gaps and the comments in them
+
+    def _gap(self, node: Node, gap: Gap) -> Document:
+        """The gap before a node inside of an item, with its comments. Those that had line breaks around keep them."""
+        space = self._spaces[node.position]
+        return self._comments(space, gap, _gaps(space))
+
+    def _line(self, offset: int, *, first: bool = False) -> Document:
+        """The line break before an item, with the comments that stand there. Empty lines stay, one of several."""
+        space = self._spaces[offset]
+        gaps = _gaps(space, Gap.BLANK)
+        start = gaps[space.trailing] = Gap.BLANK if gaps[space.trailing] is Gap.BLANK and not first else Gap.LINE
+        return self._comments(space, start, gaps)
+
+    def _comments(self, space: Space, gap: Gap, gaps: Sequence[Gap]) -> Document:
+        if not space.comments:
+            return gap
+        found: list[Document] = list(space.comments[: space.trailing])
+        found.append(gap)
+        for before, comment in zip(gaps[space.trailing :], space.comments[space.trailing :], strict=False):
+            found += before, comment
+        return *found, gaps[-1]
+
+    def _closing(self, node: Node, gap: Gap, *, first: bool = False) -> Document:
+        """A closing bracket and the gap before it. The comments there belong inside."""
+        space = self._spaces[node.position]
+        gaps = _gaps(space, Gap.BLANK if gap is Gap.LINE else Gap.LINE)
+        if first and gaps[space.trailing] is Gap.BLANK:
+            gaps[space.trailing] = Gap.LINE
+        comments = tuple(part for pair in zip(gaps, space.comments, strict=False) for part in pair)
+        end = Gap.LINE if space.comments and space.breaks[-1] else gap
+        return Indent(comments), end, self._document(node)
+
+
+def _gaps(space: Space, empty_line: Gap = Gap.LINE) -> list[Gap]:
+    """The gaps that comments keep."""
+    return [empty_line if each > 1 else Gap.LINE if each else Gap.SPACE for each in space.breaks]
+
+
+def _words(node: Node) -> Iterator[Node]:
+    """The words below a node, in the order of the text."""
+    if _is_leaf(node):
+        yield node
+    else:
+        for each in node:
+            yield from _words(each)
+
+
+def _parts(node: Node) -> Iterator[Node]:
+    """What a node consists of, without the levels that the layout takes no notice of."""
+    for each in node:
+        if not _is_leaf(each) and (each.rule_name in _INLINED or attribute(each) is not None):
+            yield from _parts(each)
+        else:
+            yield each
+
+
+def _is_leaf(node: Node) -> bool:
+    return not isinstance(node, list)
+
+
+def _is_word(node: Node, words: Collection[str]) -> bool:
+    """Whether a node is one of these words or symbols of the language, not a name of the same letters."""
+    return _is_leaf(node) and node.rule_name in {"", "sep"} and node.value in words
+
+
+def _precedence(node: Node) -> int:
+    operator = element_class(node.rule_name)
+    assert operator is not None
+    return PRECEDENCE[operator]
