@@ -65,7 +65,10 @@ def faults(data: Carried, interfaces: Interfaces, uses: Uses) -> list[Fault] | U
         except DefinitionError as fault:
             return Unknown(f"the definition of {ros_type} can't be read: {fault}", _REPAIR)
         if fields is not None:
-            answers.append(list(_Comparison(edition).whole(data.declared, fields, _name(ros_type, part))))
+            answer = list(_Comparison(edition).whole(data.declared, fields, _name(ros_type, part)))
+            if not answer:
+                return []
+            answers.append(answer)
     if not answers:
         return _unknown(ros_type, part, interfaces)
     return min(answers, key=lambda each: (sum(fault.is_used(uses) for fault in each), len(each)))

@@ -55,7 +55,7 @@ def _wire_type(description: tuple[Nodetype, Any]) -> WireType:
         case Nodetype.BASE:
             return Basic(details[0])
         case Nodetype.NAME:
-            package, _, name = details.split("/")
+            package, *_, name = details.split("/")
             # The parser takes it for a type of the package at hand.
             return Basic(name) if name == "wstring" else Nested(package, name)
         case Nodetype.ARRAY:

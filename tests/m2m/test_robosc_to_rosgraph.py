@@ -1,9 +1,11 @@
 """What a robot model means on the ROS side."""
 
 from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 
+from robosc.interfaces import Interfaces
 from robosc.m2m import robosc_to_rosgraph, robosc_to_sct
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
@@ -200,3 +202,52 @@ def test_services_and_actions_have_their_events(robot):
     assert [action.feedback.event.name, action.cancel.name] == ["u_feedback", "c_cancel"]
     (reaction,) = graph.reactions
     assert [each.name for each in reaction.assignments[0].value.steps] == ["success"]
+
+
+def test_linked_basic_data_goes_to_the_only_field(robot: Callable, tmp_path: Path) -> None:
+    for name, text in {
+        "msg/Level.msg": "int32 level\n",
+        "msg/Two.msg": "int32 level\nint32 data\n",
+        "srv/Lift.srv": "float64 height\n---\nbool done\n",
+        "action/Raise.action": "float64 goal\n---\nbool reached\n---\nfloat64 height\n",
+    }.items():
+        path = tmp_path / "hoist_msgs" / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+    model = robot("""
+        robot R {
+          interface level use Level from hoist_msgs
+          interface two use Two from hoist_msgs
+          interface lift use Lift from hoist_msgs
+          interface raise use Raise from hoist_msgs
+          component Hoist {
+            incoming message go with type: integer links level
+            incoming message both with type: integer links two
+            outgoing message seen with type: integer links level
+            service lift with request: double, response: boolean links lift
+            action raise with request: double, response: boolean, feedback: double links raise
+            behaviour {
+              variable height: double variable done: boolean variable level: integer
+              on response from seen do level := value
+              on response from lift do done := value
+              on response from raise do done := value
+              on feedback from raise do height := value
+              initial marked state idle { }
+            }
+          }
+          provide go with 1
+          provide both with 2
+          provide lift with 3.0
+          provide raise with 4.0
+        }
+    """)
+    _, trace = robosc_to_sct.transform(model)
+    graph = robosc_to_rosgraph.transform(trace, Interfaces([tmp_path]))
+    sent = [*(each for topic in graph.publishers for each in topic.sendings)]
+    sent += [each.request for each in (*graph.serviceClients, *graph.actionClients)]
+    assert [list(each.alternatives[0].fields[0].path) for each in sent] == [["level"], ["data"], ["height"], ["goal"]]
+    read = [[step.name for step in each.assignments[0].value.steps] for each in graph.reactions]
+    assert read == [["level"], ["done"], ["reached"], ["height"]]
+    # Without the definitions it is a guess.
+    unknown = robosc_to_rosgraph.transform(trace, Interfaces())
+    assert {step.name for each in unknown.reactions for step in each.assignments[0].value.steps} == {"data"}
