@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from robosc.cli import CallError
-from robosc.cli.options import FILE, library_path
+from robosc.cli.options import FILE, interface_path, library_path
 from robosc.cli.reading import read, read_models
 from robosc.cli.report import Report
 from robosc.diagrams import (
@@ -46,6 +46,7 @@ _KINDS = ("behaviour", "ros-graph", "plants")
 )
 @click.option("-o", "--output", type=click.Path(dir_okay=False), help="The file to write, instead of printing it.")
 @library_path
+@interface_path
 def command(
     model: str | None,
     kind: str | None,
@@ -53,6 +54,7 @@ def command(
     notation: str,
     output: str | None,
     library_paths: Sequence[str],
+    interface_paths: Sequence[str],
 ) -> None:
     """Draw a model, or a metamodel.
 
@@ -79,7 +81,7 @@ def command(
         text = metamodel_diagram(name, notation)
     else:
         with Report(aside=True) as report:
-            text = diagram(_graph(model, kind or "behaviour", library_paths, report), notation)
+            text = diagram(_graph(model, kind or "behaviour", library_paths, report, interface_paths), notation)
     if output is None:
         click.echo(text, nl=False)
         return
@@ -90,15 +92,15 @@ def command(
         raise CallError(str(error)) from error
 
 
-def _graph(path: str, kind: str, library_paths: Sequence[str], report: Report) -> Graph:
+def _graph(path: str, kind: str, library_paths: Sequence[str], report: Report, interface_paths: Sequence[str]) -> Graph:
     """What is drawn of the model in a file. Ends the report where there are errors."""
     if kind == "behaviour":
-        base = read(path, library_paths, report)
+        base = read(path, library_paths, report, interface_paths)
         report.stop_on_errors()
         if not isinstance(base, rsc.Base):
             raise CallError(f"{path} says nothing about components: --kind plants draws what it holds")
         return behaviour_graph(base)
-    models = read_models(path, library_paths, report)
+    models = read_models(path, library_paths, report, interface_paths)
     if kind == "plants":
         return plants_graph(models.sct)
     if models.rosgraph is None:

@@ -32,7 +32,7 @@ def test_unknown_without(run: Run, crane: Path) -> None:
     assert "--interface-path" in answer.stdout
 
 
-@pytest.mark.parametrize("command", ["check", "synthesize"])
+@pytest.mark.parametrize("command", ["check", "synthesize", "diagram"])
 def test_known_with(run: Run, crane: Path, command: str) -> None:
     answer = run(command, crane, "--interface-path", crane.parent / "workspace")
     assert answer.exit_code == 0
