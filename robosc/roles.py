@@ -7,7 +7,8 @@ from functools import cached_property
 
 from robosc.metamodel import sct
 
-_SILENT = (sct.EventKind.tau, sct.EventKind.reset)
+#: The kinds of events that run by themselves.
+SILENT = (sct.EventKind.tau, sct.EventKind.reset)
 
 
 def plant_of(event: sct.Event) -> sct.Plant:
@@ -46,7 +47,7 @@ class Roles:
     @cached_property
     def silent(self) -> tuple[sct.Event, ...]:
         """What the loop runs by itself until none is enabled."""
-        return self._of(*_SILENT)
+        return self._of(*SILENT)
 
     @cached_property
     def data(self) -> tuple[tuple[sct.Event, ...], ...]:

@@ -93,7 +93,7 @@ def test_no_supervisor(door: Path) -> None:
     with pytest.raises(robosc.EmptySupervisorError) as raised:
         robosc.synthesize(model)
     assert [each.rule for each in raised.value.diagnostics] == ["empty-supervisor"]
-    assert "message_open.c_trigger" in str(raised.value)
+    assert "request to `Leaf.open`" in str(raised.value)
     assert raised.value.synthesis.reason is not None
     assert model.supervisor is None
 

@@ -12,13 +12,14 @@ from robosc.cli.progress import progress
 from robosc.cli.reading import read_models
 from robosc.cli.report import Report
 from robosc.expressions import SctPrinter, conjunction, copied
-from robosc.roles import event_name
+from robosc.metamodel import sct
+from robosc.roles import SILENT, event_name
 from robosc.supervision import EmptySupervisorError, supervise
+from robosc.supervision.wording import change
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from robosc.metamodel import sct
     from robosc.synthesis import Synthesis
 
 
@@ -32,7 +33,7 @@ def command(model: str, as_json: bool, library_paths: Sequence[str], interface_p
 
     MODEL is a .rscd file with a robot, or an .xmi file that `transform --to xmi` wrote. A guard says where the
     supervisor allows an event, beyond what the robot itself forbids; what no requirement asks for and synthesis had to
-    add is shown apart.
+    add is shown apart. --json lists all events, those for the data to send and those from the robot, too.
 
     \b
     Examples:
@@ -96,11 +97,17 @@ def _uncontrollable(event: sct.Event, synthesis: Synthesis) -> dict[str, Any]:
 
 
 def _show(model: sct.SupervisoryControlModel, synthesis: Synthesis) -> None:
+    """What tells something: the choice among data to send restricts nothing that the robot does."""
     assert synthesis.supervisor is not None
     states = f"{synthesis.controlled_states} states, of {synthesis.uncontrolled_states} without requirements"
     click.echo(f"{model.name}: {states}")
-    for event in map(_controllable, synthesis.supervisor.guards):
-        click.echo(f"\n{event['name']}{'' if event['ever_enabled'] else ' (never enabled)'}")
-        click.echo(f"    guard: {event['guard']}")
+    for guard in synthesis.supervisor.guards:
+        if guard.event.kind == sct.EventKind.data:
+            continue
+        event = _controllable(guard)
+        heading = change(guard.event) if guard.event.kind in SILENT else event["name"]
+        click.echo(f"\n{heading}{'' if event['ever_enabled'] else ' (never enabled)'}")
+        if event["ever_enabled"] or event["guard"] != "true":
+            click.echo(f"    guard: {event['guard']}")
         if event["added_by_synthesis"]:
             click.echo(f"    added by synthesis: {event['added_by_synthesis']}")

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from robosc.diagnostics import Diagnostic, ModelError, Severity, has_errors
 from robosc.metamodel.places import place
 from robosc.supervision.findings import findings_of
+from robosc.supervision.wording import blocking, in_words
 from robosc.synthesis import Synthesis, synthesize
 
 if TYPE_CHECKING:
@@ -29,9 +30,9 @@ class EmptySupervisorError(ModelError):
         self.synthesis = synthesis
         assert synthesis.reason is not None
         reason = synthesis.reason
-        trace = f"; a shortest trace: {', '.join(map(str, reason.trace))}" if reason.trace else ""
+        trace = f"; a shortest trace: {in_words(reason.trace, model)}" if reason.trace else ""
         file, span = place(reason.event or model)
-        message = f"the supervisor is empty: {reason.message}{trace}"
+        message = f"the supervisor is empty: {blocking(reason)}{trace}"
         hint = "loosen a requirement, or give every component a way back to a marked state"
         super().__init__([Diagnostic(file, span, Severity.ERROR, "empty-supervisor", message, hint)])
 

@@ -62,6 +62,9 @@ class _Findings:
             why, hint = f"wherever it could be, {_broken(observed.requirements)}", "loosen what it needs"
         elif observed.trouble is not None:
             why, hint = self._trouble(observed.trouble), _way_out(observed.trouble)
+        elif observed.kept_away:
+            why = f"the supervisor lets the robot reach no state in which it could be {done}"
+            hint = "allow a way to such a state"
         elif silent:
             why, hint = _guard(event), "correct its guard or what leads to its state"
         else:

@@ -12,10 +12,12 @@ from robosc.synthesis.decoding import text
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from robosc.synthesis import TraceStep
+    from robosc.synthesis import Reason, TraceStep
     from robosc.synthesis.decoding import Value
     from robosc.synthesis.encoding import Element
 
+#: How many components a sentence names.
+_NAMED = 4
 _EVENTS = {
     sct.EventKind.trigger: "request to {}",
     sct.EventKind.response: "response from {}",
@@ -38,6 +40,43 @@ def words(event: sct.Event) -> str:
     said = _EVENTS[event.kind].format(f"`{name(plant_of(event))}`")
     span = Span.parse(event.source)
     return f"{said} in line {span.line}" if event.kind == sct.EventKind.tau and span else said
+
+
+def change(event: sct.Event) -> str:
+    """What a silent event does, such as `Lidar changes by itself: blocked to free`."""
+    plant = plant_of(event)
+    if event.kind == sct.EventKind.reset:
+        return f"{name(plant)} is ready to be used again"
+    steps = dict.fromkeys(
+        f"{location.name} to {edge.target.name}"
+        for location in plant.locations
+        for edge in location.edges
+        if edge.event is event
+    )
+    return f"{name(plant)} changes by itself: {', '.join(steps)}"
+
+
+def blocking(reason: Reason) -> str:
+    """Why there is no supervisor, in a sentence without its trace."""
+    problem = "no marked state can be reached"
+    if reason.event is None:
+        problem += " at all"
+    elif reason.event.controllable:
+        problem += f": the shortest way to one needs {words(reason.event)} where its requirement forbids it"
+    else:
+        problem = f"{words(reason.event)} can't be prevented, and after it {problem}"
+    named = [_stuck(each, reason) for each in reason.unmarked[:_NAMED]]
+    if len(reason.unmarked) > _NAMED:
+        named.append(f"{len(reason.unmarked) - _NAMED} more")
+    who = (
+        f"never in a marked state: {listed(named)}" if named else "each component can be marked, but never all at once"
+    )
+    return f"{problem}; {who}"
+
+
+def _stuck(plant: sct.Plant, reason: Reason) -> str:
+    state = reason.state.get(plant.name)
+    return f"`{name(plant)}`" + (f" in `{state}`" if state is not None else "")
 
 
 def in_words(steps: Sequence[TraceStep], model: sct.SupervisoryControlModel) -> str:

@@ -109,7 +109,7 @@ def _synthesize(model: sct.SupervisoryControlModel, layout: Layout, capacity: in
     )
     return Synthesis(
         supervisor,
-        Observer(model, encoding, moves, found, permissions).observations(),
+        Observer(model, encoding, moves, found, permissions).observations(uncontrolled),
         None,
         supervisor.uncontrolledStates,
         supervisor.controlledStates,

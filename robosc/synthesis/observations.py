@@ -55,13 +55,15 @@ class NeverEnabled:
     """A trigger or tau event that is allowed in no controlled state.
 
     `plants` and `requirements` are those which forbid it alone: the plants wherever the robot may come, the
-    requirements wherever the plants enable it. `trouble` is there where synthesis forbids it.
+    requirements wherever the plants enable it, be it only in states that the supervisor keeps the robot from.
+    `kept_away` says that the plants forbid it for that reason only. `trouble` is there where synthesis forbids it.
     """
 
     event: sct.Event
     forbidden: Forbidden
     plants: tuple[sct.Plant, ...] = ()
     requirements: tuple[sct.Requirement, ...] = ()
+    kept_away: bool = False
     trouble: Trouble | None = None
 
 
@@ -147,10 +149,10 @@ class Observer:
         self._roles = Roles(model)
         self._triggers = [each for each in self._roles.triggers if each in self._permissions]
 
-    def observations(self) -> Observations:
-        """All that there is to say."""
+    def observations(self, uncontrolled: Diagram) -> Observations:
+        """All that there is to say; `uncontrolled` are the states that the plants reach without requirements."""
         return Observations(
-            tuple(self._never_enabled()),
+            tuple(self._never_enabled(uncontrolled)),
             tuple(self._silent_restricted()),
             tuple(self._self_cancelling()),
             tuple(self._provide_gaps()),
@@ -158,17 +160,20 @@ class Observer:
             tuple(self._unrestricted_calls()),
         )
 
-    def _never_enabled(self) -> Iterator[NeverEnabled]:
+    def _never_enabled(self, uncontrolled: Diagram) -> Iterator[NeverEnabled]:
         controlled = self._found.controlled
         for event, permission in self._permissions.items():
             if event.kind not in (sct.EventKind.trigger, sct.EventKind.tau) or permission.allowed.satisfiable():
                 continue
             relation = permission.relation
-            enabled = controlled & relation.enabled
-            if not enabled.satisfiable():
+            in_sight = controlled & relation.enabled
+            enabled = in_sight if in_sight.satisfiable() else uncontrolled & relation.enabled
+            forbidden = not (enabled & relation.requirement).satisfiable()
+            if not enabled.satisfiable() or not (in_sight.satisfiable() or forbidden):
                 plants = [each for each, own in relation.enabled_by.items() if not (controlled & own).satisfiable()]
-                yield NeverEnabled(event, Forbidden.BY_PLANTS, plants=tuple(plants))
-            elif not (enabled & relation.requirement).satisfiable():
+                kept_away = enabled.satisfiable()
+                yield NeverEnabled(event, Forbidden.BY_PLANTS, plants=tuple(plants), kept_away=kept_away)
+            elif forbidden:
                 yield NeverEnabled(event, Forbidden.BY_REQUIREMENTS, requirements=_broken(permission, enabled))
             else:
                 yield NeverEnabled(event, Forbidden.BY_SYNTHESIS, trouble=self._trouble(permission))

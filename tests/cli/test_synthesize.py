@@ -80,12 +80,51 @@ def test_as_text(run: Run, tmp_path: Path) -> None:
     )
 
 
+def test_the_text_tells_what_the_robot_does(run: Run, tmp_path: Path) -> None:
+    """Silent events in words, no choice among data, and nothing of a guard that would not matter."""
+    file = tmp_path / "lamp.rscd"
+    file.write_text(
+        """robot Lamp {
+  component Sensor {
+    outgoing message dark with identifier: "/dark", type: boolean
+    incoming message light with identifier: "/light", type: boolean
+    incoming message flash with identifier: "/flash", type: none
+
+    behaviour {
+      variable seen: boolean = false
+      on response from dark do seen := value
+      initial marked state day { transition if seen goto night }
+      marked state night { transition if !seen goto day }
+      marked state never { on request to flash goto day }
+    }
+  }
+
+  requirement light needs Sensor.night
+  provide light with true
+}
+"""
+    )
+    assert run("synthesize", file).stdout == (
+        "Lamp: 8 states, of 8 without requirements\n"
+        "\nmessage_light.c_trigger\n"
+        "    guard: component_Sensor.night\n"
+        "\nmessage_flash.c_trigger (never enabled)\n"
+        "\nSensor changes by itself: day to night\n"
+        "    guard: true\n"
+        "\nSensor changes by itself: night to day\n"
+        "    guard: true\n"
+    )
+    names = [each["name"] for each in json.loads(run("synthesize", file, "--json").stdout)["events"]]
+    assert {"data_light.c_none", "component_Sensor.c_tau1"} <= {*names}
+
+
 def test_no_supervisor(run: Run, stuck: Path) -> None:
     answer = run("synthesize", stuck, "--json")
     assert answer.exit_code == 3
     said = json.loads(answer.stdout)
     assert (said["empty"], said["controlled_states"], said["events"]) == (True, 0, [])
-    assert "message_open.c_trigger" in answer.stderr
+    assert "needs request to `Leaf.open` where its requirement forbids it; never in a marked" in answer.stderr
+    assert "component_" not in answer.stderr
     assert "[empty-supervisor]" in answer.stderr
     assert f"{stuck}:3:5: error: " in answer.stderr
     assert run("synthesize", stuck).exit_code == 3

@@ -157,11 +157,20 @@ def check_details(definitions: Definitions, observed: Observations) -> None:
     for each in observed.never_enabled:
         enabled = [state for state in oracle.controlled if oracle.edges(each.event, state) is not None]
         required = [state for state in enabled if oracle.required(each.event, state)]
+        beyond = [state for state in oracle.uncontrolled if oracle.edges(each.event, state) is not None]
+        states = enabled or beyond
+        asked = any(oracle.required(each.event, state) for state in states)
+        by_requirements = states and not asked
         assert each.forbidden is (
-            Forbidden.BY_SYNTHESIS if required else Forbidden.BY_REQUIREMENTS if enabled else Forbidden.BY_PLANTS
+            Forbidden.BY_SYNTHESIS
+            if required
+            else Forbidden.BY_REQUIREMENTS
+            if by_requirements
+            else Forbidden.BY_PLANTS
         )
+        assert each.kept_away == (not enabled and asked)
         if each.forbidden is Forbidden.BY_REQUIREMENTS:
-            assert list(each.requirements) == broken(oracle, each.event, enabled)
+            assert list(each.requirements) == broken(oracle, each.event, states)
         assert (each.trouble is not None) == bool(required)
         if each.trouble is not None:
             check_trouble(definitions, each.event, each.trouble)
