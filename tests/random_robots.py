@@ -1,4 +1,4 @@
-"""Random robots as text: all names resolve, types mostly fit, and little else is wrong with most of them."""
+"""Random robots as text, over the whole language: all names resolve, and little is wrong with them, or nothing."""
 
 from __future__ import annotations
 
@@ -6,6 +6,16 @@ from dataclasses import dataclass, field
 from random import Random
 from typing import Any
 
+from robosc.naming import ROBOSC_KEYWORDS, written
+
+#: Names that are words of some language, that generated names look like, or that give the same when joined.
+ODD_NAMES = (
+    *("int", "class", "struct", "bool", "union", "namespace", "operator", "and_", "NULL", "main", "errno", "EOF"),
+    *("plant", "event", "location", "edge", "marker", "min", "max", "controllable", "supervisor", "alg", "tau"),
+    *("def", "self", "None", "True", "pass", "lambda", "hooks", "context", "inputs", "settings", "enabled", "perform"),
+    *("c_tau1", "c_trigger", "u_response", "i_response", "d1", "idle", "ready", "message_m00", "component_C0", "data"),
+    *("A", "b_c", "A_b", "c", "A__b", "_", "__x", "x_", "X", "T", "R", "Robot", *sorted(ROBOSC_KEYWORDS)),
+)
 COMPARED = ("=", "!=", "<", "<=", ">", ">=")
 EVENTS = {
     "incoming": ("request",),
@@ -44,6 +54,16 @@ class Type:
 BOOLEAN, DOUBLE, STRING, NONE = (Type(each, each) for each in ("boolean", "double", "string", "none"))
 INTEGER = Type("integer", "integer")
 RANGED = [Type(f"integer({low}..{high})", "integer") for low, high in ((0, 3), (-2, 2), (5, 5), (-9, -7))]
+VECTOR = Type("Vector3", "object", tuple((each, DOUBLE) for each in "xyz"))
+TWIST = Type("Twist", "object", (("linear", VECTOR), ("angular", VECTOR)))
+#: Of basic types some that exist; `i` is for all others.
+INTERFACES = (
+    "interface i use Some from some_msgs",
+    "interface i_boolean use Bool from std_msgs",
+    "interface i_double use Float64 from std_msgs",
+    "interface i_string use String from std_msgs",
+    "interface i_none use Empty from std_msgs",
+)
 
 
 @dataclass
@@ -55,26 +75,36 @@ class Communication:
     text: str = ""
 
 
+@dataclass(frozen=True)
+class Variable:
+    """A variable; one that may be needed by the supervisor is computed from finite data only."""
+
+    name: str
+    type: Type
+    may_be_needed: bool
+
+
 @dataclass
 class Component:
+    """A component; of an imported one `text` is what imports it."""
+
     name: str
     communications: list[Communication] = field(default_factory=list)
-    variables: list[tuple[str, Type]] = field(default_factory=list)
+    variables: list[Variable] = field(default_factory=list)
     states: list[str] = field(default_factory=list)
+    text: str = ""
 
 
 class Writer:
-    """Writes one robot, with mistakes now and then.
+    """Writes one robot, if asked to with mistakes now and then."""
 
-    A variable whose name starts with `x` may be needed by the supervisor: it is computed from finite data only.
-    """
-
-    def __init__(self, seed: int) -> None:
+    def __init__(self, seed: int, *, mistakes: bool) -> None:
         self.random = Random(seed)  # noqa: S311 - nothing here is secret
         self.enums: list[Type] = []
         self.objects: list[Type] = []
         self.components: list[Component] = []
-        self.mistakes = self.random.randrange(10) == 0
+        self.mistakes = mistakes and self.random.randrange(10) == 0
+        self.odd_names = self.random.sample(ODD_NAMES, len(ODD_NAMES) * self.random.randrange(3) // 2)
 
     def one(self, choices: Any) -> Any:
         return self.random.choice(list(choices))
@@ -85,15 +115,46 @@ class Writer:
     def maybe(self, text: str, chance: int = 2) -> str:
         return text if self.random.randrange(chance) == 0 else ""
 
-    def robot(self) -> str:
+    def name(self, plain: str) -> str:
+        """A name that nothing else in the robot has."""
+        return written(self.odd_names.pop()) if self.odd_names and self.random.randrange(3) == 0 else plain
+
+    def robot(self, name: str) -> str:
+        imports = [self.imported(number) for number in self.many(2)]
         types = [self.data_type(number) for number in self.many(4)]
         for number in self.many(3, 1):
             self.declare(number)
-        parts = [self.component(each) for each in self.components]
+        parts = [self.component(each) for each in self.components if not each.text]
+        self.random.shuffle(parts)
         sent = [(c, m) for c in self.components for m in c.communications if m.kind != "outgoing"]
         parts += [self.requirement(sent) for _ in self.many(4) if sent]
         parts += [self.provide(*self.one(sent)) for _ in self.many(3) if sent]
-        return "\n".join(["robot R {", "interface i use Some from some_msgs", *types, *parts, "}"])
+        return "\n".join([f"robot {name} {{", *INTERFACES, *types, *imports, *parts, "}"])
+
+    def imported(self, number: int) -> str:
+        """Imports a component of the standard library, often with topics of its own."""
+        component = Component(self.name(f"L{number}"))
+        if self.one([True, True, False]):
+            source = "from EmergencyStopLibrary import EmergencyStop"
+            component.states = ["in_service", "stopped"]
+            made = [Communication(each, "outgoing", data={"response": NONE}) for each in ("stop", "continue")]
+        else:
+            source = "from TurtlebotLibrary import TurtlebotPlatform"
+            made = [Communication(each, "incoming", sent=TWIST) for each in ("move", "halt")]
+            if VECTOR not in self.objects:
+                self.objects.append(VECTOR)
+        topics = ", ".join(f'{each.name}: "/l{number}/{each.name}"' for each in made)
+        component.communications = made
+        component.text = f"component {component.name} {source}{self.maybe(f' with {{ {topics} }}')}"
+        self.components.append(component)
+        return component.text
+
+    def reference(self, component: Component, communication: Communication) -> str:
+        """How a communication is named; two instances of one component need the name of theirs."""
+        names = [each.name for c in self.components for each in c.communications]
+        if names.count(communication.name) == 1 and self.one([True, True, False]):
+            return communication.name
+        return f"{component.name}.{communication.name}"
 
     # Types
 
@@ -107,16 +168,17 @@ class Writer:
                 kind = self.one([self.simple(), *self.enums, *self.objects])
                 for _ in self.many(2):
                     kind = self.one([kind, Type(f"array({kind.text})", "array", element=kind)])
-                properties.append((f"p{index}", kind))
-            self.objects.append(Type(f"O{number}", "object", tuple(properties)))
+                properties.append((self.name(f"p{index}"), kind))
+            self.objects.append(Type(self.name(f"O{number}"), "object", tuple(properties)))
             text = " ".join(f"{name}: {kind.text}" for name, kind in properties)
-            return f"datatype object O{number} {{ {text} }}"
+            return f"datatype object {self.objects[-1].text} {{ {text} }}"
         base = self.one([self.simple(), *self.objects])
-        values = tuple(f"v{number}{index}" for index in self.many(3, 1))
+        values = tuple(self.name(f"v{number}{index}") for index in self.many(3, 1))
         reads = paths("value", base)
         rules = [f"{self.expression(BOOLEAN, reads, 2)} -> {each}" for each in values[1:]]
-        self.enums.append(Type(f"E{number}", "enum", values=values, base=base))
-        return f"datatype enum E{number} from {base.text} to {{ {' '.join([*rules, f'default -> {values[0]}'])} }}"
+        rules.insert(self.random.randint(0, len(rules)), f"default -> {values[0]}")
+        self.enums.append(Type(self.name(f"E{number}"), "enum", values=values, base=base))
+        return f"datatype enum {self.enums[-1].text} from {base.text} to {{ {' '.join(rules)} }}"
 
     # Components
 
@@ -124,10 +186,10 @@ class Writer:
         return self.one([NONE, self.simple(), *self.enums, *self.objects])
 
     def declare(self, number: int) -> None:
-        component = Component(f"C{number}")
+        component = Component(self.name(f"C{number}"))
         for index in self.many(3):
             kind = self.one(EVENTS)
-            made = Communication(f"m{number}{index}", kind)
+            made = Communication(self.name(f"m{number}{index}"), kind)
             topic = self.maybe('identifier: "/shared", ', 4)
             name = f"{made.name} with {topic}"
             if kind == "outgoing":
@@ -142,31 +204,43 @@ class Writer:
                 made.text = f"{head} {name}{word}: {made.sent.text}{rest}"
             types = [made.sent, *made.data.values()]
             basic = kind in {"incoming", "outgoing"} or (kind == "service" and set(types) == {NONE})
-            made.text += (
-                " links i" if not basic or any(each.needs_link for each in types) else self.maybe(" links i", 5)
-            )
+            if not basic or any(each.needs_link for each in types):
+                made.text += " links i"
+            elif kind in {"incoming", "outgoing"}:
+                carried = {"incoming": made.sent, "outgoing": made.data.get("response", NONE)}[kind]
+                wire = carried.base or carried
+                made.text += self.maybe(f" links {'i' if wire.kind == 'integer' else f'i_{wire.kind}'}", 5)
             component.communications.append(made)
+        if self.random.randrange(6) == 0:
+            self.components.append(component)
+            return  # It has no behaviour.
         for index in self.many(4):
             kind = self.one([self.simple(), *RANGED, BOOLEAN, *self.enums])
-            component.variables.append((f"x{number}{index}" if kind.is_finite else f"h{number}{index}", kind))
-            if kind.is_finite and self.one([True, False, False]):
-                component.variables[-1] = (f"h{number}{index}", kind)
-        component.states = [f"s{number}{index}" for index in self.many(3, 1)]
+            may_be_needed = kind.is_finite and self.one([True, True, False])
+            component.variables.append(Variable(self.name(f"x{number}{index}"), kind, may_be_needed))
+        component.states = [self.name(f"s{number}{index}") for index in self.many(3, 1)]
         self.components.append(component)
 
     def component(self, component: Component) -> str:
         lines = [each.text for each in component.communications]
-        body = [f"variable {name}: {kind.text}{self.initial(kind)}" for name, kind in component.variables]
-        free = [(m, event) for c in self.components for m in c.communications for event in EVENTS[m.kind]]
+        if not component.states:
+            return "\n".join([f"component {component.name} {{", *lines, "}"])
+        body = [f"variable {each.name}: {each.type.text}{self.initial(each.type)}" for each in component.variables]
+        free = [(c, m, event) for c in self.components for m in c.communications for event in EVENTS[m.kind]]
         common = [each for each in free if self.random.randrange(6) == 0]
         body += [self.transition(component, *each) for each in common]
-        body += [self.silent(component) for _ in self.many(1)]
+        body += [self.silent(component, self.goto(component)) for _ in self.many(1)]
+        marked = [each for each in component.states if self.one([True, False])] or component.states[-1:]
         for index, state in enumerate(component.states):
             own = [each for each in free if each not in common and self.random.randrange(4) == 0]
-            inside = [self.transition(component, *each) for each in own] + [
-                self.silent(component) for _ in self.many(2)
-            ]
-            body.append(f"{'initial ' if index == 0 else ''}marked state {state} {{ {' '.join(inside)} }}")
+            inside = [self.transition(component, *each) for each in own]
+            inside += [self.silent(component, self.goto(component)) for _ in self.many(2)]
+            if state not in marked:
+                inside.append(self.silent(component, f" goto {self.one(marked)}"))
+            kinds = ["initial "] * (index == 0) + ["marked "] * (state in marked)
+            self.random.shuffle(kinds)
+            body.append(f"{''.join(kinds)}state {state} {{ {' '.join(inside)} }}")
+        self.random.shuffle(body)
         return "\n".join([f"component {component.name} {{", *lines, "behaviour {", *body, "}", "}"])
 
     def initial(self, kind: Type) -> str:
@@ -175,33 +249,34 @@ class Writer:
             return self.maybe(f" = {self.one([low, high])}")
         return self.maybe(f" = {self.expression(kind, [], 2)}")
 
-    def transition(self, component: Component, communication: Communication, event: str) -> str:
+    def transition(self, component: Component, owner: Component, communication: Communication, event: str) -> str:
         reads = paths("value", communication.data.get(event, NONE))
         assigned = self.assigned(component, reads) if (communication.kind, event) != ("incoming", "request") else ""
         word = self.one(["to", "from"])
-        return f"on {event} {word} {communication.name}{assigned}{self.goto(component)}"
+        return f"on {event} {word} {self.reference(owner, communication)}{assigned}{self.goto(component)}"
 
-    def silent(self, component: Component) -> str:
+    def silent(self, component: Component, goto: str) -> str:
         guard = self.maybe(f" if {self.expression(BOOLEAN, self.readable(finite=True), 3)}")
-        return f"transition{guard}{self.assigned(component, [])}{self.goto(component)}"
+        return f"transition{guard}{self.assigned(component, [])}{goto}"
 
     def goto(self, component: Component) -> str:
         return self.maybe(f" goto {self.one(component.states)}")
 
     def assigned(self, component: Component, data: list[tuple[str, Type]]) -> str:
         done = []
-        for name, kind in component.variables:
+        for each in component.variables:
             if self.one([True, False]):
-                finite = name.startswith("x") and not self.mistakes
-                fitting = [each for each in data if not finite or (each[1].is_finite and "[" not in each[0])]
-                done.append(f"{name} := {self.expression(kind, [*fitting, *self.readable(finite=finite)], 3)}")
+                finite = each.may_be_needed and not self.mistakes
+                fitting = [(text, kind) for text, kind in data if not finite or (kind.is_finite and "[" not in text)]
+                value = self.expression(each.type, [*fitting, *self.readable(finite=finite)], 3)
+                done.append(f"{each.name} := {value}")
         return f" do {', '.join(done)}" if done else ""
 
     # Requirements and data
 
     def requirement(self, sent: list[tuple[Component, Communication]]) -> str:
         condition = self.expression(BOOLEAN, self.readable(finite=True), 3)
-        named = [self.one(sent)[1].name for _ in self.many(2, 1)]
+        named = [self.reference(*self.one(sent)) for _ in self.many(2, 1)]
         target = f"{{ {', '.join(named)} }}" if len(named) > 1 else named[0]
         return self.one([f"requirement {target} needs {condition}", f"requirement {condition} disables {target}"])
 
@@ -210,7 +285,7 @@ class Writer:
             return ""
         data = self.provided(communication.sent)
         condition = self.maybe(f" if {self.expression(BOOLEAN, self.readable(finite=True), 3)}")
-        return f"provide {self.maybe(f'{component.name}.')}{communication.name} with {data}{condition}"
+        return f"provide {self.reference(component, communication)} with {data}{condition}"
 
     def provided(self, kind: Type) -> str:
         if kind.kind == "object":
@@ -223,8 +298,13 @@ class Writer:
     def readable(self, *, finite: bool) -> list[tuple[str, Type]]:
         """What can be read by its full name."""
         states = [(f"{c.name}.{each}", BOOLEAN) for c in self.components for each in c.states]
-        variables = [(f"{c.name}.{n}", kind) for c in self.components for n, kind in c.variables]
-        return states + [each for each in variables if not finite or self.mistakes or ".x" in each[0]]
+        variables = [
+            (f"{c.name}.{each.name}", each.type)
+            for c in self.components
+            for each in c.variables
+            if not finite or self.mistakes or each.may_be_needed
+        ]
+        return states + variables
 
     def expression(self, kind: Type, reads: list[tuple[str, Type]], depth: int, *, constant: bool = True) -> str:
         """An expression of the type; without `constant` it is no constant where anything can be read."""
@@ -263,10 +343,10 @@ class Writer:
 def paths(start: str, kind: Type) -> list[tuple[str, Type]]:
     """What can be read of data, each with its type."""
     if kind.element is not None:
-        return paths(f"{start}[1]", kind.element)
+        return paths(f"{start}[{len(start) % 4}]", kind.element)
     return [(start, kind), *(read for name, each in kind.properties for read in paths(f"{start}.{name}", each))]
 
 
-def random_robot(seed: int) -> str:
-    """The text of a robot, the same for the same seed."""
-    return Writer(seed).robot()
+def random_robot(seed: int, name: str = "R", *, mistakes: bool = True) -> str:
+    """The text of a robot, the same for the same seed; no rule finds an error in it if no mistakes are asked for."""
+    return Writer(seed, mistakes=mistakes).robot(name)

@@ -1,5 +1,7 @@
 """Initial values: folded to one literal, or the default that the language gives."""
 
+import math
+
 from robosc.evaluation import Value, evaluate, saturate
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc
@@ -18,9 +20,15 @@ def initial_value(variable: robosc.Variable) -> Value:
 
 
 def literal(value: Value) -> ex.Expression:
-    """The expression that stands for a value, with a minus sign where it is negative."""
+    """The expression that stands for a value, with a minus sign where it is negative.
+
+    What no literal stands for is a division by zero, as it was in the text.
+    """
     if isinstance(value, bool):
         return ex.BooleanLiteral(value=value)
+    if isinstance(value, float) and not math.isfinite(value):
+        dividend = 0.0 if math.isnan(value) else math.copysign(1.0, value)
+        return ex.Division(left=literal(dividend), right=ex.DoubleLiteral(value=0.0))
     if isinstance(value, (int, float)):
         kind = ex.IntegerLiteral if isinstance(value, int) else ex.DoubleLiteral
         magnitude: ex.Expression = kind(value=abs(value))  # type: ignore[arg-type]

@@ -94,7 +94,9 @@ def _statement(text: list[str], random: Random) -> slice:
     if not starts:
         return slice(0, 0)
     start = random.choice(starts)
-    after = (i for i in range(start + 1, len(text)) if _bare(text[i]) in {*_STARTERS, "}", "initial", "marked", "state"})
+    after = (
+        i for i in range(start + 1, len(text)) if _bare(text[i]) in {*_STARTERS, "}", "initial", "marked", "state"}
+    )
     return slice(start, next(after, start))
 
 

@@ -7,7 +7,10 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NoReturn
 
+from click.testing import CliRunner
+
 import robosc
+from robosc import cli
 from robosc.checks import check
 from robosc.diagnostics import START, Diagnostic, ModelError, as_json, as_sarif, as_text, has_errors
 from robosc.language import read
@@ -67,20 +70,26 @@ def tried(path: Path, targets: Sequence[str]) -> Outcome:
     try:
         return _generated(reading.base, found, reading.texts, targets)
     except ModelError as error:
-        assert has_errors(error.diagnostics)
         _located(error.diagnostics, reading.texts)
-        return Outcome(0, 3 if isinstance(error, EmptySupervisorError) else 1, [*found, *error.diagnostics])
+        return Outcome(
+            0,
+            3 if isinstance(error, EmptySupervisorError) else int(has_errors(error.diagnostics)),
+            [*found, *error.diagnostics],
+        )
 
 
 def _generated(robot: rsc.Robot, found: list[Diagnostic], texts: dict[str, str], targets: Sequence[str]) -> Outcome:
-    models = Models(robosc.to_sct(robot), robosc.to_rosgraph(robot), robot)
-    for model in (models.sct, models.rosgraph):
+    graph = robosc.to_rosgraph(robot)
+    models = Models(robosc.to_sct(robot), graph, robot)
+    for model in (models.sct, graph):
         assert [fault for _, fault in faults(model)] == []
     supervision = supervise(models.sct)
     _located(supervision.findings, texts)
     if has_errors(supervision.findings):
         raise ModelError(supervision.findings)
     configuration = robosc.Configuration()
+    if graph.serviceClients or graph.actionClients:
+        targets = [each for each in targets if not TARGETS[each].needs_graph]  # They know of messages only.
     refused = [each for target in targets for each in TARGETS[target].findings(models, configuration)]
     _located(refused, texts)
     if has_errors(refused):
@@ -89,6 +98,29 @@ def _generated(robot: rsc.Robot, found: list[Diagnostic], texts: dict[str, str],
         for name, text in robosc.generate(target, models).items():
             assert text.endswith("\n"), f"{target}: {name}"
     return Outcome(0, 0, [*found, *supervision.findings, *refused], models)
+
+
+def called(path: Path, outcome: Outcome, seed: int) -> int:
+    """Has the command line do what a trial did, and asserts its exit statuses; returns the last one."""
+    form = ("text", "json", "sarif")[seed % 3]
+    checking = _run("check", str(path), "-I", str(LIBRARIES), "--format", form)
+    assert checking == outcome.check_status, f"check ends with {checking}, not {outcome.check_status}"
+    synthesizing = _run("synthesize", str(path), "-I", str(LIBRARIES))
+    transforming = _run(
+        "transform", str(path), "-I", str(LIBRARIES), "--to", "cif", "-o", str(path.parent / "generated")
+    )
+    assert transforming == outcome.status, f"transform ends with {transforming}, not {outcome.status}"
+    if "cif" not in {each.rule for each in outcome.findings}:
+        assert synthesizing == outcome.status, f"synthesize ends with {synthesizing}, not {outcome.status}"
+    return transforming
+
+
+def _run(*arguments: str) -> int:
+    result = CliRunner().invoke(cli.main, arguments)
+    if result.exception is not None and not isinstance(result.exception, SystemExit):
+        raise result.exception
+    assert "Traceback" not in result.output
+    return result.exit_code
 
 
 def _located(findings: Sequence[Diagnostic], texts: dict[str, str]) -> None:

@@ -169,6 +169,27 @@ def test_node_expressions_may_read_the_state(robot):
     assert isinstance(assignment.value.left, sct.VariableReference)
 
 
+def test_an_initial_value_may_be_no_number(robot):
+    _, trace = robosc_to_sct.transform(
+        robot(
+            """robot R {
+              component C {
+                incoming message m with type: double
+                behaviour {
+                  variable down: double = -2.0 / 0
+                  variable nothing: double = 0.0 / 0
+                  initial marked state s { }
+                }
+              }
+              provide m with C.down + C.nothing
+            }"""
+        )
+    )
+    initial = [each.initial for each in robosc_to_rosgraph.transform(trace).variables]
+    assert all(isinstance(each, ex.Division) and each.right.value == 0.0 for each in initial)
+    assert (initial[0].left.operand.value, initial[1].left.value) == (1.0, 0.0)
+
+
 def test_services_and_actions_have_their_events(robot):
     _, trace = robosc_to_sct.transform(
         robot(

@@ -12,7 +12,7 @@ from robosc.metamodel import sct
 
 _KINDS = {"message": "message", "service": "service", "action": "action", "component": "behaviour", "data": "data"}
 _EVENTS = [each.name for each in sct.EventKind.eLiterals]  # type: ignore[attr-defined]
-_REMARK = re.compile(r" // (\w+) \+ (\d+), with \1 in (-\d+)\.\.(-?\d+)")
+_REMARK = re.compile(r" // (\$?\w+) \+ (\d+), with \1 in (-\d+)\.\.(-?\d+)")
 _COMPARISONS = {
     "=": ex.Equation,
     "!=": ex.Inequation,
@@ -110,7 +110,7 @@ class _Rebuilding:
         remark = _REMARK.match(self.text, read._tx_position_end)
         if remark:
             shift = int(remark.group(2))
-            assert (remark.group(1), int(remark.group(3)), int(remark.group(4))) == (
+            assert (_plain(remark.group(1)), int(remark.group(3)), int(remark.group(4))) == (
                 element.name,
                 low - shift,
                 high - shift,

@@ -136,8 +136,9 @@ def build(model: sct.SupervisoryControlModel, folder: Path, settings: ControlLoo
     return built
 
 
-def run(built: Path, script: Sequence[str]) -> list[str]:
+def run(built: Path, script: Sequence[str], *arguments: str) -> list[str]:
     """What the program says, a line for each operation of the script."""
-    done = subprocess.run([built], input="\n".join(script), capture_output=True, text=True, check=False, timeout=60)
+    command = [built, *arguments]
+    done = subprocess.run(command, input="\n".join(script), capture_output=True, text=True, check=False, timeout=60)
     assert done.returncode == 0, done.stderr
     return done.stdout.splitlines()

@@ -1,0 +1,168 @@
+"""Models with faults and random valid robots, in large numbers, through the whole pipeline; ends with 1 on a failure.
+
+    python benchmarks/fuzz.py [--mutants 20000] [--valid 2000] [--seed 0] [--jobs 2] [--keep FOLDER]
+
+A mutant is to end in located findings or in generated code, in the time limit, and in every hundredth the command line
+is to end with the right exit status. A valid robot draws no error; its CIF is read back, and its engine in C does 200
+random operations as the interpreter does them. Each model comes from a number alone: `--mutants 1 --valid 0 --seed N`
+tries the mutant N again. `--keep` writes the models that failed to a folder.
+"""
+
+from __future__ import annotations
+
+import argparse
+import faulthandler
+import os
+import sys
+import tempfile
+import traceback
+from collections import Counter
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import dataclass, field
+from pathlib import Path
+from time import perf_counter, process_time
+from typing import TYPE_CHECKING, Any
+
+ROOT = Path(__file__).parent.parent
+sys.path.insert(0, str(ROOT))
+
+from tests.fuzz.mutants import mutant  # noqa: E402
+from tests.fuzz.trial import called, time_limit, tried  # noqa: E402
+from tests.fuzz.valid import checked, compared, compiled  # noqa: E402
+from tests.random_robots import random_robot  # noqa: E402
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+#: Seconds of the processor that one model may take.
+LIMIT = 60
+CHUNKS = {"mutants": 100, "valid": 25}
+CALLED_EACH = 100
+
+
+@dataclass
+class Result:
+    """What came of some models: how many ended how, the slowest, what failed."""
+
+    statuses: Counter[str] = field(default_factory=Counter)
+    slowest: tuple[float, int] = (0.0, 0)
+    failures: list[tuple[int, str]] = field(default_factory=list)
+
+    def try_one(self, seed: int, trial: Callable[..., Any], *arguments: object) -> Any:
+        """What a trial of these arguments returns; None where it fails."""
+        began = process_time()
+        # What no signal can stop ends with its process.
+        faulthandler.dump_traceback_later(20 * LIMIT, exit=True)
+        try:
+            with time_limit(LIMIT):
+                return trial(*arguments)
+        except Exception as error:
+            place = traceback.extract_tb(error.__traceback__)[-1]
+            where = f"{Path(place.filename).name}:{place.lineno}"
+            self.failures.append((seed, f"{type(error).__name__}: {str(error)[:300]} ({where})"))
+            self.statuses["failed"] += 1
+            return None
+        finally:
+            faulthandler.cancel_dump_traceback_later()
+            self.slowest = max(self.slowest, (process_time() - began, seed))
+
+    def add(self, other: Result) -> None:
+        """Takes over another result."""
+        self.statuses += other.statuses
+        self.slowest = max(self.slowest, other.slowest)
+        self.failures += other.failures
+
+
+def mutants(seeds: range) -> Result:
+    """Tries the mutants of these numbers."""
+    result = Result()
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "model.rscd"
+        for seed in seeds:
+            path.write_text(mutant(seed), encoding="utf-8")
+            targets = ["cif", "supervisor", ("ros1", "ros2", "xmi")[seed % 3]]
+            outcome = result.try_one(seed, tried, path, targets)
+            if outcome is not None:
+                result.statuses[f"exit status {outcome.status}"] += 1
+                if seed % CALLED_EACH == 0:
+                    result.try_one(seed, called, path, tried(path, ["cif"]), seed)
+                    result.statuses["by command line"] += 1
+    return result
+
+
+def valid(seeds: range) -> Result:
+    """Tries the random robots of these numbers, their engines compiled together."""
+    result = Result()
+    with tempfile.TemporaryDirectory() as name:
+        folder, robots = Path(name), []
+        for seed in seeds:
+            found = result.try_one(seed, checked, seed, folder / "robot.rscd")
+            if found is not None:
+                outcome, robot = found
+                result.statuses[f"exit status {outcome.status}"] += 1
+                robots += [robot] if robot else []
+        built = result.try_one(seeds[0], compiled, robots, folder, ["-O0"]) if robots else None
+        for robot in robots if built else ():
+            result.try_one(robot.seed, compared, robot, built)
+        result.statuses["compiled and compared"] += len(robots) if built else 0
+    return result
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--mutants", type=int, default=20_000)
+    parser.add_argument("--valid", type=int, default=2_000)
+    parser.add_argument("--seed", type=int, default=0, help="the number of the first model")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count())
+    parser.add_argument("--keep", type=Path, help="the folder for models that failed")
+    options = parser.parse_args()
+    print("| models | number | s | a second | outcomes | slowest | failed |\n|---|---:|---:|---:|---|---|---:|")
+    failed = False
+    for kind, trial in (("mutants", mutants), ("valid", valid)):
+        number = getattr(options, kind)
+        seeds = range(options.seed, options.seed + number)
+        began = perf_counter()
+        result = _in_parallel(
+            trial, [seeds[at : at + CHUNKS[kind]] for at in range(0, number, CHUNKS[kind])], options.jobs
+        )
+        seconds = perf_counter() - began
+        outcomes = ", ".join(f"{each}: {count}" for each, count in sorted(result.statuses.items()))
+        slowest = f"{result.slowest[0]:.1f} s (seed {result.slowest[1]})"
+        print(
+            f"| {kind} | {number} | {seconds:.0f} | {number / max(seconds, 1e-9):.1f} | {outcomes} | {slowest} "
+            f"| {len(result.failures)} |",
+            flush=True,
+        )
+        _show(kind, result.failures, options.keep)
+        failed = failed or bool(result.failures)
+    return int(failed)
+
+
+def _in_parallel(trial: Callable[[range], Result], chunks: list[range], jobs: int) -> Result:
+    whole = Result()
+    with ProcessPoolExecutor(jobs) as pool:
+        running = {pool.submit(trial, chunk): chunk for chunk in chunks}
+        for done in as_completed(running):
+            try:
+                whole.add(done.result())
+            except BrokenProcessPool:
+                chunk = running[done]
+                whole.failures.append((chunk[0], f"the process ended in or beside {chunk[0]} to {chunk[-1]}"))
+    return whole
+
+
+def _show(kind: str, failures: list[tuple[int, str]], folder: Path | None) -> None:
+    for seed, message in sorted(failures):
+        others = {"mutants": "--valid 0", "valid": "--mutants 0"}[kind]
+        print(
+            f"failed: {message}\n  again: python benchmarks/fuzz.py --{kind} 1 {others} --seed {seed}", file=sys.stderr
+        )
+        if folder:
+            folder.mkdir(parents=True, exist_ok=True)
+            text = mutant(seed) if kind == "mutants" else random_robot(seed, f"R{seed}", mistakes=False)
+            (folder / f"{kind}_{seed}.rscd").write_text(text, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    sys.exit(main())

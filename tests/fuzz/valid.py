@@ -1,0 +1,135 @@
+"""Random valid robots: their CIF says what they say, and the engine in C does what the interpreter does."""
+
+from __future__ import annotations
+
+import subprocess
+from dataclasses import dataclass
+from random import Random
+from typing import TYPE_CHECKING
+
+from robosc import config
+from robosc.config import Configuration
+from robosc.diagnostics import has_errors
+from robosc.engine import Settings
+from robosc.m2t import cif, xmi
+from robosc.metamodel import xmi as saved
+from robosc.models import Models
+from robosc.synthesis import synthesize
+from tests.fuzz.trial import Outcome, tried
+from tests.m2t.cif.differences import differences
+from tests.m2t.supervisor.driver import FLAGS, STRICT, program, run, write
+from tests.m2t.supervisor.walk import Walk
+from tests.random_robots import random_robot
+from tests.synthesis.oracle import Oracle
+from tests.synthesis.test_read_back import read, supervised_states
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from robosc.synthesis import Synthesis
+
+TARGETS = ("cif", "supervisor", "ros1", "ros2", "xmi")
+#: Operations on the engines, each of one to five events.
+STEPS = 200
+#: What synthesis says of an otherwise valid robot.
+_ALLOWED = {"empty-supervisor", "self-cancelling"}
+#: States up to which they are counted one by one, too.
+_FEW = 300
+
+
+@dataclass(frozen=True)
+class Robot:
+    """A robot that has a supervisor, and a walk through its states in Python."""
+
+    seed: int
+    models: Models
+    settings: Settings
+    walk: Walk
+
+
+def checked(seed: int, path: Path) -> tuple[Outcome, Robot | None]:
+    """Everything but the engine in C: the outcome, and the robot where it has a supervisor.
+
+    Raises AssertionError for an error that a valid robot draws, and where read back models differ.
+    """
+    path.write_text(random_robot(seed, f"R{seed}", mistakes=False), encoding="utf-8")
+    outcome = tried(path, TARGETS)
+    errors = [each for each in outcome.findings if has_errors([each]) and each.rule not in _ALLOWED]
+    assert not errors, errors
+    if outcome.models is None:
+        return outcome, None
+    _cif_says_the_same(outcome.models)
+    if seed % 5 == 0:
+        _saves_the_same(outcome.models, path.parent)
+    random = Random(seed)  # noqa: S311
+    settings = Settings(random.choice((0, 0, 1, 2)), random.choice((10, 10, 0, 1, 3)), random.random() < 0.8)
+    walk = Walk(outcome.models.sct, settings, seed)
+    walk.steps(STEPS)
+    return outcome, Robot(seed, outcome.models, settings, walk)
+
+
+def _cif_says_the_same(models: Models) -> None:
+    model, name = models.sct, models.sct.name
+    files = cif.generate(models, Configuration())
+    again, supervised = read(files[f"{name}.cif"]), read(files[f"{name}.supervised.cif"])
+    assert differences(model, again) == []
+    assert differences(model, supervised) == []
+    synthesis, read_back = synthesize(model), synthesize(again)
+    assert _counts(synthesis) == _counts(read_back)
+    if synthesis.uncontrolled_states <= _FEW:
+        oracle = Oracle(model)
+        assert (len(oracle.uncontrolled), len(oracle.controlled)) == _counts(synthesis)
+        assert supervised_states(supervised) == synthesis.controlled_states
+
+
+def _counts(synthesis: Synthesis) -> tuple[int, int]:
+    return synthesis.uncontrolled_states, synthesis.controlled_states
+
+
+def _saves_the_same(models: Models, folder: Path) -> None:
+    """Saved models, read back, are saved as the same bytes and give the same CIF."""
+    written = xmi.generate(models, Configuration())
+    for name, text in written.items():
+        (folder / name).write_text(text, encoding="utf-8")
+    name = models.sct.name
+    graph = saved.load(str(folder / f"{name}.rosgraph.xmi"))
+    again = Models(graph.model, graph, saved.load(str(folder / f"{name}.robosc.xmi")))
+    assert xmi.generate(again, Configuration()) == written
+    assert cif.generate(again, Configuration()) == cif.generate(models, Configuration())
+    for each in written:
+        (folder / each).unlink()
+
+
+def compiled(robots: Sequence[Robot], folder: Path, flags: Sequence[str] = FLAGS) -> Path:
+    """One program with the engines of all the robots; its argument says which of them runs."""
+    sources = []
+    for each in robots:
+        loop = each.settings
+        chosen = config.ControlLoop(
+            events_per_tick=loop.events_per_tick,
+            reactions_per_tick=loop.reactions_per_tick,
+            react_immediately=loop.react_immediately,
+        )
+        sources.append(write(each.models.sct, folder, chosen).name)
+        text = program(each.models.sct)
+        (folder / f"main{each.seed}.c").write_text(f"#define main main{each.seed}\n{text}")
+    declared = "".join(f"int main{each.seed}(void);\n" for each in robots)
+    cases = "".join(f"    case {each.seed}: return main{each.seed}();\n" for each in robots)
+    (folder / "all.c").write_text(
+        f"#include <stdlib.h>\n{declared}int main(int count, char **words)\n{{\n"
+        f"    switch (count > 1 ? atoi(words[1]) : -1) {{\n{cases}    default: return 1;\n    }}\n}}\n"
+    )
+    mains = ["all.c", *(f"main{each.seed}.c" for each in robots)]
+    objects = [each.replace(".c", ".o") for each in sources]
+    for arguments in ([*STRICT, "-c", *sources], ["-std=gnu99", *mains, *objects, "-o", "all"]):
+        done = subprocess.run(["gcc", *flags, *arguments], cwd=folder, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
+    return folder / "all"
+
+
+def compared(robot: Robot, built: Path) -> None:
+    """Raises AssertionError where the engine in C does anything else than the interpreter did."""
+    said = run(built, robot.walk.script, str(robot.seed))
+    for number, (theirs, ours) in enumerate(zip(said, robot.walk.said, strict=True)):
+        assert theirs == ours, f"step {number}: C {theirs}, Python {ours}"
