@@ -1,0 +1,162 @@
+"""A model is data: no text of a model or of its configuration gets out of its place in anything that is generated.
+
+Each hostile text carries a mark. After strings and comments are taken away, the mark must be gone, too; and what has a
+parser must parse. A target may also refuse the text, with a located error.
+"""
+
+import ast
+import re
+from collections.abc import Iterator
+from pathlib import Path, PurePosixPath
+from xml.etree import ElementTree as ET
+
+import pytest
+
+import robosc
+from robosc.config import Configuration
+from robosc.metamodel import expression as ex
+from robosc.metamodel.reflection import tree
+from robosc.models import Models
+
+MARK = "PWNED"
+HOSTILE = [
+    f'"; {MARK}(); "',
+    f"'; {MARK}(); '",
+    f'\\"; {MARK}(); //',
+    f"*/ {MARK}(); /*",
+    f"// \\\n{MARK}();",
+    f"\n{MARK}();\n",
+    f"\r{MARK}();\r",
+    f'??/" {MARK}(); ??/',
+    f')json"; {MARK}(); R"json(',
+    f"</description><{MARK}/>",
+    f"]]><{MARK}/>",
+    f'${{{MARK}}} ") {MARK}() message("',
+    f"]=] {MARK}() [=[",
+    f"{{{{ {MARK} }}}} {{% {MARK} %}}",
+    f"$(eval {MARK})",
+    f"../../{MARK}",
+    f"/{MARK}",
+    f"\\u000a{MARK}();",
+    f"\u2028{MARK}();\u202e",
+]
+MODEL = """
+robot Robot {
+  component Part {
+    outgoing message heard with identifier: "/heard", type: string
+    incoming message said with identifier: "/said", type: string
+    behaviour {
+      variable last: string = "initial"
+      initial marked state here { on response from heard do last := value }
+    }
+  }
+  requirement said needs Part.here
+  provide said with "provided" if Part.here
+}
+"""
+TARGETS = ("cif", "supervisor", "ros1", "ros2")
+
+
+def quoted(text: str) -> str:
+    """A string literal of the language."""
+    escapes = {"\\": "\\\\", '"': '\\"', "\n": "\\n", "\r": "\\r"}
+    return '"' + "".join(escapes.get(each, each) for each in text) + '"'
+
+
+def generated(models: Models, configuration: Configuration | None = None) -> Iterator[tuple[str, str]]:
+    """Every file that a target makes of the models, unless it refuses them with located findings."""
+    for target in TARGETS:
+        try:
+            files = robosc.generate(target, models, configuration=configuration)
+        except robosc.ModelError as error:
+            findings, files = error.diagnostics, {}
+        else:
+            findings = []
+        assert files or findings
+        assert all(each.span.line >= 1 and each.message for each in findings)
+        yield from files.items()
+
+
+def models_of(text: str, folder: Path) -> Models | None:
+    """The models of a text; None where reading or checking it finds errors."""
+    path = folder / "robot.rscd"
+    path.write_text(text, encoding="utf-8")
+    try:
+        robot = robosc.load(path)
+    except robosc.ModelError:
+        return None
+    assert not any(each.severity == "error" for each in robosc.check(robot))
+    plants = robosc.to_sct(robot)
+    robosc.synthesize(plants)
+    return Models(plants, robosc.to_rosgraph(robot), robot)
+
+
+def bare(path: str, text: str) -> str:
+    """What is left of a file without its strings and comments."""
+    kind = PurePosixPath(path).suffix
+    if kind in {".c", ".h", ".hpp", ".cpp"}:
+        literals = r'R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\'|/\*.*?\*/|//[^\n]*'
+        assert "\\\n" not in re.sub(r"#define.*", "", text), "a line that goes on could take a comment with it"
+        return re.sub(literals, "", text, flags=re.DOTALL)
+    if kind == ".cif":
+        return re.sub(r'"(?:\\.|[^"\\\n])*"|/\*.*?\*/|//[^\n]*', "", text, flags=re.DOTALL)
+    if kind == ".txt":
+        return re.sub(r'"(?:\\.|[^"\\])*"|#[^\n]*', "", text, flags=re.DOTALL)
+    if kind == ".py":
+        tree_of_it = ast.parse(text)
+        return " ".join(each.id for each in ast.walk(tree_of_it) if isinstance(each, ast.Name))
+    if kind in {".xml", ".launch"}:
+        root = ET.fromstring(text)  # noqa: S314 - the text is ours
+        return " ".join(each.tag for each in root.iter())
+    return text
+
+
+def assert_contained(files: Iterator[tuple[str, str]]) -> int:
+    count = 0
+    for path, text in files:
+        parts = PurePosixPath(path).parts
+        assert not PurePosixPath(path).is_absolute()
+        assert ".." not in parts
+        assert re.fullmatch(r"[\w./-]+", path)
+        # A harmless topic like `/PWNED` may well be part of an identifier.
+        assert not re.search(rf"\b{MARK}\b", bare(path, text)), path
+        count += 1
+    return count
+
+
+@pytest.mark.parametrize("text", HOSTILE)
+@pytest.mark.parametrize("place", ['"provided"', '"initial"', '"/heard"', '"/said"'])
+def test_texts_of_a_model(place: str, text: str, tmp_path: Path) -> None:
+    models = models_of(MODEL.replace(place, quoted(text)), tmp_path)
+    if models is not None:
+        assert assert_contained(generated(models)) > 0
+
+
+@pytest.mark.parametrize("text", HOSTILE)
+@pytest.mark.parametrize("key", ["description", "maintainer", "license", "name", "version", "email"])
+def test_texts_of_the_configuration(key: str, text: str, tmp_path: Path) -> None:
+    models = models_of(MODEL, tmp_path)
+    assert models is not None
+    try:
+        configuration = Configuration.model_validate({"package": {key: text}})
+    except ValueError:
+        return  # Refused where it is read.
+    assert_contained(generated(models, configuration))
+
+
+@pytest.mark.parametrize("text", HOSTILE)
+def test_names_that_no_text_could_have(text: str, tmp_path: Path) -> None:
+    """A saved model may come from anywhere, with any name on anything."""
+    models = models_of(MODEL, tmp_path)
+    assert models is not None
+    for number in range(sum(isinstance(each, ex.NamedElement) for each in named(models))):
+        hostile = models_of(MODEL, tmp_path)
+        assert hostile is not None
+        element = [each for each in named(hostile) if isinstance(each, ex.NamedElement)][number]
+        element.name = text
+        assert_contained(generated(hostile))
+
+
+def named(models: Models) -> list[ex.Located]:
+    assert models.rosgraph is not None
+    return [each for root in (models.sct, models.rosgraph) for _, each in tree(root)]
