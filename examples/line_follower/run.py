@@ -12,6 +12,7 @@ import json
 import math
 import os
 import queue
+import sys
 import time
 from abc import ABC, abstractmethod
 from pathlib import Path
@@ -21,6 +22,22 @@ from world import POSE_PERIOD, RANGE_MAX, RANGE_MIN, RAYS, STEP, Simulation
 LOCKSTEP_SPEED = 5
 ANSWER_WITHIN = 0.2
 PATIENCE = 30.0
+
+#: What happens in the world, in words.
+SCENES = {
+    "obstacle": "an obstacle stands on the line",
+    "clear": "the obstacle is gone",
+    "/stop": "someone presses the stop button",
+    "/continue": "someone presses the continue button",
+    "cover": "the line can't be seen",
+    "uncover": "the line can be seen again",
+    "end": "the end",
+}
+
+
+def said(text, stream=None):
+    """Prints a line at once, also where the output is not a terminal."""
+    print(text, file=stream or sys.stdout, flush=True)
 
 
 class Connection(ABC):
@@ -71,11 +88,16 @@ class Runner:
 
     def run(self):
         """Plays the scenario to its end; says whether it got there."""
+        said("waiting for the controller on " + ", ".join(self.simulation.topics) + " ...")
         if not self.waited_for(self.connection.connected):
-            return False
+            return self.failed(f"no controller listens to all of these topics after {PATIENCE:.0f} s: is it started?")
+        said("the controller is there: the world starts")
         started = time.monotonic()
         while not self.simulation.ended:
-            for topic, data in self.simulation.advance():
+            messages = self.simulation.advance()
+            for happening in self.simulation.happened:
+                said(f"{self.simulation.time:4.0f} s  {SCENES.get(happening, happening)}")
+            for topic, data in messages:
                 self.connection.publish(topic, data, self.simulation.time)
                 self.note(topic, self.in_short(data))
             if self.simulation.due(POSE_PERIOD):
@@ -84,10 +106,16 @@ class Runner:
                 self.connection.clock(self.simulation.time)
                 self.receive(STEP / LOCKSTEP_SPEED)
                 if not self.waited_for(self.has_answer):
-                    return False
+                    return self.failed(f"no command on /cmd_vel for {PATIENCE:.0f} s: the controller does not answer")
             else:
                 self.receive(max(0.0, started + self.simulation.time - time.monotonic()))
         return True
+
+    @staticmethod
+    def failed(why):
+        """Says on standard error why the scenario can't go on."""
+        said(f"error: {why}", sys.stderr)
+        return False
 
     def receive(self, seconds):
         """Waits, then obeys the commands that have come."""

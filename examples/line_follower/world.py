@@ -174,6 +174,8 @@ class Simulation:
         self.world = World()
         self.steps = 0
         self.ended = False
+        #: What happened in the last step.
+        self.happened: list[str] = []
         self._scenario = list(scenario)
         buttons = [happening for _, happening in scenario if happening.startswith("/")]
         #: All topics that something may be sent to.
@@ -192,9 +194,11 @@ class Simulation:
         """One time step; what is sent after it, as topics and data: a number, a list of ranges, or None."""
         self.world.step()
         self.steps += 1
+        self.happened = []
         messages: list[tuple[str, object]] = []
         while self._scenario and self._scenario[0][0] <= self.time:
             happening = self._scenario.pop(0)[1]
+            self.happened.append(happening)
             if happening.startswith("/"):
                 messages.append((happening, None))
             else:
