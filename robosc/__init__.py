@@ -61,6 +61,10 @@ def __getattr__(name: str) -> Any:
     return getattr(import_module(_LOADED_WHEN_ASKED[name]), name)
 
 
+def __dir__() -> list[str]:
+    return sorted([*__all__, "__version__"])
+
+
 def load(path: str | PathLike[str], library_paths: Sequence[str | PathLike[str]] = ()) -> Robot:
     """The robot in a `.rscd` file, or in an `.xmi` file of the robosc metamodel, its names resolved.
 

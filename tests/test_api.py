@@ -87,6 +87,10 @@ def test_libraries_are_looked_for_in_given_folders(door: Path, tmp_path: Path) -
         robosc.load(tmp_path / "parts" / "parts.rscd")
 
 
+def test_only_what_is_public_is_offered() -> None:
+    assert {*dir(robosc)} == {*robosc.__all__, "__version__"}
+
+
 def test_no_supervisor(door: Path) -> None:
     door.write_text(DOOR.replace("initial marked", "initial").replace("needs Leaf.closed", "needs Leaf.opened"))
     model = robosc.to_sct(robosc.load(door))

@@ -38,6 +38,9 @@ def repair(expression: ex.Expression, found: Type, wanted: Type) -> str:
 
     An object value is found as UNKNOWN; where UNKNOWN is wanted, any type will do that can be compared.
     """
+    source = _source(expression) if isinstance(wanted, EnumType) else None
+    if source and isinstance(wanted, EnumType) and declared_type(wanted.definition.type) == found:
+        return f"declare {source} with the type `{written(wanted.definition.name)}`, whose rules read this data"
     if isinstance(found, (ObjectType, ArrayType)) or found == NONE:
         return _part(expression, found, wanted)
     literal = literal_repair(expression, found, wanted)
@@ -92,6 +95,20 @@ def equality_repair(operator: ex.Equation | ex.Inequation, left: Type, right: Ty
         if {found, wanted} == {INTEGER, DOUBLE}:
             return operator, "multiply the integer by `1.0`, or compare by `<`, `<=`, `>` or `>=`"
     return operator, f"compare {left} with {left}, or {right} with {right}"
+
+
+def _source(expression: ex.Expression) -> str | None:
+    """Whose data an expression is as a whole: a message, or the response, error or feedback of something else."""
+    if not isinstance(expression, rsc.Access) or not expression.value or expression.segments:
+        return None
+    around = expression.eContainer()
+    while around is not None and not isinstance(around, rsc.ResultTransition):
+        around = around.eContainer()
+    communication = around.communicationType.communicationType if around and around.communicationType else None
+    if around is None or communication is None:
+        return None
+    name = f"`{written(communication.name)}`"
+    return name if isinstance(communication, rsc.Message) else f"the {around.resultType} of {name}"
 
 
 def _part(whole: ex.Expression, found: Type, wanted: Type) -> str:

@@ -71,6 +71,8 @@ def command(
 
     Exit status: 0 done, 1 errors in the model, 2 a wrong call.
     """
+    if model is None and name is None and kind is None:
+        raise CallError("give a MODEL or --metamodel NAME")
     if (model is None) == (name is None) or (model is None and kind is not None):
         raise CallError("either a MODEL, with or without --kind, or a --metamodel is drawn")
     allowed = tuple(GRAPH_NOTATIONS) if model else NOTATIONS

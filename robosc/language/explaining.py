@@ -6,6 +6,7 @@ from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from robosc.language.grammar import is_reserved
+from robosc.language.outline import RULES
 from robosc.language.tokens import Kind, Token
 
 if TYPE_CHECKING:
@@ -100,6 +101,8 @@ def hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) -> str
         return "leave it out: nothing ends with a semicolon"
     if before.is_keyword(",") and token.kind is Kind.SYMBOL:
         return "leave out the comma before it"
+    if "->" in wanted and block.level is RULES and (token.is_first or before.text == "default"):
+        return "write `->` before the value that the rule gives"
     if token.text in {"=", ":", ":=", "=>", "->"} and len(symbols) == 1:
         return f"write `{symbols[0]}`"
     if "." in {token.text, before.text} and Kind.NUMBER in {token.kind, before.kind, tokens[index + 1].kind}:

@@ -184,8 +184,15 @@ class _Linker:
         found = members.get(name.text)
         if found is None and not self._file.may_declare(name.text, declared):
             what = "communication" if declared is Declared.COMMUNICATION else "variable or state"
-            self._missing(name, f"component `{component.name}` has no {what}", members)
+            values = [] if declared is Declared.COMMUNICATION else self._scope.find(rsc.EnumValue, name.text)
+            hint = self._value_of_enum(name, values[0][1]) if values else None
+            self._missing(name, f"component `{component.name}` has no {what}", members, hint)
         return found
+
+    @staticmethod
+    def _value_of_enum(name: Name, value: rsc.EnumValue) -> str:
+        enum = value.eContainer().eContainer()
+        return f"`{written(name.text)}` is a value of `{written(enum.name)}`: write it without a component"
 
     def _target(self, transition: rsc.Transition, name: Name) -> None:
         own = self._around(transition, rsc.Component)

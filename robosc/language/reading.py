@@ -103,7 +103,7 @@ class _Reader:
         return f"library `{name.text}` is declared by several files of one folder: {files}", "keep one of them"
 
     def _none(self, name: Name, path: Path) -> tuple[str, str]:
-        close = get_close_matches(name.text, sorted(set(self._path.known(path))), n=1)
+        close = get_close_matches(name.text, sorted(set(self._path.known(path))), n=1, cutoff=0.75)
         where = "libraries are looked for beside this file, in the folders of -I and of ROBOSC_PATH"
         return f"there is no library `{name.text}`", f"did you mean `{close[0]}`?" if close else where
 

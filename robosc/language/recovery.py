@@ -181,11 +181,13 @@ class _Recovery:
         if token.kind is Kind.OPEN_STRING:
             self._report(index, "this string is not closed", f"end it with `{token.text[0]}` in the same line")
             return
-        message = f"found {found(token)}, expected {expected(failure.expected, block.level)}"
+        wanted = f"expected {expected(failure.expected, block.level)}"
+        message = f"found {found(token)}, {wanted}"
         repair = hint(tokens, index, failure.expected, block)
         if index >= block.after and token.is_first:
             # What is missing belongs where the item ends, not to the next one.
             end = tokens[index - 1].end
+            message = f"found {found(token)} in line {self._text.span(token.start, token.end).line}, {wanted}"
             self._findings.append(self._text.error("syntax", end, end, message, repair))
         else:
             self._report(index, message, repair)

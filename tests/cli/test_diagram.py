@@ -78,6 +78,7 @@ def test_a_model_with_errors(run: Run, broken: Path) -> None:
 @pytest.mark.parametrize(
     "call",
     [
+        (),
         ("--metamodel", "uml"),
         ("--metamodel", "sct", "--format", "png"),
         (),

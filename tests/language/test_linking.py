@@ -123,6 +123,24 @@ def test_every_unresolved_name_is_a_finding_with_what_may_be_meant(tmp_path: Pat
     }
 
 
+def test_the_value_of_an_enum_belongs_to_no_component(tmp_path: Path) -> None:
+    found = reading(
+        tmp_path,
+        """
+        robot R {
+          datatype enum Ahead from boolean to { value -> clear default -> blocked }
+          component Lidar {
+            incoming message move with type: none
+            outgoing message scan with type: Ahead
+          }
+          requirement move needs Lidar.clear
+        }
+        """,
+    )
+    assert underlined(found) == [("unresolved-reference", "clear")]
+    assert found.findings[0].hint == "`clear` is a value of `Ahead`: write it without a component"
+
+
 def test_properties_are_looked_up_in_the_type_before_them(tmp_path: Path) -> None:
     found = reading(
         tmp_path,

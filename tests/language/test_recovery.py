@@ -82,6 +82,8 @@ FAULTS = [
     ("<= 1.0", "=< 1.0", "=<", "write `<=`"),
     (" and value", " && value", "&&", "write `and`"),
     ("-> free", "=> free", "", "expected an operator or `->`"),
+    ("1.0 -> free", "1.0 > free", "", "found `default` in line 11, expected an operator or `->`; write `->`"),
+    ("default -> blocked", "default blocked", "blocked", "expected `->`; write `->`"),
     ("default -> blocked", "default -> ", "", "expected a name"),
     ("outgoing message", "outgoing mesage", "mesage", "did you mean `message`?"),
     ("outgoing message", "message", "message", "expected `incoming`, `outgoing`"),

@@ -1,8 +1,9 @@
-"""What the node generators can't write yet, or must not: each a located error."""
+"""What the node generators can't write yet, or must not: each a located error; and what it leaves aside."""
 
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from robosc.diagnostics import START, Diagnostic, Severity
@@ -29,7 +30,7 @@ _RISKY = re.compile(r'["\\$;\n\r]')
 
 
 def preconditions(models: Models, configuration: Configuration) -> list[Diagnostic]:
-    """What keeps these models from becoming a node, with these settings; nothing where they can."""
+    """What keeps these models from becoming a node, with these settings, and warnings about settings without effect."""
     graph = models.rosgraph
     if graph is None:
         message = "there is no ROS graph beside this model: generate from the .rscd or the .rosgraph.xmi"
@@ -94,3 +95,12 @@ def _settings(graph: rosgraph.RosGraph, configuration: Configuration) -> Iterato
     for key, value in unfinished.items():
         if value:
             yield configuration.error((key,), f'"{key}" can\'t be generated for ROS yet')
+    controller = configuration.supervisor.controller
+    unused = {
+        ("supervisor", "controller"): controller.run or controller.launch,
+        ("output", "ros2SupervisorNodeLocation"): configuration.output.ros2_supervisor_node_location,
+    }
+    for place_of_key, setting in unused.items():
+        if setting:
+            finding = configuration.error(place_of_key, f'"{".".join(place_of_key)}" has no effect on this target')
+            yield replace(finding, severity=Severity.WARNING)

@@ -8,6 +8,7 @@ import pytest
 
 import robosc
 from robosc import config
+from robosc.diagnostics import Severity
 from robosc.m2t.cpp.preconditions import preconditions
 
 if TYPE_CHECKING:
@@ -39,7 +40,7 @@ GOOD = {
 }
 
 
-def found(tmp_path: Path, settings: str = "{}", **changes: str) -> list[str]:
+def found(tmp_path: Path, settings: str = "{}", least: Severity | None = None, **changes: str) -> list[str]:
     path = tmp_path / "cart.rscd"
     path.write_text(ROBOT % (GOOD | changes), encoding="utf-8")
     robot = robosc.load(path)
@@ -48,7 +49,11 @@ def found(tmp_path: Path, settings: str = "{}", **changes: str) -> list[str]:
     file = tmp_path / "controller-config.json"
     file.write_text(settings, encoding="utf-8")
     findings = preconditions(robosc.Models(model, robosc.to_rosgraph(robot), robot), config.read(file))
-    return [f"{each.file.rpartition('/')[2]}:{each.span.line}: {each.message}" for each in findings]
+    return [
+        f"{each.file.rpartition('/')[2]}:{each.span.line}: {each.message}"
+        for each in findings
+        if each.severity is (least or each.severity)
+    ]
 
 
 def test_nothing_against_a_good_model(tmp_path: Path) -> None:
@@ -92,6 +97,25 @@ def test_names_and_kinds(tmp_path: Path, changes: dict[str, str], expected: str)
 )
 def test_settings(tmp_path: Path, settings: str, expected: str) -> None:
     assert found(tmp_path, settings) == [expected]
+
+
+@pytest.mark.parametrize(
+    ("settings", "key"),
+    [
+        (
+            '{\n "supervisor": {\n  "controller": {"run": {"packageName": "p", "executable": "e"}}}}',
+            "supervisor.controller",
+        ),
+        (
+            '{\n "supervisor": {\n  "controller": {"launch": {"packageName": "p", "file": "f"}}}}',
+            "supervisor.controller",
+        ),
+        ('{\n "output": {\n  "ros2SupervisorNodeLocation": "x"}}', "output.ros2SupervisorNodeLocation"),
+    ],
+)
+def test_settings_without_effect(tmp_path: Path, settings: str, key: str) -> None:
+    assert found(tmp_path, settings) == [f'controller-config.json:3: "{key}" has no effect on this target']
+    assert found(tmp_path, settings, Severity.ERROR) == []
 
 
 def test_a_name_in_the_configuration_repairs_the_robot_s(tmp_path: Path) -> None:
