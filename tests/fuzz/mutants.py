@@ -54,11 +54,10 @@ def words(text: str) -> list[str]:
 
 
 @cache
-def sources() -> list[list[str]]:
-    """The words of each model that is there; those of which little can be generated come once, the others twice."""
+def sources(*, rejected: bool = True) -> list[list[str]]:
+    """The words of each model that is there, with those that show faults or without."""
     files = [each for folder in _FOLDERS for each in sorted((ROOT / folder).rglob("*.rscd"))]
-    files += [each for each in files if "rejected" not in each.parts]
-    texts = [each.read_text(encoding="utf-8") for each in files]
+    texts = [each.read_text(encoding="utf-8") for each in files if rejected or "rejected" not in each.parts]
     for module in sorted((ROOT / "tests" / "m2m").glob("test_robosc_*.py")):
         texts += re.findall(r'"""\n(robot R \{.*?\n\})\n', module.read_text(encoding="utf-8"), flags=re.DOTALL)
     return [words(each) for each in texts]
@@ -67,7 +66,7 @@ def sources() -> list[list[str]]:
 def mutant(seed: int) -> str:
     """The text of a model with one to four faults, the same for the same seed and models."""
     random = Random(seed)  # noqa: S311 - nothing here is secret
-    text = list(random.choice(sources()))
+    text = list(random.choice(sources(rejected=random.random() < 0.5)))
     for _ in range(random.choice((1, 1, 1, 2, 2, 3, 4))):
         if text:
             random.choice(_MUTATIONS)(text, random)

@@ -14,7 +14,9 @@ from tests.fuzz.valid import checked, compared, compiled
 if TYPE_CHECKING:
     from pathlib import Path
 
-MUTANTS, CALLS, VALID = 250, 25, 15
+#: Quick to compile, and nothing undefined passes.
+FLAGS = ("-O0", "-fsanitize=undefined", "-fno-sanitize-recover=all")
+MUTANTS, CALLS, VALID = 250, 25, 12
 
 
 @pytest.mark.parametrize("first", range(0, MUTANTS, 50))
@@ -31,7 +33,7 @@ def test_calls(tmp_path: Path) -> None:
     statuses = set()
     for seed in range(CALLS):
         path.write_text(mutant(seed), encoding="utf-8")
-        statuses.add(called(path, tried(path, ["cif"]), seed))
+        statuses.add(called(path, seed))
     assert {0, 1} <= statuses
 
 
@@ -39,6 +41,6 @@ def test_calls(tmp_path: Path) -> None:
 def test_valid_robots(tmp_path: Path) -> None:
     robots = [robot for seed in range(VALID) for _, robot in [checked(seed, tmp_path / "robot.rscd")] if robot]
     assert len(robots) > VALID / 2
-    built = compiled(robots, tmp_path)
+    built = compiled(robots, tmp_path, FLAGS)
     for each in robots:
         compared(each, built)

@@ -65,8 +65,7 @@ def tried(path: Path, targets: Sequence[str]) -> Outcome:
     found = [*reading.findings, *check(reading.base, reading.findings)]
     _located(found, reading.texts)
     if has_errors(found) or not isinstance(reading.base, rsc.Robot):
-        status = int(has_errors(found))
-        return Outcome(status, status or 2, found)
+        return Outcome(int(has_errors(found)), 2 if isinstance(reading.base, rsc.Library) else 1, found)
     try:
         return _generated(reading.base, found, reading.texts, targets)
     except ModelError as error:
@@ -100,8 +99,9 @@ def _generated(robot: rsc.Robot, found: list[Diagnostic], texts: dict[str, str],
     return Outcome(0, 0, [*found, *supervision.findings, *refused], models)
 
 
-def called(path: Path, outcome: Outcome, seed: int) -> int:
-    """Has the command line do what a trial did, and asserts its exit statuses; returns the last one."""
+def called(path: Path, seed: int) -> int:
+    """Has the command line do what a trial does, and asserts its exit statuses; returns that of `transform`."""
+    outcome = tried(path, ["cif"])
     form = ("text", "json", "sarif")[seed % 3]
     checking = _run("check", str(path), "-I", str(LIBRARIES), "--format", form)
     assert checking == outcome.check_status, f"check ends with {checking}, not {outcome.check_status}"

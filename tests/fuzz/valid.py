@@ -17,7 +17,7 @@ from robosc.models import Models
 from robosc.synthesis import synthesize
 from tests.fuzz.trial import Outcome, tried
 from tests.m2t.cif.differences import differences
-from tests.m2t.supervisor.driver import FLAGS, STRICT, program, run, write
+from tests.m2t.supervisor.driver import STRICT, program, run, write
 from tests.m2t.supervisor.walk import Walk
 from tests.random_robots import random_robot
 from tests.synthesis.oracle import Oracle
@@ -101,7 +101,7 @@ def _saves_the_same(models: Models, folder: Path) -> None:
         (folder / each).unlink()
 
 
-def compiled(robots: Sequence[Robot], folder: Path, flags: Sequence[str] = FLAGS) -> Path:
+def compiled(robots: Sequence[Robot], folder: Path, flags: Sequence[str]) -> Path:
     """One program with the engines of all the robots; its argument says which of them runs."""
     sources = []
     for each in robots:

@@ -1,14 +1,13 @@
 """What the checks let pass can be transformed, and no text at all breaks reading and checking.
 
-Models are the repository's own, their words dropped, doubled, swapped, replaced by others and joined, and random ones.
-The environment variable ROBOSC_MUTANTS says how many of each to try.
+Models are the repository's own, and random ones. `tests/fuzz` adds faults to them. The environment variable
+ROBOSC_MODELS says how many to try.
 """
 
 from __future__ import annotations
 
 import os
-import re
-from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 from hypothesis import HealthCheck, given, settings
@@ -20,79 +19,14 @@ from robosc.language import read
 from robosc.m2m import robosc_to_rosgraph, robosc_to_sct
 from robosc.metamodel import robosc
 from robosc.metamodel.validity import faults
+from tests.fuzz.mutants import LIBRARIES, sources
 from tests.random_robots import random_robot
 
-ROOT = Path(__file__).parents[2]
-LIBRARIES = ROOT / "tests" / "checks" / "libraries"
-WORDS = re.compile(r"\s+|//[^\n]*|/\*[\s\S]*?\*/|\^?\w+(?:\.\d+)?|\"[^\"\n]*\"|:=|->|=>|!=|<=|>=|\.\.|[\s\S]")
-#: Words that take each other's place in a model that stays well-formed.
-KINDS = [
-    re.compile(pattern)
-    for pattern in (
-        r"(?:boolean|integer|double|string|none)$",
-        r"(?:and|or|=>)$",
-        r"(?:=|!=|<|<=|>|>=)$",
-        r"[-+*/]$",
-        r"(?:request|response|error|feedback|cancel)$",
-        r"(?:incoming|outgoing)$",
-        r"(?:true|false)$",
-        r"\d+$",
-        r"\d+\.\d+$",
-        r"\^?[A-Za-z_]\w*$",
-    )
-]
-MUTANTS = int(os.environ.get("ROBOSC_MUTANTS", "150"))
-
-
-def words(text: str) -> list[str]:
-    """The text cut up; blanks and comments become single blanks."""
-    found = (each if each.strip() else " " for each in WORDS.findall(text) if not each.startswith(("//", "/*")))
-    return [each for each in found if each != " "]
-
-
-def sources() -> list[list[str]]:
-    folders = ("examples", "robosc/stdlib", "tests/checks/accepted", "tests/checks/rejected", "tests/metamodel")
-    files = [each for folder in folders for each in sorted((ROOT / folder).rglob("*.rscd"))]
-    texts = [each.read_text(encoding="utf-8") for each in files]
-    for module in sorted((ROOT / "tests" / "m2m").glob("test_robosc_*.py")):
-        texts += re.findall(r'"""\n(robot R \{.*?\n\})\n', module.read_text(encoding="utf-8"), flags=re.DOTALL)
-    return [words(each) for each in texts]
-
+if TYPE_CHECKING:
+    from pathlib import Path
 
 SOURCES = sources()
-
-
-def kind(word: str) -> int:
-    return next((number for number, each in enumerate(KINDS) if each.match(word)), len(KINDS))
-
-
-@st.composite
-def mutants(draw: st.DrawFn) -> str:
-    """The text of a model with a few faults."""
-    text = list(draw(st.sampled_from(SOURCES)))
-    for _ in range(draw(st.integers(0, 4))):
-        if not text:
-            break
-        at = draw(st.integers(0, len(text) - 1))
-        match draw(st.sampled_from(["replace", "replace", "replace", "drop", "double", "swap", "splice", "exchange"])):
-            case "replace":
-                alike = sorted({each for each in text if kind(each) == kind(text[at])})
-                text[at] = draw(st.sampled_from(alike))
-            case "exchange":
-                text[at] = draw(st.sampled_from(draw(st.sampled_from(SOURCES))))
-            case "drop":
-                del text[at : at + draw(st.integers(1, 6))]
-            case "double":
-                after = at + draw(st.integers(1, 20))
-                text[after:after] = text[at:after]
-            case "swap":
-                other = draw(st.integers(0, len(text) - 1))
-                text[at], text[other] = text[other], text[at]
-            case "splice":
-                donor = draw(st.sampled_from(SOURCES))
-                start = draw(st.integers(0, len(donor) - 1))
-                text[at:at] = donor[start : start + draw(st.integers(1, 30))]
-    return " ".join(text)
+MODELS = int(os.environ.get("ROBOSC_MODELS", "50"))
 
 
 def examined(path: Path) -> tuple[robosc.Base | None, list[Diagnostic]]:
@@ -112,15 +46,6 @@ def limited(count: int) -> settings:
     return settings(max_examples=count, deadline=None, suppress_health_check=list(HealthCheck))
 
 
-@limited(MUTANTS)
-@given(text=mutants())
-def test_what_the_checks_let_pass_is_transformed(path: Path, text: str) -> None:
-    path.write_text(text, encoding="utf-8")
-    base, found = examined(path)
-    if isinstance(base, robosc.Robot) and not has_errors(found):
-        transformed(base)
-
-
 def transformed(robot: robosc.Robot) -> None:
     model, trace = robosc_to_sct.transform(robot)
     assert [fault for _, fault in faults(model)] == []
@@ -130,7 +55,7 @@ def transformed(robot: robosc.Robot) -> None:
 
 def test_a_random_robot_is_transformed(path: Path) -> None:
     clean = 0
-    for seed in range(max(MUTANTS // 3, 10)):
+    for seed in range(MODELS):
         path.write_text(random_robot(seed), encoding="utf-8")
         base, found = examined(path)
         assert not {"syntax", "unresolved-reference", "type"} & {each.rule for each in found}, f"seed {seed}"
@@ -140,7 +65,7 @@ def test_a_random_robot_is_transformed(path: Path) -> None:
     assert clean > 0.9 * seed
 
 
-@pytest.mark.parametrize("text", [" ".join(each) for each in SOURCES], ids=range(len(SOURCES)))
+@pytest.mark.parametrize("text", ["".join(each) for each in SOURCES], ids=range(len(SOURCES)))
 def test_every_model_of_the_repository_that_has_no_error_is_transformed(path: Path, text: str) -> None:
     path.write_text(text, encoding="utf-8")
     base, found = examined(path)
@@ -148,14 +73,14 @@ def test_every_model_of_the_repository_that_has_no_error_is_transformed(path: Pa
         transformed(base)
 
 
-@limited(max(MUTANTS // 3, 10))
+@limited(MODELS)
 @given(data=st.one_of(st.binary(max_size=200), st.text(max_size=200).map(lambda each: each.encode(errors="replace"))))
 def test_no_text_breaks_reading_and_checking(path: Path, data: bytes) -> None:
     path.write_bytes(data)
     examined(path)
 
 
-@limited(max(MUTANTS // 3, 10))
+@limited(MODELS)
 @given(soup=st.lists(st.sampled_from(sorted({each for text in SOURCES for each in text})), max_size=80).map(" ".join))
 def test_no_words_break_reading_and_checking(path: Path, soup: str) -> None:
     path.write_text(f"robot R {{ {soup}", encoding="utf-8")
