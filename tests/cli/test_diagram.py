@@ -78,7 +78,6 @@ def test_a_model_with_errors(run: Run, broken: Path) -> None:
 @pytest.mark.parametrize(
     "call",
     [
-        (),
         ("--metamodel", "uml"),
         ("--metamodel", "sct", "--format", "png"),
         (),
@@ -100,3 +99,7 @@ def test_a_place_that_can_not_be_written(run: Run) -> None:
     answer = run("diagram", "--metamodel", "sct", "-o", "file/sct.mmd")
     assert answer.exit_code == 2
     assert answer.stderr.startswith("Error: ")
+
+
+def test_what_to_draw_must_be_said(run: Run) -> None:
+    assert "give a MODEL or --metamodel NAME" in run("diagram").stderr
