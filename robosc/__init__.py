@@ -65,10 +65,15 @@ def __dir__() -> list[str]:
     return sorted([*__all__, "__version__"])
 
 
-def load(path: str | PathLike[str], library_paths: Sequence[str | PathLike[str]] = ()) -> Robot:
+def load(
+    path: str | PathLike[str],
+    library_paths: Sequence[str | PathLike[str]] = (),
+    interface_paths: Sequence[str | PathLike[str]] = (),
+) -> Robot:
     """The robot in a `.rscd` file, or in an `.xmi` file of the robosc metamodel, its names resolved.
 
-    Libraries are looked for beside the file, then in `library_paths`, in ROBOSC_PATH and in the standard library.
+    Libraries are looked for beside the file, then in `library_paths`, in ROBOSC_PATH and in the standard library; ROS
+    types that take the place of objects (`type: geometry_msgs/Twist`) as `check` does.
     Raises ModelError with all findings where text or names have errors, ValueError where the file holds no robot, and
     OSError where it can't be read. What the rules beyond syntax say, `check` tells.
     """
@@ -80,9 +85,10 @@ def load(path: str | PathLike[str], library_paths: Sequence[str | PathLike[str]]
 
         base = xmi.load(str(path))
     else:
+        from robosc.interfaces import Interfaces
         from robosc.language import read
 
-        reading = read(str(path), [str(each) for each in library_paths])
+        reading = read(str(path), [str(each) for each in library_paths], Interfaces(interface_paths))
         if reading.base is None or has_errors(reading.findings):
             raise ModelError(reading.findings)
         base = reading.base

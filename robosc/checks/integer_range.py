@@ -62,7 +62,9 @@ def _without_range(_: Instances, result: Needed) -> Iterator[Fault]:
                 Need(access, assigned.instance, assigned.variable),
                 f"`{field.name}` carries an integer without range to the supervisor, which needs"
                 f" `{assigned.variable.variable.name}`, expected a range: its inputs have finitely many values",
-                "write a range, such as `integer(0..100)`: what lies outside becomes the nearest bound",
+                "write a range, such as `integer(0..100)`: what lies outside becomes the nearest bound"
+                if not isinstance(field.eContainer().eContainer(), rsc.InterfaceTypeReference)
+                else f"ROS defines it: declare an object in its place, with a `{field.name}: integer(0..100)`",
             )
 
 

@@ -9,13 +9,13 @@ from robosc.checks.rule import Finding, interface_rule
 from robosc.checks.wire_data import Carried, UsedData, Uses, carried
 from robosc.checks.wire_faults import Fault, Unknown, faults
 from robosc.diagnostics import Severity
+from robosc.metamodel import robosc as rsc
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from robosc.interfaces import Interfaces
     from robosc.metamodel import expression as ex
-    from robosc.metamodel import robosc as rsc
 
 
 @interface_rule("interface-type")
@@ -40,6 +40,8 @@ def interface_unknown(base: rsc.Base, interfaces: Interfaces) -> Iterator[Findin
     """The definitions of all ROS types that interfaces name are at hand."""
     reported: set[tuple[object, str]] = set()
     for data in carried(base):
+        if isinstance(data.interface.eContainer(), rsc.InterfaceTypeReference):
+            continue  # Whoever linked it has said that there is no such type.
         for each in _unknown(data, interfaces):
             wanted: ex.Located | None = each.property if isinstance(each, Fault) else data.interface
             other = data.declared if isinstance(each, Fault) else data.communication

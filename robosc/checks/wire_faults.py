@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
-from robosc.interfaces.wire import FOLDERS, Basic, DefinitionError, Fields, Nested, Part, Sequence, WireType
+from robosc.interfaces.unknown import MAKE_KNOWN, REPAIR, why_unknown
+from robosc.interfaces.wire import Basic, DefinitionError, Fields, Nested, Part, Sequence, WireType
 from robosc.metamodel import robosc as rsc
 from robosc.naming import written
 from robosc.typing import declared_type
@@ -25,12 +26,6 @@ _FITTING: dict[type[rsc.DataType], tuple[frozenset[str], str]] = {
     rsc.DoubleDataType: (frozenset({"float32", "float64"}), "double"),
     rsc.StringDataType: (frozenset({"string"}), "string"),
 }
-
-_REPAIR = "repair it: until then nothing is checked against it"
-_MAKE_KNOWN = (
-    "give the folder of its package with --interface-path, or list it in ROBOSC_INTERFACE_PATH; until then nothing is"
-    " checked against it"
-)
 
 
 @dataclass(frozen=True)
@@ -62,27 +57,31 @@ def faults(data: Carried, interfaces: Interfaces, uses: Uses) -> list[Fault] | U
     for edition in interfaces.editions:
         try:
             fields = edition.fields(ros_type.package, ros_type.name, part)
-        except DefinitionError as fault:
-            return Unknown(f"the definition of {ros_type} can't be read: {fault}", _REPAIR)
+        except DefinitionError:
+            return Unknown(*why_unknown(interfaces, ros_type.package, ros_type.name, part))
         if fields is not None:
-            answer = list(_Comparison(edition).whole(data.declared, fields, _name(ros_type, part)))
+            answer = list(_Comparison(edition, ros_type).whole(data.declared, fields, _name(ros_type, part)))
             if not answer:
                 return []
             answers.append(answer)
     if not answers:
-        return _unknown(ros_type, part, interfaces)
+        return Unknown(*why_unknown(interfaces, ros_type.package, ros_type.name, part))
     return min(answers, key=lambda each: (sum(fault.is_used(uses) for fault in each), len(each)))
 
 
 class _Comparison:
-    def __init__(self, edition: Edition) -> None:
+    def __init__(self, edition: Edition, ros_type: Nested) -> None:
         self._edition = edition
+        self._ros_type = ros_type
         self._around: list[tuple[object, Nested]] = []
 
     def whole(self, declared: rsc.DataType, fields: Fields, name: str) -> Iterator[Fault]:
         """Data that goes as a whole with a part; its fields are those of an object, or one holds the value."""
         carried = wire_type(declared)
-        if isinstance(carried, rsc.ComplexDataTypeReference):
+        if isinstance(carried, rsc.InterfaceTypeReference) and _ros_type(carried) != self._ros_type:
+            message = f"the data is {_ros_type(carried)} here, and the communication is {self._ros_type}"
+            yield Fault(None, message, f"write `{self._ros_type}`")
+        elif isinstance(carried, rsc.ComplexDataTypeReference):
             if isinstance(carried.type, rsc.ObjectDataType):
                 yield from self._object(carried.type, fields, name)
         elif carried is not None and type(carried) in _FITTING:
@@ -107,7 +106,10 @@ class _Comparison:
         while isinstance(declared, rsc.Array) and isinstance(element, Sequence):
             declared, element = wire_type(declared.type), element.element
         definition = declared.type if isinstance(declared, rsc.ComplexDataTypeReference) else None
-        if isinstance(definition, rsc.ObjectDataType) and isinstance(element, Nested):
+        if isinstance(declared, rsc.InterfaceTypeReference) and _ros_type(declared) != element:
+            message = f"`{owner.name}` is {_text(owner.type)} here, and {wire} in {name}"
+            yield Fault(owner, message, _repair(wire, owner.name))
+        elif isinstance(definition, rsc.ObjectDataType) and isinstance(element, Nested):
             yield from self._nested(owner, definition, element)
         elif declared is not None and not _is_open(declared) and not _holds(element, declared):
             message = f"`{owner.name}` is {_text(owner.type)} here, and {wire} in {name}"
@@ -120,10 +122,10 @@ class _Comparison:
             fields = self._edition.fields(wire.package, wire.name, Part.MESSAGE)
         except DefinitionError as fault:
             message = f"the definition of {wire}, the type of `{owner.name}`, can't be read: {fault}"
-            yield Fault(owner, message, _REPAIR, unknown=True)
+            yield Fault(owner, message, REPAIR, unknown=True)
             return
         if fields is None:
-            yield Fault(owner, f"{wire}, the type of `{owner.name}` in ROS, is unknown", _MAKE_KNOWN, unknown=True)
+            yield Fault(owner, f"{wire}, the type of `{owner.name}` in ROS, is unknown", MAKE_KNOWN, unknown=True)
             return
         self._around.append((definition, wire))
         yield from self._object(definition, fields, str(wire))
@@ -145,6 +147,10 @@ def wire_type(declared: rsc.DataType | None) -> rsc.DataType | None:
         seen.append(declared)
         declared = declared.type.type
     return declared
+
+
+def _ros_type(reference: rsc.InterfaceTypeReference) -> Nested:
+    return Nested(reference.package, reference.rosType)
 
 
 def _is_open(declared: rsc.DataType) -> bool:
@@ -174,10 +180,6 @@ def _repair(wire: WireType, name: str | None) -> str:
     fitting = _type_for(wire)
     if fitting is None:
         return f"leave it out: no data type fits {wire}" if name else f"write `none`: no data type fits {wire}"
-    if isinstance(wire, Nested):
-        return f"declare an object with fields of {wire}, and write its name"
-    if "…" in fitting:
-        return f"declare an object with fields of {_core(wire)}, and write `{fitting}` with its name for `…`"
     return f"write `{written(name)}: {fitting}`" if name else f"write `{fitting}`"
 
 
@@ -186,30 +188,5 @@ def _type_for(wire: WireType) -> str | None:
         element = _type_for(wire.element)
         return None if element is None else f"array({element})"
     if isinstance(wire, Nested):
-        return "…"
+        return str(wire)
     return next((each for names, each in _FITTING.values() if wire.name in names), None)
-
-
-def _core(wire: WireType) -> WireType:
-    return _core(wire.element) if isinstance(wire, Sequence) else wire
-
-
-def _unknown(ros_type: Nested, part: Part, interfaces: Interfaces) -> Unknown:
-    package, kind = ros_type.package, part.kind
-    for other in Part:
-        if other.kind != kind and any(_has(each, ros_type, other) for each in interfaces.editions):
-            message = f"{ros_type} is of kind {other.kind}, expected a type of kind {kind}"
-            return Unknown(message, f"link a type of kind {kind}")
-    if not any(each.names(package, other) for each in interfaces.editions for other in FOLDERS):
-        return Unknown(f"the package `{package}` is unknown", _MAKE_KNOWN)
-    names = sorted({name for each in interfaces.editions for name in each.names(package, kind)})
-    close = get_close_matches(ros_type.name, names, n=1)
-    hint = f"did you mean `{close[0]}`?" if close else _MAKE_KNOWN
-    return Unknown(f"no {kind} type `{ros_type.name}` of the package `{package}` is known", hint)
-
-
-def _has(edition: Edition, ros_type: Nested, part: Part) -> bool:
-    try:
-        return edition.fields(ros_type.package, ros_type.name, part) is not None
-    except DefinitionError:
-        return True

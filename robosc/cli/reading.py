@@ -26,17 +26,18 @@ def read(path: str, library_paths: Sequence[str], report: Report, interface_path
 
     None where so little could be read that there is none. Raises ModelError for an XMI file with faults.
     """
+    interfaces = Interfaces(interface_paths)
     if path.endswith(".xmi"):
         from robosc.metamodel import xmi
 
         root: Root | None = xmi.load(path)
         findings = []
     else:
-        reading = read_text(path, library_paths)
+        reading = read_text(path, library_paths, interfaces)
         root, findings = reading.base, reading.findings
         report.add(findings, reading.texts)
     if isinstance(root, rsc.Base):
-        report.add(check(root, findings, Interfaces(interface_paths)))
+        report.add(check(root, findings, interfaces))
     return root
 
 

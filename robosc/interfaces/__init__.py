@@ -12,14 +12,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robosc.interfaces.folders import Share, Workspace
-from robosc.interfaces.wire import DefinitionError, Fields, Part
+from robosc.interfaces.wire import DefinitionError, Fields, Part, WireType
 from robosc.resources import locate
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
     from os import PathLike
 
-__all__ = ["DefinitionError", "Edition", "Interfaces", "Part"]
+__all__ = ["DefinitionError", "Edition", "Fields", "Interfaces", "Part", "WireType"]
 
 #: The field that holds a basic value of a part with several fields.
 _DATA = "data"

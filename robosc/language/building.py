@@ -71,6 +71,11 @@ class Builder:
                 for value in child:
                     if value.rule_name != "sep":
                         self._set(element, feature, value)
+        if isinstance(element, rsc.InterfaceTypeReference):
+            # A reference, too, though to nothing in any text.
+            start, end = node.position + self._offset, node.position_end + self._offset
+            name = f"{element.package}/{element.rosType}"
+            self.references[element] = {"type": Name(name, start, end)}
         return element
 
     def _set(self, element: Any, feature: str, node: Node) -> None:

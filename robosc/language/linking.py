@@ -5,6 +5,7 @@ from __future__ import annotations
 from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from robosc.language.interface_types import declare, is_made, link_interface, ros_properties, ros_property
 from robosc.language.scopes import File, Names, Scope
 from robosc.language.unread import Declared
 from robosc.metamodel import expression as ex
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from robosc.diagnostics import Diagnostic
+    from robosc.interfaces import Interfaces
     from robosc.language.building import Name
 
 _Element = TypeVar("_Element")
@@ -33,23 +35,26 @@ RULE = "unresolved-reference"
 OWN_MEMBERS = "a library's component speaks of its own members only"
 
 
-def link(file: File) -> list[Diagnostic]:
+def link(file: File, interfaces: Interfaces) -> list[Diagnostic]:
     """Resolves the names of a file, whose libraries are read and linked; returns a finding for each that can't be.
+
+    `interfaces` is what is known of the ROS types that take the place of objects.
 
     A name without element leaves its feature unset. A name that stands or falls with another one that is not
     resolved, or that text with a syntax error may declare, draws no finding of its own.
     """
     if file.base is None:
         return []
-    linker = _Linker(file)
+    linker = _Linker(file, interfaces)
     linker.imports()
     linker.link(Scope(file, file.base))
     return linker.findings
 
 
 class _Linker:
-    def __init__(self, file: File) -> None:
+    def __init__(self, file: File, interfaces: Interfaces) -> None:
         self.findings: list[Diagnostic] = []
+        self._interfaces = interfaces
         self._file = file
         self._scope: Scope
         self._definitions: dict[ex.Located, ex.Located] = {}
@@ -66,6 +71,12 @@ class _Linker:
         self._scope = scope
         for element, names in self._file.references.items():
             self._declaration(element, names)
+        for component in self._file.declared[rsc.Component].values():
+            if isinstance(component.type, rsc.LocalComponent):
+                for each in component.type.definitions:
+                    linked = "interface" in self._file.references.get(each, ())
+                    if isinstance(each, rsc.CommunicationType) and not linked:
+                        link_interface(each)
         for element, names in self._file.references.items():
             self._use(element, names)
 
@@ -74,6 +85,10 @@ class _Linker:
             case rsc.CommunicationType():
                 name = names["interface"]
                 element.interface = self._definition(rsc.Interface, "interface", Declared.INTERFACE, name)
+            case rsc.InterfaceTypeReference():
+                unknown = declare(element, self._interfaces)
+                if unknown is not None:
+                    self._report(names["type"], *unknown)
             case rsc.ComplexDataTypeReference():
                 name = names["type"]
                 found = self._definition(rsc.ComplexDataType, "object or enum", Declared.DATA_TYPE, name)
@@ -305,6 +320,14 @@ class _Linker:
             hint = f"write an index before it: `[0].{name.text}`" if isinstance(of, ArrayType) else None
             self._report(name, f"there is no property `{name.text}`: what stands before it is {what}", hint)
             return None
+        if is_made(of.definition):
+            made = ros_property(of.definition, name.text, self._interfaces)
+            if made is None:
+                known = ros_properties(of.definition, self._interfaces)
+                self._missing(
+                    name, f"the ROS type `{of.definition.name}` has no field that a model can use named", known
+                )
+            return made
         for each in of.definition.properties:
             if each.name == name.text:
                 return each

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robosc.diagnostics import in_order
+from robosc.interfaces import Interfaces
 from robosc.language.libraries import LibraryPath
 from robosc.language.linking import RULE, link
 from robosc.language.recovery import parse_file
@@ -37,14 +38,15 @@ class Reading:
     texts: dict[str, str] = field(default_factory=dict)
 
 
-def read(path: Path | str, library_paths: Iterable[Path | str] = ()) -> Reading:
+def read(path: Path | str, library_paths: Iterable[Path | str] = (), interfaces: Interfaces | None = None) -> Reading:
     """Reads a robot or a library and all that it imports, and links its names.
 
-    `library_paths` are searched after the file's own folder and before ROBOSC_PATH and the standard library. Raises
+    `library_paths` are searched after the file's own folder and before ROBOSC_PATH and the standard library.
+    `interfaces` is what is known of ROS types; None: what is known without folders of the call. Raises
     OSError where the file itself can't be read; all other faults are findings of the rules `syntax`,
     `unresolved-reference` and `import-cycle`.
     """
-    reader = _Reader(library_paths)
+    reader = _Reader(library_paths, interfaces or Interfaces())
     file = reader.read(Path(path), str(path))
     return Reading(file.base, in_order(reader.findings), reader.texts)
 
@@ -52,10 +54,11 @@ def read(path: Path | str, library_paths: Iterable[Path | str] = ()) -> Reading:
 class _Reader:
     """Reads each file once; `_reading` are those that are being read, each imported by the one before."""
 
-    def __init__(self, library_paths: Iterable[Path | str]) -> None:
+    def __init__(self, library_paths: Iterable[Path | str], interfaces: Interfaces) -> None:
         self.findings: list[Diagnostic] = []
         self.texts: dict[str, str] = {}
         self._path = LibraryPath(library_paths)
+        self._interfaces = interfaces
         self._files: dict[Path, File] = {}
         self._reading: list[Path] = []
 
@@ -73,7 +76,7 @@ class _Reader:
         if file.base is not None:
             set_path(file.base, shown)
             self._libraries(file, path)
-            self.findings += link(file)
+            self.findings += link(file, self._interfaces)
         self._reading.pop()
         return file
 

@@ -175,7 +175,7 @@ class _Transformation:
         key = (package, name, kind.name)
         if key not in self.interfaces:
             interface = rosgraph.Interface(package=package, type=name, kind=kind)
-            interface.source = source(linked, linked.eContainer()) if linked is not None else None
+            interface.source = source(linked, _home(linked)) if linked is not None else None
             self.interfaces[key] = interface
             self.graph.interfaces.append(interface)
         return self.interfaces[key]
@@ -332,6 +332,12 @@ class _Transformation:
         event = self.trace.event(occurrence, EVENT_OF[transition.resultType.name])
         carried = _received(occurrence, transition.resultType)
         return event, None if carried is None else self.wire(carried)
+
+
+def _home(element: ex.Located) -> robosc.Base:
+    while not isinstance(element, robosc.Base):
+        element = element.eContainer()
+    return element
 
 
 def _wire_type(kind: robosc.DataType) -> robosc.DataType:

@@ -205,6 +205,14 @@ class ComplexDataTypeReference(DataType):
     type: ComplexDataType
     def __init__(self, *, type: ComplexDataType | None = ..., source: str | None = ...) -> None: ...
 
+class InterfaceTypeReference(ComplexDataTypeReference):
+    """Names a ROS type in place of an object that the model would define. Linking makes the object, its `type`."""
+    package: str
+    rosType: str
+    definition: ObjectDataType | None
+    interface: Interface | None
+    def __init__(self, *, package: str | None = ..., rosType: str | None = ..., definition: ObjectDataType | None = ..., interface: Interface | None = ..., type: ComplexDataType | None = ..., source: str | None = ...) -> None: ...
+
 class ComplexDataType(Definition, expression.NamedElement):
     """A data type with a name."""
     def __init__(self, *, source: str | None = ..., name: str | None = ...) -> None: ...

@@ -22,6 +22,8 @@ MADE_BY_TRANSFORMATIONS = {
 }
 #: Features that no rule sets: reading sets them from the file, and the operators' left operands from their precedence.
 SET_OTHERWISE = {"source", "file", "left"}
+#: Those that linking sets in elements of one class.
+MADE_BY_LINKING = {"InterfaceTypeReference": {"definition", "interface", "type"}}
 
 
 def classifier(name: str) -> Any:
@@ -49,7 +51,8 @@ def is_abstract(name: str) -> bool:
 
 
 def features(name: str) -> dict[str, Any]:
-    return {each.name: each for each in classifier(name).eAllStructuralFeatures() if each.name not in SET_OTHERWISE}
+    others = SET_OTHERWISE | MADE_BY_LINKING.get(name, set())
+    return {each.name: each for each in classifier(name).eAllStructuralFeatures() if each.name not in others}
 
 
 def is_a(name: str, ancestor: str) -> bool:

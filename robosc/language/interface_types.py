@@ -1,0 +1,128 @@
+"""Objects that ROS defines: made of a ROS type's fields as the names in a text ask for them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robosc.interfaces import DefinitionError, Part
+from robosc.interfaces.unknown import why_unknown
+from robosc.interfaces.wire import Basic, Sequence
+from robosc.metamodel import robosc as rsc
+from robosc.metamodel.reflection import contents, tree
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from robosc.interfaces import Edition, Fields, Interfaces, WireType
+    from robosc.metamodel import expression as ex
+
+#: Small integers bring their range with them.
+_RANGES = {
+    "int8": (-128, 127),
+    "uint8": (0, 255),
+    "int16": (-32768, 32767),
+    "uint16": (0, 65535),
+}
+_INTEGERS = {*_RANGES, "int32", "uint32", "int64", "uint64", "byte", "char"}
+
+
+def declare(reference: rsc.InterfaceTypeReference, interfaces: Interfaces) -> tuple[str, str] | None:
+    """Gives a reference the object that it stands for; a message and a hint where the ROS type is not known."""
+    if next(_definitions(reference, interfaces), None) is None:
+        return why_unknown(interfaces, reference.package, reference.rosType, _part(reference))
+    reference.definition = rsc.ObjectDataType(name=reference.rosType, source=reference.source)
+    reference.type = reference.definition
+    return None
+
+
+def link_interface(communication: rsc.CommunicationType) -> None:
+    """Gives communication that links no interface that of its data, or of its enum's, if ROS defines this."""
+    for _, declared in contents(communication):
+        is_enum = isinstance(declared, rsc.ComplexDataTypeReference) and isinstance(declared.type, rsc.EnumDataType)
+        named = declared.type.type if is_enum else declared
+        if isinstance(named, rsc.InterfaceTypeReference) and communication.interface is None:
+            if named.interface is None:
+                named.interface = rsc.Interface(
+                    name=named.rosType, package=named.package, type=named.rosType, source=named.source
+                )
+            communication.interface = named.interface
+
+
+def is_made(definition: rsc.ComplexDataType) -> bool:
+    """Whether ROS defines an object, and not a text."""
+    return isinstance(definition.eContainer(), rsc.InterfaceTypeReference)
+
+
+def ros_property(definition: rsc.ObjectDataType, name: str, interfaces: Interfaces) -> rsc.ObjectProperty | None:
+    """The property for a field of such an object; None where there is no such field, or no data type for it."""
+    for each in definition.properties:
+        if each.name == name:
+            return each
+    for edition, fields in _definitions(definition.eContainer(), interfaces):
+        if name in fields:
+            found = _data_type(fields[name], edition)
+            if found is not None:
+                made = rsc.ObjectProperty(name=name, type=found)
+                for _, each in tree(made):
+                    each.source = definition.source
+                definition.properties.append(made)
+                for _, each in tree(found):
+                    if isinstance(each, rsc.InterfaceTypeReference):
+                        declare(each, interfaces)
+                return made
+    return None
+
+
+def ros_properties(definition: rsc.ObjectDataType, interfaces: Interfaces) -> list[str]:
+    """The names of all properties that such an object can have, those of ROS 2 first."""
+    known = _definitions(definition.eContainer(), interfaces)
+    fields = [(name, each, edition) for edition, fields in known for name, each in fields.items()]
+    return list(dict.fromkeys(name for name, each, edition in fields if _data_type(each, edition) is not None))
+
+
+def _definitions(reference: rsc.InterfaceTypeReference, interfaces: Interfaces) -> Iterator[tuple[Edition, Fields]]:
+    for edition in interfaces.editions:
+        try:
+            fields = edition.fields(reference.package, reference.rosType, _part(reference))
+        except DefinitionError:
+            continue
+        if fields is not None:
+            yield edition, fields
+
+
+def _part(reference: rsc.InterfaceTypeReference) -> Part:
+    """Which part of its type a reference stands for: where it stands decides."""
+    around: ex.Located = reference.eContainer()
+    match around:
+        case rsc.Service():
+            return Part.REQUEST if around.requestType is reference else Part.RESPONSE
+        case rsc.Action() if around.feedbackType is reference:
+            return Part.FEEDBACK
+        case rsc.Action():
+            return Part.GOAL if around.requestType is reference else Part.RESULT
+    return Part.MESSAGE
+
+
+def _data_type(wire: WireType, edition: Edition) -> rsc.DataType | None:
+    match wire:
+        case Sequence():
+            element = _data_type(wire.element, edition)
+            return None if element is None else rsc.Array(type=element)
+        case Basic():
+            return _basic(wire.name)
+    try:
+        known = edition.fields(wire.package, wire.name, Part.MESSAGE) is not None
+    except DefinitionError:
+        known = False
+    return rsc.InterfaceTypeReference(package=wire.package, rosType=wire.name) if known else None
+
+
+def _basic(name: str) -> rsc.DataType | None:
+    if name in _INTEGERS:
+        minimum, maximum = _RANGES.get(name, (None, None))
+        return rsc.IntegerDataType(minimum=minimum, maximum=maximum)
+    if name == "bool":
+        return rsc.BooleanDataType()
+    if name in {"float32", "float64"}:
+        return rsc.DoubleDataType()
+    return rsc.StringDataType() if name == "string" else None
