@@ -9,16 +9,16 @@ from robosc.resources import locate
 PAGE = Path(__file__).parent.parent / "docs" / "language.md"
 
 
-def snippet(heading: str) -> str:
+def snippet(heading: str, number: int = 0) -> str:
     section = PAGE.read_text(encoding="utf-8").partition(f"\n## {heading}\n")[2].partition("\n## ")[0]
-    return re.findall(r"^```\n(.*?)^```$", section, flags=re.MULTILINE | re.DOTALL)[-1]
+    return re.findall(r"^```\n(.*?)^```$", section, flags=re.MULTILINE | re.DOTALL)[number]
 
 
 def test_the_snippets_make_a_model(tmp_path: Path) -> None:
     components = snippet("Components and their communication").rstrip()
     assert components.endswith("}")
     parts = [
-        snippet("Robot and library"),
+        snippet("Robot and library", 1),
         components[:-1] + snippet("Behaviour") + "}",
         *(snippet(each) for each in ("Data types", "Requirements", "Provided data")),
     ]
