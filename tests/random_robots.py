@@ -42,8 +42,12 @@ class Type:
         return self.kind in {"boolean", "enum"} or (self.kind == "integer" and "(" in self.text)
 
     @property
+    def is_of_ros(self) -> bool:
+        return "/" in (self.base or self).text
+
+    @property
     def needs_link(self) -> bool:
-        return (self.base or self).kind == "object"
+        return (self.base or self).kind == "object" and not self.is_of_ros
 
     @property
     def can_be_sent(self) -> bool:
@@ -56,6 +60,12 @@ INTEGER = Type("integer", "integer")
 RANGED = [Type(f"integer({low}..{high})", "integer") for low, high in ((0, 3), (-2, 2), (5, 5), (-9, -7))]
 VECTOR = Type("Vector3", "object", tuple((each, DOUBLE) for each in "xyz"))
 TWIST = Type("Twist", "object", (("linear", VECTOR), ("angular", VECTOR)))
+#: Types that ROS defines, named in messages.
+ROS_TYPES = [
+    Type("geometry_msgs/Vector3", "object", VECTOR.properties),
+    Type("geometry_msgs/Twist", "object", TWIST.properties),
+    Type("sensor_msgs/LaserScan", "object", (("ranges", Type("array(double)", "array", element=DOUBLE)),)),
+]
 #: Of basic types some that exist; `i` is for all others.
 INTERFACES = (
     "interface i use Some from some_msgs",
@@ -121,7 +131,7 @@ class Writer:
 
     def robot(self, name: str) -> str:
         imports = [self.imported(number) for number in self.many(2)]
-        types = [self.data_type(number) for number in self.many(4)]
+        types = [self.data_type(number) for number in self.many(5)]
         for number in self.many(3, 1):
             self.declare(number)
         parts = [self.component(each) for each in self.components if not each.text]
@@ -172,7 +182,7 @@ class Writer:
             self.objects.append(Type(self.name(f"O{number}"), "object", tuple(properties)))
             text = " ".join(f"{name}: {kind.text}" for name, kind in properties)
             return f"datatype object {self.objects[-1].text} {{ {text} }}"
-        base = self.one([self.simple(), *self.objects])
+        base = self.one([self.simple(), *self.objects, *self.objects, self.one(ROS_TYPES)])
         values = tuple(self.name(f"v{number}{index}") for index in self.many(3, 1))
         reads = paths("value", base)
         rules = [f"{self.expression(BOOLEAN, reads, 2)} -> {each}" for each in values[1:]]
@@ -182,8 +192,11 @@ class Writer:
 
     # Components
 
-    def carried(self) -> Type:
-        return self.one([NONE, self.simple(), *self.enums, *self.objects])
+    def carried(self, kind: str) -> Type:
+        choices = [NONE, self.simple(), *self.enums, *self.enums, *self.objects, *self.objects]
+        if kind == "outgoing":
+            return self.one([*choices, self.one(ROS_TYPES)])
+        return self.one([each for each in choices if not each.is_of_ros])
 
     def declare(self, number: int) -> None:
         component = Component(self.name(f"C{number}"))
@@ -193,11 +206,12 @@ class Writer:
             topic = self.maybe('identifier: "/shared", ', 4)
             name = f"{made.name} with {topic}"
             if kind == "outgoing":
-                made.data = {"response": self.carried()}
+                made.data = {"response": self.carried(kind)}
                 made.text = f"outgoing message {name}type: {made.data['response'].text}"
             else:
-                made.sent = self.one([each for each in (NONE, self.simple(), *self.objects) if each.can_be_sent])
-                made.data = {each: self.carried() for each in ("response", "feedback") if each in EVENTS[kind]}
+                choices = [NONE, self.simple(), *self.objects, *(ROS_TYPES[:2] if kind == "incoming" else [])]
+                made.sent = self.one([each for each in choices if each.can_be_sent])
+                made.data = {each: self.carried(kind) for each in ("response", "feedback") if each in EVENTS[kind]}
                 rest = "".join(f", {event}: {each.text}" for event, each in made.data.items())
                 word = "type" if kind == "incoming" else "request"
                 head = "incoming message" if kind == "incoming" else kind
@@ -209,7 +223,8 @@ class Writer:
             elif kind in {"incoming", "outgoing"}:
                 carried = {"incoming": made.sent, "outgoing": made.data.get("response", NONE)}[kind]
                 wire = carried.base or carried
-                made.text += self.maybe(f" links {'i' if wire.kind == 'integer' else f'i_{wire.kind}'}", 5)
+                if wire.kind != "object":
+                    made.text += self.maybe(f" links {'i' if wire.kind == 'integer' else f'i_{wire.kind}'}", 5)
             component.communications.append(made)
         if self.random.randrange(6) == 0:
             self.components.append(component)
@@ -325,9 +340,8 @@ class Writer:
         return leaf
 
     def boolean(self, reads: list[tuple[str, Type]], depth: int, left: str, right: str) -> str:
-        kind = self.one([INTEGER, DOUBLE, STRING, BOOLEAN, *self.enums])
-        if kind.kind in {"double", "string"} and not any(each.kind == kind.kind for _, each in reads):
-            kind = self.one([INTEGER, DOUBLE])
+        comparable = [each for _, each in reads if each.kind not in {"object", "array", "none"}]
+        kind = self.one([*comparable, INTEGER, DOUBLE, BOOLEAN, *self.enums])
         first, second = (self.expression(kind, reads, depth - 1) for _ in range(2))
         symbol = self.one(COMPARED if kind.kind in {"integer", "double"} else COMPARED[:2])
         logical = [f"{left} {self.one(['and', 'or', '=>'])} ({right})", f"!({left})"]
