@@ -80,7 +80,7 @@ class _Rebuilding:
         scope = f"{name}."
         for events in read.events:
             for each in events.names:
-                stem = _plain(each).partition("_")[2].rstrip("0123456789")
+                stem = _plain(each).partition("_")[2].rstrip("_0123456789")
                 event_kind = "data" if kind is sct.PlantKind.data else stem if stem in _EVENTS else "trigger"
                 event = sct.Event(
                     name=_plain(each), controllable=events.controllable, kind=getattr(sct.EventKind, event_kind)
@@ -91,7 +91,7 @@ class _Rebuilding:
             made.type = self.type(each, made)
             plant.inputs.append(self.define(made, scope))
             for event in plant.events:
-                if made.name.startswith(f"i_{event.name.partition('_')[2]}"):
+                if made.name.startswith(f"i_{event.name.rstrip('_').partition('_')[2]}"):
                     event.inputs.append(made)
         for each in read.variables:
             variable = sct.DiscreteVariable(name=_plain(each.name))
