@@ -205,7 +205,7 @@ class Writer:
             made = Communication(self.name(f"m{number}{index}"), kind)
             topic = self.maybe('identifier: "/shared", ', 4)
             if "_" in made.name:  # Not every name is one of a topic.
-                topic = f'identifier: "/t{number}/{index}", '
+                topic = f'identifier: "/t{number}/m{index}", '
             name = f"{made.name} with {topic}"
             if kind == "outgoing":
                 made.data = {"response": self.carried(kind)}

@@ -146,25 +146,25 @@ class Ranges:
             if len(self.cells(part)) == 1:
                 by_cell.setdefault(self.cells(part), []).append(part)
         for cells, group in by_cell.items():
-            if len(group) > 1 and not _both(cells, group, neutral):
+            if len(group) > 1 and not self._agree(cells, group, neutral):
                 return Interval(1 - neutral, 1 - neutral)
         return values
 
-
-def _both(cells: frozenset[Cell], group: Sequence[Node], neutral: bool) -> bool:
-    """Whether all conditions of the group are `neutral` for some value of what they read."""
-    domains = [_domain(cell) for cell in cells]
-    if prod(map(len, domains)) > _TRIED:
-        return True
-    for values in product(*domains):
-        at = dict(zip(cells, values, strict=True))
-
-        def evaluate(node: Node, at: Mapping[Cell, int] = at) -> Interval:
-            return _evaluate(node, at, evaluate)
-
-        if all(evaluate(part).single == neutral for part in group):
+    def _agree(self, cells: frozenset[Cell], group: Sequence[Node], neutral: bool) -> bool:
+        """Whether all conditions of the group can be `neutral` for one value of what they depend on."""
+        domains = [_domain(cell) for cell in cells]
+        if prod(map(len, domains)) > _TRIED:
             return True
-    return False
+        for values in product(*domains):
+            at = dict(zip(cells, values, strict=True))
+
+            def evaluate(node: Node, at: Mapping[Cell, int] = at) -> Interval:
+                # What is decided may read other cells, of which nothing is known here.
+                return self(node) if self(node).single is not None else _evaluate(node, at, evaluate)
+
+            if all(evaluate(part).single in {neutral, None} for part in group):
+                return True
+        return False
 
 
 def _domain(cell: Cell) -> range:
