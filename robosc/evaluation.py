@@ -27,38 +27,44 @@ _ARITHMETIC: dict[type[ex.Expression], Callable[..., int | float]] = {
 }
 
 
-def evaluate(expression: ex.Expression, read: Callable[[ex.Expression], Value]) -> Value:
+def evaluate(
+    expression: ex.Expression, read: Callable[[ex.Expression], Value], fit: Callable[[int], int] = int
+) -> Value:
     """The value of a well-typed expression; `read` gives the value of every reference in it.
 
-    Doubles follow IEEE 754, division by zero included; every comparison with NaN is false.
+    Doubles follow IEEE 754, division by zero included; every comparison with NaN is false. `fit` says what becomes of
+    a computed integer; by default it stays, however large.
     """
     match expression:
         case ex.BooleanLiteral() | ex.IntegerLiteral() | ex.DoubleLiteral() | ex.StringLiteral():
             return expression.value
         case ex.Negation():
-            return not evaluate(expression.operand, read)
+            return not evaluate(expression.operand, read, fit)
         case ex.UnaryMinus():
-            return -_number(expression.operand, read)
+            negative = -_number(expression.operand, read, fit)
+            return fit(negative) if isinstance(negative, int) else negative
         case ex.DoubleConversion():
-            return as_double(_number(expression.operand, read))
+            return as_double(_number(expression.operand, read, fit))
         case ex.Conditional():
-            chosen = expression.then if evaluate(expression.condition, read) else expression.otherwise
-            return evaluate(chosen, read)
+            chosen = expression.then if evaluate(expression.condition, read, fit) else expression.otherwise
+            return evaluate(chosen, read, fit)
         case ex.BinaryExpression():
-            return _binary(expression, read)
+            return _binary(expression, read, fit)
     return read(expression)
 
 
-def _binary(expression: ex.BinaryExpression, read: Callable[[ex.Expression], Value]) -> Value:
+def _binary(
+    expression: ex.BinaryExpression, read: Callable[[ex.Expression], Value], fit: Callable[[int], int]
+) -> Value:
     kind = type(expression)
-    left = evaluate(expression.left, read)
+    left = evaluate(expression.left, read, fit)
     if kind is ex.Conjunction:
-        return bool(left) and bool(evaluate(expression.right, read))
+        return bool(left) and bool(evaluate(expression.right, read, fit))
     if kind is ex.Disjunction:
-        return bool(left) or bool(evaluate(expression.right, read))
+        return bool(left) or bool(evaluate(expression.right, read, fit))
     if kind is ex.Implication:
-        return not left or bool(evaluate(expression.right, read))
-    right = evaluate(expression.right, read)
+        return not left or bool(evaluate(expression.right, read, fit))
+    right = evaluate(expression.right, read, fit)
     if kind is ex.Equation:
         return left == right
     if kind is ex.Inequation:
@@ -68,12 +74,14 @@ def _binary(expression: ex.BinaryExpression, read: Callable[[ex.Expression], Val
     if kind is ex.Division:
         return divide(as_double(left), as_double(right))
     if isinstance(left, float) or isinstance(right, float):
-        left, right = as_double(left), as_double(right)
-    return _ARITHMETIC[kind](left, right)
+        return _ARITHMETIC[kind](as_double(left), as_double(right))
+    return fit(int(_ARITHMETIC[kind](left, right)))
 
 
-def _number(expression: ex.Expression, read: Callable[[ex.Expression], Value]) -> int | float:
-    value = evaluate(expression, read)
+def _number(
+    expression: ex.Expression, read: Callable[[ex.Expression], Value], fit: Callable[[int], int]
+) -> int | float:
+    value = evaluate(expression, read, fit)
     assert isinstance(value, (int, float))
     return value
 

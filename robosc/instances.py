@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from robosc.metamodel import robosc
@@ -84,6 +86,14 @@ class Instances:
             for communication in instance.communications:
                 yield Occurrence(instance, communication)
 
+    def is_shared(self, communication: robosc.CommunicationType) -> bool:
+        """Whether another instance has a communication of the same name."""
+        return self._names[communication.name] > 1
+
+    def provided(self, occurrence: Occurrence) -> list[robosc.ProvideStatement]:
+        """The statements on the data of a communication, in the order of the text."""
+        return self._provided.get(occurrence, [])
+
     def instance(self, component: robosc.Component | None, within: Instance | None) -> Instance | None:
         """The instance that a text means by a component; `within` is the instance whose behaviour the text is."""
         if within is not None and within.home is not self.base:
@@ -108,6 +118,20 @@ class Instances:
         """What a transition of an instance assigns to which variable; of several to one variable the last counts."""
         owned = ((self.variable(each.item, within), each) for each in transition.assignments if each.item)
         return {variable: each for variable, each in owned if variable is not None}
+
+    @cached_property
+    def _names(self) -> Counter[str]:
+        return Counter(each.communication.name for each in self.occurrences())
+
+    @cached_property
+    def _provided(self) -> dict[Occurrence, list[robosc.ProvideStatement]]:
+        provided: dict[Occurrence, list[robosc.ProvideStatement]] = {}
+        for each in self.base.definitions:
+            if isinstance(each, robosc.ProvideStatement):
+                occurrence = self.occurrence(each.communicationType, None)
+                if occurrence is not None:
+                    provided.setdefault(occurrence, []).append(each)
+        return provided
 
 
 def _instantiate(component: robosc.Component, base: robosc.Base) -> Instance | None:

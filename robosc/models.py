@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from robosc.metamodel import robosc, rosgraph, sct
 
 
@@ -16,3 +18,11 @@ class Models:
     sct: sct.SupervisoryControlModel
     rosgraph: rosgraph.RosGraph | None = None
     robosc: robosc.Base | None = None
+
+
+@dataclass(frozen=True)
+class TraceTest:
+    """What a package needs to be tested with traces: parameters for its node, and files for its folder `test`."""
+
+    parameters: Mapping[str, bool | int]
+    files: Mapping[str, str]

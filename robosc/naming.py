@@ -35,6 +35,12 @@ def controller_name(robot: ex.NamedElement) -> str:
     return name if name == "controller" or name.endswith("_controller") else f"{name}_controller"
 
 
+def layer_name(robot: ex.NamedElement) -> str:
+    """The same for the supervisory layer before a robot: ending in `_layer`."""
+    name = snake_case(robot.name)
+    return name if name == "layer" or name.endswith("_layer") else f"{name}_layer"
+
+
 def escape(name: str, keywords: Collection[str]) -> str:
     """The name, with underscores behind it where a keyword differs from it in underscores at the end only.
 

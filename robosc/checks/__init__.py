@@ -18,9 +18,8 @@ from robosc.metamodel.files import path_of
 from robosc.metamodel.places import place
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Sequence
 
-    from robosc.diagnostics import Span
     from robosc.metamodel import robosc as rsc
 
 for _module in iter_modules(__path__):
@@ -33,15 +32,15 @@ def check(
     """All breaches of rules in a robot or library and in every library that its imports reach, in order.
 
     `known` are the findings from reading the text: a rule that concludes something from what is absent keeps silent
-    where text could not be read or a name not be resolved. They are not repeated in the answer. `interfaces` is what
-    is known of ROS types; None: what is known without folders of the call. Nothing is wrong with a base that is None:
-    reading has said why there is none.
+    where the text could not be read, or the name not be resolved, that may be what it misses. They are not repeated in
+    the answer. `interfaces` is what is known of ROS types; None: what is known without folders of the call. Nothing is
+    wrong with a base that is None: reading has said why there is none.
     """
     if base is None:
         return []
-    unread: dict[str, list[Span]] = {}
+    unread: dict[str, list[Diagnostic]] = {}
     for each in known:
-        unread.setdefault(each.file, []).append(each.span)
+        unread.setdefault(each.file, []).append(each)
     findings: list[Diagnostic] = []
     interfaces = interfaces or Interfaces()
     for each_base in [base, *reachable(base)]:
@@ -49,10 +48,10 @@ def check(
     return in_order(findings)
 
 
-def _findings(base: rsc.Base, unread: Iterable[Span], interfaces: Interfaces) -> Iterator[Diagnostic]:
+def _findings(base: rsc.Base, unread: Sequence[Diagnostic], interfaces: Interfaces) -> Iterator[Diagnostic]:
     file = path_of(base)
     for rule in RULES.values():
         for each in rule.check(base, interfaces):
-            if each.relies_on is None or not any(place(each.relies_on)[1].contains(span) for span in unread):
+            if not each.can_be_false(unread):
                 span = place(each.element)[1]
                 yield Diagnostic(file, span, rule.severity, rule.id, each.message, each.hint)

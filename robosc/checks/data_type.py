@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from robosc.checks.declarations import carried_types, communications, sent_type
 from robosc.checks.rule import Finding, rule
 from robosc.metamodel import robosc as rsc
+from robosc.naming import written
 from robosc.typing import NONE, ArrayType, EnumType, declared_type
 
 if TYPE_CHECKING:
@@ -124,4 +125,12 @@ def _enum_in(declared: rsc.DataType | None, seen: set[rsc.ObjectDataType]) -> li
 
 
 def _text(declared: rsc.DataType) -> str:
-    return str(declared_type(declared)).replace("object ", "").replace("enum ", "")
+    """The type as a text writes it."""
+    match declared:
+        case rsc.Array():
+            return f"array({_text(declared.type)})"
+        case rsc.InterfaceTypeReference():
+            return f"{declared.package}/{declared.rosType}"
+        case rsc.ComplexDataTypeReference() if declared.type is not None:
+            return written(declared.type.name)
+    return str(declared_type(declared))

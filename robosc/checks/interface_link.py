@@ -28,6 +28,7 @@ def interface_link(base: rsc.Base) -> Iterator[Finding]:
                     f"`{communication.name}` links no interface, expected one: {reason}",
                     _repair(communication, base, types),
                     relies_on=communication,
+                    relies_on_names=(rsc.CommunicationType,),
                 )
 
 

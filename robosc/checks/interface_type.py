@@ -9,13 +9,13 @@ from robosc.checks.rule import Finding, interface_rule
 from robosc.checks.wire_data import Carried, UsedData, Uses, carried
 from robosc.checks.wire_faults import Fault, Unknown, faults
 from robosc.diagnostics import Severity
+from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from robosc.interfaces import Interfaces
-    from robosc.metamodel import expression as ex
 
 
 @interface_rule("interface-type")
@@ -32,7 +32,7 @@ def interface_unused(base: rsc.Base, interfaces: Interfaces) -> Iterator[Finding
     for element, message, hint, used in _faulty(base, interfaces):
         if not used:
             # A use may stand in text that could not be read.
-            yield Finding(element, message, hint, relies_on=base)
+            yield Finding(element, message, hint, relies_on=base, relies_on_names=(ex.Located,))
 
 
 @interface_rule("interface-unknown", Severity.WARNING)

@@ -31,6 +31,7 @@ def marked_state(base: rsc.Base) -> Iterator[Finding]:
                     if marked
                     else f"write `marked` before a state of `{component.name}` where it may rest",
                     relies_on=behaviour,
+                    relies_on_names=(rsc.Transition,),
                 )
 
 

@@ -6,12 +6,15 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
 from robosc.diagnostics import Severity
+from robosc.metamodel import expression as ex
+from robosc.metamodel.places import place
+from robosc.metamodel.reflection import tree
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterable, Iterator
 
+    from robosc.diagnostics import Diagnostic, Span
     from robosc.interfaces import Interfaces
-    from robosc.metamodel import expression as ex
     from robosc.metamodel import robosc as rsc
 
 
@@ -19,14 +22,33 @@ if TYPE_CHECKING:
 class Finding:
     """What a rule found at an element of the model.
 
-    `relies_on` is an element that must be free of syntax errors and unresolved names for the finding to be true: what
-    is concluded from something being absent.
+    `relies_on` is an element that must be free of syntax errors for the finding to be true: what is concluded from
+    something being absent. `relies_on_names` are the classes whose own names must be resolved within it, too.
     """
 
     element: ex.Located
     message: str
     hint: str
     relies_on: ex.Located | None = None
+    relies_on_names: tuple[type[ex.Located], ...] = ()
+
+    def can_be_false(self, findings: Iterable[Diagnostic]) -> bool:
+        """Whether what reading the text found makes it doubtful."""
+        if self.relies_on is None:
+            return False
+        span = place(self.relies_on)[1]
+        within = [each for each in findings if span.contains(each.span)]
+        return any(
+            each.rule == "syntax" or isinstance(_innermost(self.relies_on, each.span), self.relies_on_names)
+            for each in within
+        )
+
+
+def _innermost(element: ex.Located, span: Span) -> ex.Located:
+    """The smallest part of an element that holds a place in the text."""
+    *_, found = (each for _, each in tree(element) if place(each)[1].contains(span))
+    assert isinstance(found, ex.Located)
+    return found
 
 
 Check: TypeAlias = "Callable[[rsc.Base], Iterator[Finding]]"

@@ -10,7 +10,7 @@ from robosc.checks.rule import Finding
 from robosc.instances import Instances
 from robosc.metamodel import robosc as rsc
 from robosc.needed import Need, Needed, accesses, needed
-from robosc.typing import BOOLEAN, INTEGER, UNKNOWN, EnumType, declared_type
+from robosc.typing import BOOLEAN, INTEGER, UNKNOWN, EnumType, declared_type, type_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -60,12 +60,23 @@ def can_be_needed(variable: rsc.Variable) -> bool:
 
 
 def data_reads(result: Needed) -> Iterator[tuple[Assigned, rsc.Access]]:
-    """Every reading of an event's data that a needed variable is computed from, where the variable itself is fine."""
+    """Every reading of an event's data that a needed variable is computed from.
+
+    Only where the variable itself is fine, and gets a value of its type.
+    """
     for assigned in result.computations:
-        if assigned.variable is not None and can_be_needed(assigned.variable.variable):
+        if assigned.variable is not None and can_be_needed(assigned.variable.variable) and _fits(assigned):
             for access in accesses(assigned.assignment.value):
                 if access.value and isinstance(assigned.transition, rsc.ResultTransition):
                     yield assigned, access
+
+
+def _fits(assigned: Assigned) -> bool:
+    assert assigned.variable is not None
+    wanted = declared_type(assigned.variable.variable.type)
+    value = assigned.assignment.value
+    found = UNKNOWN if value is None else type_of(value)
+    return UNKNOWN in {wanted, found} or found == wanted
 
 
 def _faults(base: rsc.Base, search: Search) -> Iterator[Fault]:

@@ -1,8 +1,8 @@
-"""Comparisons of doubles that are computed from so many integer values that no supervisor can tabulate them."""
+"""Doubles and products that are computed from so many integer values that no supervisor can tabulate them."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from robosc.checks.supervised import Fault, can_be_needed
 from robosc.metamodel import expression as ex
@@ -17,8 +17,25 @@ if TYPE_CHECKING:
     from robosc.needed import Assigned
 
 
+class _Limit(NamedTuple):
+    """Up to how many combinations of values something is computed, and what helps beyond."""
+
+    what: str
+    most: int
+    repair: str
+
+
+_COMPARISON = _Limit(
+    "this comparison of doubles", LARGEST_TABLE, "compare integers, or give the integers smaller ranges"
+)
+#: What synthesis does within seconds: the decision diagram of a product has a node for many a combination.
+_PRODUCT = _Limit(
+    "this product", 1 << 22, "give the integers smaller ranges, or let an enum stand for what matters about them"
+)
+
+
 def table_faults(instances: Instances, result: Needed) -> Iterator[Fault]:
-    """Each comparison of doubles that the supervisor evaluates and that has more valuations than a table can have."""
+    """Each comparison of doubles and each product that the supervisor computes from too many valuations."""
     for condition, within in conditions(instances):
         yield from _in_expression(instances, condition, within, None)
     for assigned in result.computations:
@@ -34,18 +51,28 @@ def _in_expression(
     while pending:
         each = pending.pop()
         if isinstance(each, (*EQUALITY, *ORDERING)) and DOUBLE in {infer(each.left, value), infer(each.right, value)}:
-            yield from _in_comparison(instances, each, within, assigned)
+            yield from _too_many(instances, each, _COMPARISON, within, assigned)
+        elif isinstance(each, ex.Multiplication) and all(_reads(side) for side in (each.left, each.right)):
+            yield from _too_many(instances, each, _PRODUCT, within, assigned)
         elif isinstance(each, ex.BinaryExpression):
             pending += [each.right, each.left]
         elif isinstance(each, ex.UnaryExpression):
             pending.append(each.operand)
 
 
-def _in_comparison(
-    instances: Instances, comparison: ex.BinaryExpression, within: Instance | None, assigned: Assigned | None
+def _reads(expression: ex.Expression) -> bool:
+    return next(accesses(expression), None) is not None
+
+
+def _too_many(
+    instances: Instances,
+    expression: ex.BinaryExpression,
+    limit: _Limit,
+    within: Instance | None,
+    assigned: Assigned | None,
 ) -> Iterator[Fault]:
     ranges: dict[object, int] = {}
-    reads = list(accesses(comparison))
+    reads = list(accesses(expression))
     for access in reads:
         variable = instances.variable(access, within)
         if variable is not None:
@@ -56,13 +83,12 @@ def _in_comparison(
     count = 1
     for size in ranges.values():
         count *= size
-    if count > LARGEST_TABLE:
+    if count > limit.most:
         yield Fault(
-            comparison,
+            expression,
             Need(reads[0], within, assigned.variable if assigned else None),
-            f"this comparison of doubles depends on {count} combinations of integer values, expected at most"
-            f" {LARGEST_TABLE}",
-            "compare integers, or give the integers smaller ranges",
+            f"{limit.what} depends on {count} combinations of integer values, expected at most {limit.most}",
+            limit.repair,
         )
 
 

@@ -32,6 +32,8 @@ _LITERALS: Mapping[Type, str] = {
     DOUBLE: "a number such as `0.0`",
 }
 
+_LITERAL = (ex.IntegerLiteral, ex.DoubleLiteral, ex.StringLiteral)
+
 
 def repair(expression: ex.Expression, found: Type, wanted: Type) -> str:
     """How an expression of one type becomes one of the wanted type.
@@ -132,7 +134,7 @@ def _conversion(expression: ex.Expression, found: Type, wanted: Type) -> str:
             if _values(found)
             else "compare it"
         )
-    if wanted == BOOLEAN and found in _COMPARISON:
+    if wanted == BOOLEAN and found in _COMPARISON and not isinstance(expression, _LITERAL):
         return f"compare it, such as `{_text(expression)} {_COMPARISON[found]}`"
     if (found, wanted) == (INTEGER, DOUBLE):
         return f"write `{_text(expression)} * 1.0`"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
-from robosc.checks.declarations import communications
+from robosc.checks.declarations import communications, sent_type
 from robosc.interfaces.wire import Nested, Part
 from robosc.metamodel import robosc as rsc
 from robosc.metamodel.reflection import tree
@@ -35,6 +35,11 @@ class Carried:
     interface: rsc.Interface
     declared: rsc.DataType
     part: Part
+
+    @property
+    def is_received(self) -> bool:
+        """Whether the data comes into the controller."""
+        return self.declared is not sent_type(self.communication)
 
     @property
     def ros_type(self) -> Nested:

@@ -26,6 +26,8 @@ _FITTING: dict[type[rsc.DataType], tuple[frozenset[str], str]] = {
     rsc.DoubleDataType: (frozenset({"float32", "float64"}), "double"),
     rsc.StringDataType: (frozenset({"string"}), "string"),
 }
+#: The wire types whose values convert to a type without harm, on the way into the controller.
+_CONVERTING: dict[type[rsc.DataType], frozenset[str]] = {rsc.DoubleDataType: _INTEGERS}
 
 
 @dataclass(frozen=True)
@@ -52,27 +54,57 @@ class Unknown:
 
 def faults(data: Carried, interfaces: Interfaces, uses: Uses) -> list[Fault] | Unknown:
     """What of some data does not fit its ROS type, in the one of the two ROS in which what is used fits best."""
-    ros_type, part = data.ros_type, data.part
     answers = []
-    for edition in interfaces.editions:
-        try:
-            fields = edition.fields(ros_type.package, ros_type.name, part)
-        except DefinitionError:
-            return Unknown(*why_unknown(interfaces, ros_type.package, ros_type.name, part))
-        if fields is not None:
-            answer = list(_Comparison(edition, ros_type).whole(data.declared, fields, _name(ros_type, part)))
-            if not answer:
+    try:
+        for _, found in _by_edition(data, interfaces):
+            if found == []:
                 return []
-            answers.append(answer)
+            if found is not None:
+                answers.append(found)
+    except DefinitionError:
+        answers = []
     if not answers:
-        return Unknown(*why_unknown(interfaces, ros_type.package, ros_type.name, part))
+        return Unknown(*why_unknown(interfaces, data.ros_type.package, data.ros_type.name, data.part))
     return min(answers, key=lambda each: (sum(fault.is_used(uses) for fault in each), len(each)))
 
 
+def misfits(data: Carried, interfaces: Interfaces, uses: Uses) -> dict[str, str]:
+    """Each of the two ROS in which what is used of some data does not fit, with the reason.
+
+    Where nothing is known of the type's package it may fit.
+    """
+    found = {}
+    try:
+        for edition, answer in _by_edition(data, interfaces):
+            if answer is not None:
+                reasons = [fault.message for fault in answer if fault.is_used(uses) and not fault.unknown]
+            elif edition.names(data.ros_type.package, data.part.kind):
+                reasons = [f"there is no {data.ros_type}"]
+            else:
+                reasons = []
+            if reasons:
+                found[edition.name] = reasons[0]
+    except DefinitionError:
+        return {}
+    return found
+
+
+def _by_edition(data: Carried, interfaces: Interfaces) -> Iterator[tuple[Edition, list[Fault] | None]]:
+    """What does not fit in each of the two ROS; None where it has no such type. Raises DefinitionError."""
+    ros_type, part = data.ros_type, data.part
+    for edition in interfaces.editions:
+        fields = edition.fields(ros_type.package, ros_type.name, part)
+        if fields is None:
+            yield edition, None
+        else:
+            yield edition, list(_Comparison(edition, data).whole(data.declared, fields, _name(ros_type, part)))
+
+
 class _Comparison:
-    def __init__(self, edition: Edition, ros_type: Nested) -> None:
+    def __init__(self, edition: Edition, data: Carried) -> None:
         self._edition = edition
-        self._ros_type = ros_type
+        self._ros_type = data.ros_type
+        self._is_received = data.is_received
         self._around: list[tuple[object, Nested]] = []
 
     def whole(self, declared: rsc.DataType, fields: Fields, name: str) -> Iterator[Fault]:
@@ -88,7 +120,7 @@ class _Comparison:
             field = next(iter(fields)) if len(fields) == 1 else "data"
             if field not in fields:
                 yield Fault(None, f"{name} has no field for a lone {_text(carried)}: {_listed(fields)}", _lone(fields))
-            elif not _holds(fields[field], carried):
+            elif not self._holds(fields[field], carried):
                 message = f"the data is {_text(carried)} here, and {fields[field]} in `{field}` of {name}"
                 yield Fault(None, message, _repair(fields[field], None))
 
@@ -111,7 +143,7 @@ class _Comparison:
             yield Fault(owner, message, _repair(wire, owner.name))
         elif isinstance(definition, rsc.ObjectDataType) and isinstance(element, Nested):
             yield from self._nested(owner, definition, element)
-        elif declared is not None and not _is_open(declared) and not _holds(element, declared):
+        elif declared is not None and not _is_open(declared) and not self._holds(element, declared):
             message = f"`{owner.name}` is {_text(owner.type)} here, and {wire} in {name}"
             yield Fault(owner, message, _repair(wire, owner.name))
 
@@ -130,6 +162,12 @@ class _Comparison:
         self._around.append((definition, wire))
         yield from self._object(definition, fields, str(wire))
         self._around.pop()
+
+    def _holds(self, wire: WireType, declared: rsc.DataType) -> bool:
+        kind = type(declared)
+        if not isinstance(wire, Basic) or kind not in _FITTING:
+            return False
+        return wire.name in _FITTING[kind][0] or (self._is_received and wire.name in _CONVERTING.get(kind, ()))
 
 
 def _name(ros_type: Nested, part: Part) -> str:
@@ -158,10 +196,6 @@ def _is_open(declared: rsc.DataType) -> bool:
     return isinstance(declared, rsc.NoneDataType) or (
         isinstance(declared, rsc.ComplexDataTypeReference) and not isinstance(declared.type, rsc.ObjectDataType)
     )
-
-
-def _holds(wire: WireType, declared: rsc.DataType) -> bool:
-    return isinstance(wire, Basic) and type(declared) in _FITTING and wire.name in _FITTING[type(declared)][0]
 
 
 def _text(declared: rsc.DataType) -> str:

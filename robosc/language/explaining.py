@@ -88,9 +88,7 @@ def enumeration(parts: Iterable[str]) -> str:
 def hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) -> str | None:
     """How to mend what stands at a token of an item, where that can be told."""
     token, before = tokens[index], tokens[index - 1]
-    symbols = [
-        each for each in (":", ":=", "=", "->", "{", ",") if each in wanted or (each == "=" and "=(?!>)" in wanted)
-    ]
+    symbols = _symbols(token, wanted)
     if token.text in _FOREIGN:
         return f"write `{_FOREIGN[token.text]}`"
     if token.text == ":" and tokens[block.first].is_keyword("provide"):
@@ -112,12 +110,21 @@ def hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) -> str
     return _word_hint(tokens, index, wanted, block) if token.kind is Kind.WORD else None
 
 
+def _symbols(token: Token, wanted: Sequence[str]) -> list[str]:
+    """The symbols that another symbol may have been meant to be."""
+    if token.text == "->" and "=>" in wanted:
+        return ["=>"]
+    return [each for each in (":", ":=", "=", "->", "{", ",") if each in wanted or (each == "=" and "=(?!>)" in wanted)]
+
+
 def _word_hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) -> str | None:
     token = tokens[index]
     words = {each for each in wanted if each.isalpha() and each.islower()} - {"end"}
     if "end" in wanted and block.level:
         words |= block.level.starters
     close = get_close_matches(token.text, sorted(words - {token.text}), n=1, cutoff=0.7)
+    if list(wanted) in ([","], [":"]):
+        return f"write `{wanted[0]}` before it"
     if tokens[index - 1].text == "not":
         return "write `!` for `not`"
     if not token.text.removeprefix("^").isascii():

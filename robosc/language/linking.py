@@ -5,6 +5,7 @@ from __future__ import annotations
 from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from robosc.language.explaining import enumeration
 from robosc.language.interface_types import declare, is_made, link_interface, ros_properties, ros_property
 from robosc.language.scopes import File, Names, Scope
 from robosc.language.unread import Declared
@@ -32,6 +33,8 @@ if TYPE_CHECKING:
 
 _Element = TypeVar("_Element")
 RULE = "unresolved-reference"
+#: So many names are listed where none of them is close to the one that is not there.
+_FEW = 6
 OWN_MEMBERS = "a library's component speaks of its own members only"
 
 
@@ -262,7 +265,7 @@ class _Linker:
         elif not self._file.may_declare(name.text, Declared.ENUM_VALUE):
             known = [*components, *members, *self._scope.usable(rsc.EnumValue)]
             hint = OWN_MEMBERS if self._is_library and self._elsewhere(name) else self._elsewhere(name)
-            self._missing(name, "there is no component, variable, state or enum value", known, hint)
+            self._missing(name, "there is no component, variable, state or enum value", known, hint, listed=False)
 
     def _elsewhere(self, name: Name) -> str | None:
         """What to write for a bare name that some component has as a variable or a state."""
@@ -350,10 +353,16 @@ class _Linker:
 
     # Findings
 
-    def _missing(self, name: Name, message: str, known: Iterable[str], hint: str | None = None) -> None:
-        close = get_close_matches(name.text, sorted(set(known)), n=1)
-        meant = f"did you mean `{written(close[0])}`?" if close else None
-        self._report(name, f"{message} `{name.text}`", hint or meant)
+    def _missing(
+        self, name: Name, message: str, known: Iterable[str], hint: str | None = None, *, listed: bool = True
+    ) -> None:
+        names = list(dict.fromkeys(known))
+        close = get_close_matches(name.text, sorted(names), n=1)
+        if hint is None and close:
+            hint = f"did you mean `{written(close[0])}`?"
+        elif hint is None and listed and 0 < len(names) <= _FEW:
+            hint = f"there is {enumeration(f'`{written(each)}`' for each in names)}"
+        self._report(name, f"{message} `{name.text}`", hint)
 
     def _report(self, name: Name, message: str, hint: str | None = None) -> None:
         if not self._file.unread.is_doubtful(name.start):

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc, rosgraph, sct
+from robosc.metamodel.expression_types import is_double
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -87,20 +88,6 @@ class NodeExpressions:
         if owned in self._trace.variables:
             return sct.VariableReference(variable=self._trace.variables[owned])
         return rosgraph.NodeVariableReference(variable=self._variables[owned])
-
-
-def is_double(expression: ex.Expression) -> bool:
-    """Whether a translated expression is a double."""
-    match expression:
-        case ex.DoubleLiteral() | ex.Division() | ex.DoubleConversion():
-            return True
-        case ex.UnaryMinus():
-            return is_double(expression.operand)
-        case rosgraph.NodeVariableReference():
-            return isinstance(expression.variable.type, ex.DoubleType)
-        case rosgraph.WireAccess():
-            return isinstance(expression.type, ex.DoubleType)
-    return isinstance(expression, _NUMERIC) and is_double(expression.left)
 
 
 def as_double(expression: ex.Expression) -> ex.Expression:

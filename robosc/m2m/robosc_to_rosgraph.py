@@ -186,20 +186,15 @@ class _Transformation:
             event=self.trace.event(occurrence, sct.EventKind.trigger),
             source=source(occurrence.communication, occurrence.instance.home),
         )
-        robot = self.instances.base
-        for statement in robot.definitions:
-            if (
-                isinstance(statement, robosc.ProvideStatement)
-                and self.instances.occurrence(statement.communicationType, None) == occurrence
-            ):
-                alternative = rosgraph.ProvidedData(
-                    location=self.trace.provided[statement], source=source(statement, robot)
-                )
-                sent = _sent(occurrence)
-                lone = () if isinstance(statement.data, robosc.ObjectValue) else (self.field(sent),)
-                for field in self.fields(statement.data, lone, sent.type):
-                    alternative.fields.append(field)
-                sending.alternatives.append(alternative)
+        for statement in self.instances.provided(occurrence):
+            alternative = rosgraph.ProvidedData(
+                location=self.trace.provided[statement], source=source(statement, self.instances.base)
+            )
+            sent = _sent(occurrence)
+            lone = () if isinstance(statement.data, robosc.ObjectValue) else (self.field(sent),)
+            for field in self.fields(statement.data, lone, sent.type):
+                alternative.fields.append(field)
+            sending.alternatives.append(alternative)
         return sending
 
     def fields(

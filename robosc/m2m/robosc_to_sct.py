@@ -80,7 +80,7 @@ class _Transformation:
 
     def communication_name(self, occurrence: Occurrence) -> str:
         name = occurrence.communication.name
-        shared = sum(each.communication.name == name for each in self.instances.occurrences()) > 1
+        shared = self.instances.is_shared(occurrence.communication)
         return f"{occurrence.instance.name}_{name}" if shared else name
 
     def message(self, plant: sct.Plant, occurrence: Occurrence, message: robosc.Message) -> None:
@@ -266,12 +266,7 @@ class _Transformation:
 
     def data_plant(self, occurrence: Occurrence) -> None:
         """Listing 5.4, with names that do not change from run to run."""
-        statements = [
-            each
-            for each in self.robot.definitions
-            if isinstance(each, robosc.ProvideStatement)
-            and self.instances.occurrence(each.communicationType, None) == occurrence
-        ]
+        statements = self.instances.provided(occurrence)
         if not statements:
             return
         plant = sct.Plant(

@@ -30,10 +30,51 @@ _LITERAL = {
     ex.StringLiteral: "string",
 }
 
+#: What refers to a declaration, whose type may be missing.
+_TYPED = (
+    sct.VariableReference,
+    sct.InputReference,
+    rosgraph.NodeVariableReference,
+    rosgraph.WireAccess,
+    rosgraph.ConversionCall,
+)
+
 
 def declared_type(kind: ex.Type | None) -> ValueType:
     """The type that a variable, an input or a field is declared with."""
     return kind.enumeration if isinstance(kind, ex.EnumerationType) else _DECLARED.get(type(kind))
+
+
+def _atomic_type(expression: ex.Expression) -> ValueType:
+    match expression:
+        case ex.EnumerationLiteralReference():
+            owner: ex.Enumeration = expression.literal.eContainer()
+            return owner
+        case sct.LocationReference():
+            return "boolean"
+        case sct.VariableReference() | rosgraph.NodeVariableReference():
+            return declared_type(expression.variable.type)
+        case sct.InputReference():
+            return declared_type(expression.input.type)
+        case rosgraph.WireAccess():
+            return declared_type(expression.type)
+        case rosgraph.ConversionCall():
+            return expression.conversion.enumeration
+    return _LITERAL.get(type(expression))
+
+
+def is_double(expression: ex.Expression) -> bool:
+    """Whether the value of a well-typed expression is a double."""
+    match expression:
+        case ex.Division() | ex.DoubleConversion():
+            return True
+        case ex.UnaryMinus():
+            return is_double(expression.operand)
+        case ex.Conditional():
+            return is_double(expression.then)
+        case ex.BinaryExpression():
+            return isinstance(expression, _ARITHMETIC) and is_double(expression.left)
+    return _atomic_type(expression) == "double"
 
 
 def named(kind: ValueType) -> str:
@@ -110,21 +151,7 @@ class ExpressionTypes:
         return "boolean" if isinstance(expression, _ORDERING) else number
 
     def _atom(self, expression: ex.Expression) -> ValueType:
-        match expression:
-            case ex.EnumerationLiteralReference():
-                owner: ex.Enumeration = expression.literal.eContainer()
-                return owner
-            case sct.LocationReference():
-                return "boolean"
-            case sct.VariableReference() | rosgraph.NodeVariableReference():
-                return declared_type(expression.variable.type)
-            case sct.InputReference():
-                return declared_type(expression.input.type)
-            case rosgraph.WireAccess():
-                return declared_type(expression.type)
-            case rosgraph.ConversionCall():
-                return expression.conversion.enumeration
-        if type(expression) in _LITERAL:
-            return _LITERAL[type(expression)]
-        self.faults.append((expression, f"{type(expression).__name__} belongs in a robosc model only"))
-        return None
+        found = _atomic_type(expression)
+        if found is None and not isinstance(expression, _TYPED):
+            self.faults.append((expression, f"{type(expression).__name__} belongs in a robosc model only"))
+        return found

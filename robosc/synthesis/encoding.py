@@ -2,7 +2,8 @@
 
 Everything that has a state is a finite domain: the location of a plant, a discrete variable, an input. A value's code
 is its index in the domain, in binary, the most significant bit on top. Each bit of the state has a copy for the next
-state right below it.
+state right below it. Wide integers that are computed from each other or compared take turns bit by bit: apart, the
+diagram of `x = y` has a node for every value.
 """
 
 from __future__ import annotations
@@ -27,6 +28,9 @@ if TYPE_CHECKING:
 
 #: What a domain is of. A plant stands for its location.
 Element: TypeAlias = "sct.Plant | sct.DiscreteVariable | sct.Input"
+#: The number of values from which on an integer is wide.
+_WIDE = 1 << 10
+_COMPARISONS = (ex.Equation, ex.Inequation, ex.LessThan, ex.LessOrEqual, ex.GreaterThan, ex.GreaterOrEqual)
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,18 +57,29 @@ class Layout:
         self.plants = list(model.plants)
         self.domains: dict[Element, Domain] = {}
         self.levels = 0
+        together = _groups_of_wide(model)
         for vertex in order:
-            self._add(elements[vertex], vertex)
+            if elements[vertex] not in self.domains:
+                self._add([(each, index[each]) for each in together.get(elements[vertex], [elements[vertex]])])
         #: The domains that make up the state, from the top.
         self.state = [each for each in self.domains.values() if not isinstance(each.element, sct.Input)]
 
-    def _add(self, element: Element, rank: int) -> None:
-        size = domain_size(element)
-        copies = 1 if isinstance(element, sct.Input) else 2
-        bits = (size - 1).bit_length()
-        levels = tuple(self.levels + copies * bit for bit in range(bits))
-        self.domains[element] = Domain(element, rank, size, levels, tuple(level + copies - 1 for level in levels))
-        self.levels += copies * bits
+    def _add(self, elements: Sequence[tuple[Element, int]]) -> None:
+        """Domains whose bits take turns, those of the same weight side by side."""
+        bits = {element: (domain_size(element) - 1).bit_length() for element, _ in elements}
+        levels: dict[Element, list[int]] = {element: [] for element, _ in elements}
+        for weight in reversed(range(max(bits.values()))):
+            for element, _ in elements:
+                if weight < bits[element]:
+                    levels[element].append(self.levels)
+                    self.levels += _copies(element)
+        for element, rank in elements:
+            following = tuple(level + _copies(element) - 1 for level in levels[element])
+            self.domains[element] = Domain(element, rank, domain_size(element), tuple(levels[element]), following)
+
+
+def _copies(element: Element) -> int:
+    return 1 if isinstance(element, sct.Input) else 2
 
 
 def foreign(expression: ex.Expression) -> ModelError:
@@ -315,3 +330,22 @@ def _couplings(model: sct.SupervisoryControlModel, index: Mapping[Element, int])
     for requirement in model.requirements:
         touched.setdefault(requirement.event, {}).update(dict.fromkeys(referenced(requirement.condition)))
     return [sorted(each, key=index.__getitem__) for each in touched.values()]
+
+
+def _groups_of_wide(model: sct.SupervisoryControlModel) -> dict[Element, list[Element]]:
+    """The wide integers that are compared or computed together, directly or through others, for each of them."""
+    groups: dict[Element, list[Element]] = {}
+    for together in _computations(model):
+        wide = dict.fromkeys(each for each in together if domain_size(each) >= _WIDE)
+        merged = list(dict.fromkeys(member for each in wide for member in groups.get(each, [each])))
+        groups |= dict.fromkeys(merged, merged)
+    return groups
+
+
+def _computations(model: sct.SupervisoryControlModel) -> Iterator[list[Element]]:
+    """What each comparison reads, and what each assignment reads and writes."""
+    for _, each in tree(model):
+        if isinstance(each, sct.Update):
+            yield [each.variable, *referenced(each.value)]
+        elif isinstance(each, _COMPARISONS):
+            yield list(referenced(each))

@@ -168,6 +168,37 @@ def test_nothing_is_concluded_from_an_unresolved_target(tmp_path: Path) -> None:
     ]
 
 
+def test_unresolved_names_hide_only_what_they_may_stand_for(tmp_path: Path) -> None:
+    robot = """
+        robot House {
+          interface bell use Ring from bells
+          component Door {
+            outgoing message opened with type: Gap
+            action close with request: none, response: none, feedback: wrong
+            action open with request: none, response: none, feedback: none links wrong
+            behaviour {
+              initial state closed { on response from wrong goto opened }
+              state opened { transition if wrong do wrong := wrong }
+            }
+          }
+          component Bell {
+            behaviour { state still { on response from wrong goto wrong } }
+          }
+          datatype enum Gap from double to { value > wrong -> wide }
+          requirement { } needs wrong
+        }
+    """
+    findings = [each for each in found(tmp_path, robot) if each.rule != "unresolved-reference"]
+    assert places(findings) == [
+        ("robot.rscd", 5, "interface-link"),
+        ("robot.rscd", 8, "marked-state"),
+        ("robot.rscd", 9, "marked-state"),
+        ("robot.rscd", 13, "initial-state"),
+        ("robot.rscd", 15, "enum-default"),
+        ("robot.rscd", 16, "requirement-target"),
+    ]
+
+
 def test_unresolved_names_draw_nothing_further(tmp_path: Path) -> None:
     robot = """
         robot House {

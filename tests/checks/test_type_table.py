@@ -143,7 +143,7 @@ def test_types_of_one_name_are_told_apart() -> None:
         (ex.IntegerLiteral(value=1), BOOLEAN, "write `true`"),
         (ex.IntegerLiteral(value=0), BOOLEAN, "write `false`"),
         (ex.UnaryMinus(operand=ex.IntegerLiteral(value=1)), BOOLEAN, "compare it, such as `(…) > 0`"),
-        (ex.IntegerLiteral(value=2), BOOLEAN, "compare it, such as `(…) > 0`"),
+        (ex.IntegerLiteral(value=2), BOOLEAN, "write `true` or `false`"),
         (ex.StringLiteral(value="false"), BOOLEAN, "write `false`"),
         (ex.BooleanLiteral(value=True), STRING, 'write `"true"`'),
         (ex.DoubleLiteral(value=0.5), STRING, 'write `"0.5"`'),

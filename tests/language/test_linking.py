@@ -85,7 +85,7 @@ def test_another_component_needs_its_name(tmp_path: Path) -> None:
         """,
     )
     assert underlined(found) == [("unresolved-reference", each) for each in ("s", "not_there", "t", "v")]
-    assert [each.hint for each in found.findings] == ["write `A.s`", None, "write `B.t`", None]
+    assert [each.hint for each in found.findings] == ["write `A.s`", None, "write `B.t`", "there is `s`"]
 
 
 def test_every_unresolved_name_is_a_finding_with_what_may_be_meant(tmp_path: Path) -> None:
@@ -121,6 +121,29 @@ def test_every_unresolved_name_is_a_finding_with_what_may_be_meant(tmp_path: Pat
     assert {each.hint for each in found.findings} == {
         f"did you mean `{each}`?" for each in ("Vector", "twist", "move", "idle", "Motor", "turn", "length")
     }
+
+
+def test_the_few_names_that_there_are_are_listed(tmp_path: Path) -> None:
+    found = reading(
+        tmp_path,
+        """
+        robot R {
+          component Motor {
+            incoming message move with type: none
+            behaviour { initial marked state idle { on request to move goto off } state ^state { } }
+          }
+          requirement Motor.x needs Motor.y
+          component Rear from L import Q
+        }
+        """,
+        l="library L { component Wheel { } }",
+    )
+    assert [each.hint for each in found.findings] == [
+        "there is `idle` or `^state`",
+        "there is `move`",
+        "there is `idle` or `^state`",
+        "there is `Wheel`",
+    ]
 
 
 def test_the_value_of_an_enum_belongs_to_no_component(tmp_path: Path) -> None:

@@ -1,11 +1,13 @@
 """Synthesis over decision diagrams against synthesis by the definition, on random models."""
 
+from unittest.mock import patch
+
 from hypothesis import HealthCheck, event, given, settings
 
 from robosc.expressions import SctPrinter
 from robosc.metamodel import sct
 from robosc.roles import event_name
-from robosc.synthesis import Synthesis, synthesize
+from robosc.synthesis import Synthesis, encoding, synthesize
 from tests.random_sct import sct_models
 from tests.synthesis.oracle import Oracle
 
@@ -62,6 +64,13 @@ def test_random_models(model):
     synthesis = synthesize(model)
     event("empty" if synthesis.supervisor is None else "supervised")
     check(model, synthesis)
+
+
+@given(sct_models())
+@RANDOM_MODELS
+def test_bits_that_take_turns(model):
+    with patch.object(encoding, "_WIDE", 2):
+        check(model, synthesize(model))
 
 
 @given(sct_models())

@@ -101,3 +101,19 @@ def test_the_model_stays_as_it_is():
     made = philosophers(3)
     synthesize(made)
     assert made.supervisor is None
+
+
+def test_wide_integers_are_copied_and_compared_at_once():
+    wide = {"x": "-2000000000..2000000000", "y": "-2000000000..2000000000"}
+    read = edge("read", do={"x": "i", "y": "x"})
+    sensor = plant(
+        "sensor",
+        {"on": [read, edge("go")]},
+        controllable=["go"],
+        uncontrollable={"read": ["i"]},
+        variables=wide,
+        inputs={"i": wide["x"]},
+    )
+    synthesis = synthesize(model([sensor], [needs("go", "x > y + 3")]))
+    assert synthesis.controlled_states == 4_000_000_001**2
+    assert synthesis.bdd_nodes < 1000
