@@ -28,8 +28,9 @@ class Settings:
 class Hooks:
     """What the loop calls, if given. No hook may call the loop.
 
-    `before`: an enabled event is about to happen; False withholds it where it is a cancel or trigger. `after`: it has
-    happened. `livelock`: silent events don't come to rest; once, until they have rested again.
+    `before`: an enabled event is about to happen; False withholds it where it is a cancel, a trigger or silent, until
+    it is asked again. `after`: it has happened. `livelock`: silent events don't come to rest; once, until they have
+    rested again.
     """
 
     before: Callable[[str], bool] | None = None
@@ -110,6 +111,11 @@ class ControlLoop:
         self._settle()
         self._serve(self._queued(), self.settings.events_per_tick or len(self._queued()))
 
+    def settle(self) -> None:
+        """Settles, then runs each enabled cancel once: what a supervisory layer, without ticks, does after an event."""
+        self._settle()
+        self._serve(self._cancels, len(self._cancels))
+
     def _queued(self) -> list[str]:
         return [*self._cancels, *self._triggers]
 
@@ -142,8 +148,8 @@ class ControlLoop:
 
     def _run(self, event: str) -> bool:
         """Lets an enabled event happen, unless the caller withholds it."""
-        sent = event in self._cancels or event in self._triggers
-        if self.hooks.before is not None and not self.hooks.before(event) and sent:
+        own = event in self._cancels or event in self._triggers or event in self._silent
+        if self.hooks.before is not None and not self.hooks.before(event) and own:
             return False
         self.engine.perform(event)
         self._rested = False
@@ -164,18 +170,25 @@ class ControlLoop:
         while not self._rested:
             self._provide()
             ahead = self._silent[self._next_silent :] + self._silent[: self._next_silent]
-            event = next((each for each in ahead if self.engine.enabled(each)), None)
-            if event is None:
-                self._rested, self._livelocked = True, False
-            elif left > 0:
-                self._run(event)
-                self._next_silent = (self._silent.index(event) + 1) % len(self._silent)
-                left -= 1
+            ran = withheld = False
+            for event in ahead:
+                if self.engine.enabled(event):
+                    if left == 0:
+                        if not self._livelocked and self.hooks.livelock is not None:
+                            self.hooks.livelock()
+                        self._livelocked = True
+                        return
+                    ran = self._run(event)
+                    withheld = withheld or not ran
+                if ran:
+                    self._next_silent = (self._silent.index(event) + 1) % len(self._silent)
+                    left -= 1
+                    break
             else:
-                if not self._livelocked and self.hooks.livelock is not None:
-                    self.hooks.livelock()
-                self._livelocked = True
-                return
+                self._livelocked = False
+                if withheld:
+                    return
+                self._rested = True
 
     def _provide(self) -> None:
         """Moves each data plant to the first of its locations whose condition holds."""

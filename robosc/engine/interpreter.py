@@ -141,6 +141,11 @@ class Engine:
         cell = self._layout.cells.get(plant)
         return 0 if cell is None else self._cells[cell]
 
+    def value(self, variable: sct.DiscreteVariable) -> Value:
+        """The value of a variable, as a reader of the state sees it."""
+        cell = self._layout.cells[variable]
+        return self._layout.domains[cell].shown(self._cells[cell])
+
     def _initial(self) -> tuple[int, ...]:
         cells = [0] * len(self._layout.domains)
         for cell, position in self._layout.cells.items():

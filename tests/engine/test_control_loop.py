@@ -151,12 +151,41 @@ def test_what_is_withheld_does_not_happen_and_does_not_lose_its_turn() -> None:
     assert loop.ticks() == [["a.c_trigger"]]
 
 
-def test_only_what_is_sent_can_be_withheld() -> None:
-    stepper = plant("stepper", {"x": [edge("c_tau1", to="y")], "y": []}, controllable=["c_tau1"])
-    loop = Recorded(model([stepper, switch()], guards={}))
-    loop.withheld = {"stepper.c_tau1", "switch.u_response1"}
-    assert loop.ticks() == [["stepper.c_tau1"]]
+def test_what_comes_in_can_not_be_withheld() -> None:
+    loop = Recorded(model([switch()], guards={}))
+    loop.withheld = {"switch.u_response1"}
     assert loop.perform("switch.u_response1")
+
+
+def test_a_withheld_silent_event_is_asked_again_and_keeps_no_other_from_happening() -> None:
+    steppers = [
+        plant(name, {"x": [edge("c_tau1", to="y")], "y": []}, controllable=["c_tau1"]) for name in ("first", "second")
+    ]
+    loop = Recorded(model(steppers, guards={}))
+    loop.withheld = {"first.c_tau1"}
+    assert loop.ticks(2) == [["second.c_tau1"], []]
+    loop.withheld = set()
+    loop.begin()
+    loop.end()
+    assert loop.did() == ["first.c_tau1"]
+
+
+def test_settling_alone_runs_cancels_and_no_triggers() -> None:
+    """What a supervisory layer asks for: the controller starts things, the layer stops them."""
+    ride = plant(
+        "ride",
+        {"idle": [edge("c_trigger", to="running")], "running": [edge("c_cancel", to="idle")]},
+        controllable=["c_trigger", "c_cancel"],
+        kind="action",
+    )
+    loop = Recorded(model([switch(), ride, message("a")], guards={"ride.c_cancel": "switch.on"}))
+    loop.settle()
+    assert loop.perform("ride.c_trigger")
+    loop.settle()
+    assert loop.did() == ["ride.c_trigger"]
+    assert loop.perform("switch.u_response1")
+    loop.settle()
+    assert loop.did() == ["switch.u_response1", "ride.c_cancel"]
 
 
 # Settling

@@ -52,7 +52,7 @@ class Ranges:
         return self._cells[node]
 
     def joined(self, node: Node) -> Junction | None:
-        """A node as conjunction or disjunction, without parts that are always true or always false."""
+        """A node as conjunction or disjunction, without parts that are constant or say the same as one before."""
         if node not in self._joined:
             self._joined[node] = self._join(node)
         return self._joined[node]
@@ -63,14 +63,22 @@ class Ranges:
             return None
         undecided = [self.reduced(part) for part in joined.parts if self(part).single is None]
         inner = [(part, self.joined(part)) for part in undecided]
-        return Junction(
-            joined.neutral,
-            [
-                each
-                for part, nested in inner
-                for each in (nested.parts if nested and nested.neutral is joined.neutral else [part])
-            ],
-        )
+        parts = [
+            each
+            for part, nested in inner
+            for each in (nested.parts if nested and nested.neutral is joined.neutral else [part])
+        ]
+        return Junction(joined.neutral, self._distinct(parts))
+
+    def _distinct(self, parts: Sequence[Node]) -> list[Node]:
+        """Parts without those that say the same as one before."""
+        kept: dict[frozenset[Cell], list[Node]] = {}
+        for part in parts:
+            alike = kept.setdefault(self.cells(part), [])
+            if not any(self.same(part, each) for each in alike):
+                alike.append(part)
+        left = {part for group in kept.values() for part in group}
+        return [part for part in dict.fromkeys(parts) if part in left]
 
     def reduced(self, node: Node) -> Node:
         """The part of an expression that decides it, where the rest is constant."""

@@ -72,6 +72,8 @@ def test_values_stay_in_their_interval_and_depend_on_their_cells_only(made, rand
         ("q.only", 1),
         ("b == true", None),
         ("b != (b and true)", 0),
+        ("(b or b) != b", 0),
+        ("n > 2 or n > 2 or b", None),
         ("n > 2 and not (n > 5 or (here and there))", None),
         ("here and not (there or (n > 5 and n < 3))", None),
     ],

@@ -77,6 +77,7 @@ int main(void)
         else if (strcmp(command, "begin") == 0) %(p)s_begin(&robot);
         else if (strcmp(command, "end") == 0) %(p)s_end(&robot);
         else if (strcmp(command, "tick") == 0) %(p)s_tick(&robot);
+        else if (strcmp(command, "settle") == 0) %(p)s_settle(&robot);
         else abort();
         printf(" = %%d;", result);
 %(state)s

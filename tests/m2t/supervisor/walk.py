@@ -30,7 +30,8 @@ class Walk:
 
     def steps(self, number: int) -> None:
         for _ in range(number):
-            kind = self.random.choice(("perform", "perform", "batch", "batch", "batch", "tick", "tick", "withhold"))
+            kinds = ("perform", "perform", "batch", "batch", "batch", "tick", "tick", "settle", "withhold")
+            kind = self.random.choice(kinds)
             getattr(self, kind)()
 
     def perform(self) -> None:
@@ -52,6 +53,9 @@ class Walk:
 
     def tick(self) -> None:
         self._operate("tick")
+
+    def settle(self) -> None:
+        self._operate("settle")
 
     def withhold(self) -> None:
         event = self.random.choice(self._events)

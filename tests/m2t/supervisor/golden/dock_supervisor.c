@@ -160,7 +160,7 @@ static const uint8_t group[QUEUED] = { 0, 1, 2, 0, 0 };
 static bool run(dock_supervisor *self, dock_event event)
 {
     const dock_hooks *hooks = &self->hooks;
-    if (hooks->before != NULL && !hooks->before(hooks->context, event) && (unsigned)event < QUEUED) {
+    if (hooks->before != NULL && !hooks->before(hooks->context, event) && (unsigned)event < QUEUED + SILENT) {
         return false;
     }
     execute(&self->state, &self->inputs, event);
@@ -221,26 +221,34 @@ static void settle(dock_supervisor *self)
 {
     uint32_t left = BOUND;
     while (!self->rested) {
+        bool ran = false;
+        bool withheld = false;
         unsigned next = self->silent;
-        unsigned asked = 0U;
         provide(self);
-        while (asked < SILENT && !guard(&self->state, (dock_event)(QUEUED + next))) {
+        for (unsigned asked = 0U; asked < SILENT && !ran; ++asked) {
+            const dock_event event = (dock_event)(QUEUED + next);
             next = next + 1U < SILENT ? next + 1U : 0U;
-            ++asked;
+            if (guard(&self->state, event)) {
+                if (left == 0U) {
+                    if (!self->livelocked && self->hooks.livelock != NULL) {
+                        self->hooks.livelock(self->hooks.context);
+                    }
+                    self->livelocked = true;
+                    return;
+                }
+                ran = run(self, event);
+                withheld = withheld || !ran;
+            }
         }
-        if (asked == SILENT) {
-            self->rested = true;
-            self->livelocked = false;
-        } else if (left > 0U) {
-            (void)run(self, (dock_event)(QUEUED + next));
-            self->silent = (uint8_t)(next + 1U < SILENT ? next + 1U : 0U);
+        if (ran) {
+            self->silent = (uint8_t)next;
             --left;
         } else {
-            if (!self->livelocked && self->hooks.livelock != NULL) {
-                self->hooks.livelock(self->hooks.context);
+            self->livelocked = false;
+            if (withheld) {
+                return; /* They are asked again the next time. */
             }
-            self->livelocked = true;
-            break;
+            self->rested = true;
         }
     }
 }
@@ -357,6 +365,15 @@ void dock_tick(dock_supervisor *self)
     self->started = true;
     self->reactions = self->settings.reactions_per_tick;
     (void)serve(self, self->settings.events_per_tick > 0U ? self->settings.events_per_tick : UINT16_MAX);
+}
+
+void dock_settle(dock_supervisor *self)
+{
+    settle(self);
+    for (unsigned event = 0U; event < QUEUED; ++event) {
+        self->due[event] = event < CANCELS;
+    }
+    (void)serve(self, UINT16_MAX);
 }
 
 #ifndef DOCK_NO_NAMES

@@ -169,7 +169,8 @@ extern const dock_settings dock_default_settings;
 /* What the engine calls; any of them may be NULL. */
 typedef struct dock_hooks {
     void *context; /* Handed to each hook. */
-    /* An enabled event is about to happen. False withholds it where it is a cancel or a trigger, else is ignored. */
+    /* An enabled event is about to happen. False withholds it where it is a cancel, a trigger or silent (a reset, an
+     * internal transition): it is asked again later. Else it is ignored. */
     bool (*before)(void *context, dock_event event);
     /* The event has happened. */
     void (*after)(void *context, dock_event event);
@@ -212,6 +213,10 @@ void dock_end(dock_supervisor *self);
 
 /* One tick of the control loop: the robot settles, then each enabled cancel and trigger runs once. */
 void dock_tick(dock_supervisor *self);
+
+/* Instead of batches and ticks, for one who only follows what others do: after each event, and once at the start. The
+ * robot settles, then each enabled cancel runs once. */
+void dock_settle(dock_supervisor *self);
 
 #ifndef DOCK_NO_NAMES
 /* Names as in the model, for reports; "" for a number out of range. */
