@@ -13,7 +13,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, PrivateAttr, 
 from pydantic.alias_generators import to_camel
 
 from robosc.diagnostics import Diagnostic, ModelError, Severity, Span
-from robosc.naming import controller_name
+from robosc.naming import controller_name, layer_name
 
 if TYPE_CHECKING:
     from robosc.metamodel.expression import NamedElement
@@ -163,6 +163,7 @@ class Configuration(_Settings):
     watchdog_ms: ByTopic[Milliseconds] = Field(default={}, description="By topic: silence that is reported.")
     watchdog_stops: bool = Field(default=False, description="Whether such a silence stops the controller.")
     on_shutdown: list[str] = Field(default=[], description="Messages of the model to send on shutdown, in this order.")
+    lifecycle: bool = Field(default=False, description="Whether the ROS 2 node is a managed one.")
     package: Package = Package()
 
     _file: str = PrivateAttr(FILE_NAME)
@@ -175,6 +176,10 @@ class Configuration(_Settings):
     def package_name(self, robot: "NamedElement") -> str:
         """The name of a robot's package, node and executable."""
         return self.package.name or controller_name(robot)
+
+    def layer_name(self, robot: "NamedElement") -> str:
+        """The same for the supervisory layer before a robot."""
+        return self.package.name or layer_name(robot)
 
     def error(self, key: Key, message: str, hint: str | None = None) -> Diagnostic:
         """An error at a key of the file that this was read from, such as `("onShutdown", 0)` or `("qos", "scan")`.

@@ -20,9 +20,9 @@ def write(trees: Mapping[Path, Mapping[str, str]]) -> list[Path]:
     """Writes texts below folders, as UTF-8, and says which files are new or different.
 
     Each folder comes with its files: relative POSIX path to text. Missing folders are made. A file that has its text
-    already keeps its time of change; files that are not mentioned are left alone. Raises OutputError, after undoing
-    everything, where something can't be written, leads out of its folder (by `..`, an absolute path or a link), or is
-    asked to be two texts.
+    already keeps its time of change; files that are not mentioned are left alone. Scripts (`#!`) can be
+    executed. Raises OutputError, after undoing everything, where something can't be written, leads out of its folder
+    (by `..`, an absolute path or a link), or is asked to be two texts.
     """
     try:
         placed = {folder.resolve(): _placed(folder.resolve(), files) for folder, files in trees.items()}
@@ -82,6 +82,8 @@ def _replace(changed: Mapping[Path, Mapping[Path, bytes]]) -> None:
             _make(path.parent, moved)
             if path.is_file():
                 shutil.copymode(path, new)
+            if new.read_bytes().startswith(b"#!"):
+                new.chmod(new.stat().st_mode | 0o111)
             if path.exists() or path.is_symlink():
                 path.replace(old)
                 moved.callback(old.replace, path)

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from importlib import import_module
-from typing import TYPE_CHECKING, Protocol, cast
+from typing import TYPE_CHECKING, Literal, Protocol, cast
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from robosc.config import Configuration
     from robosc.diagnostics import Diagnostic
-    from robosc.models import Models
+    from robosc.models import Models, TraceTest
 
 
 class Generator(Protocol):
@@ -22,6 +24,13 @@ class Generator(Protocol):
         """Files: POSIX path in the target's folder to text. The models have a supervisor; the preconditions hold."""
 
 
+class TestedGenerator(Protocol):
+    """What the module of a target offers whose packages can have tests."""
+
+    def generate(self, models: Models, configuration: Configuration, tests: TraceTest) -> dict[str, str]:
+        """The files that it generates without tests, with these tests."""
+
+
 @dataclass(frozen=True)
 class Target:
     """A target: what it is, what it reads, and where its files go."""
@@ -29,20 +38,25 @@ class Target:
     name: str
     description: str
     _folder: str = ""
-    #: The setting in the configuration's `output` that names a folder for a copy, of a target that is a ROS package.
+    #: Whose name the package has, of a target that is a ROS package.
+    package: Literal["controller", "layer"] | None = None
+    #: The setting in the configuration's `output` that names a folder for a copy.
     location: str | None = None
 
     @property
     def needs_graph(self) -> bool:
         """Whether it reads the ROS graph beside the sct model."""
-        return self.location is not None
+        return self.package is not None
 
     def folder(self, models: Models, configuration: Configuration) -> str:
         """Where its files go below the output folder: POSIX path, empty for that folder itself.
 
         ROS packages stand beside those of other robots in one folder, so that this can be a workspace's `src`.
         """
-        return f"{self._folder}/{configuration.package_name(models.sct)}" if self.location else self._folder
+        if self.package is None:
+            return self._folder
+        named = configuration.layer_name if self.package == "layer" else configuration.package_name
+        return f"{self._folder}/{named(models.sct)}"
 
     def findings(self, models: Models, configuration: Configuration) -> list[Diagnostic]:
         """What keeps the target from these models and settings, and what is doubtful about them."""
@@ -55,6 +69,29 @@ class Target:
         messages = [each.name for publisher in graph.publishers for each in publisher.sendings]
         return [*found, *configuration.unknown_names([each.removeprefix("/") for each in topics], messages)]
 
+    @property
+    def tested_ros(self) -> int | None:
+        """The ROS, 1 or 2, on which its packages can be tested with traces; None where they can't."""
+        return int(self.name[-1]) if self.package == "controller" else None
+
+    def files(
+        self,
+        models: Models,
+        configuration: Configuration,
+        *,
+        with_tests: bool = False,
+        interface_paths: Sequence[str] = (),
+    ) -> dict[str, str]:
+        """What it generates; with tests where they are asked for and its packages can have any.
+
+        `interface_paths` are folders in which the tests look for ROS types, as `robosc.interfaces` does.
+        """
+        if not with_tests or self.tested_ros is None:
+            return self.generator().generate(models, configuration)
+        made = import_module("robosc.traces.trace_test").trace_test
+        tests: TraceTest = made(models.rosgraph, configuration, self.tested_ros, interface_paths)
+        return cast("TestedGenerator", self.generator()).generate(models, configuration, tests)
+
     def generator(self) -> Generator:
         """The module that generates it; loaded when it is asked for."""
         return cast("Generator", import_module(f"robosc.m2t.{self.name.replace('-', '_')}"))
@@ -65,8 +102,16 @@ TARGETS = {
     for target in (
         Target("cif", "plants and requirements, and the supervised system, in CIF 3"),
         Target("supervisor", "the supervisor and its control loop in C99", "supervisor"),
-        Target("ros1", "a controller node for ROS 1", "ros1", "ros1_controller_node_location"),
-        Target("ros2", "a controller node for ROS 2", "ros2", "ros2_controller_node_location"),
+        Target("ros1", "a controller node for ROS 1", "ros1", "controller", "ros1_controller_node_location"),
+        Target("ros2", "a controller node for ROS 2", "ros2", "controller", "ros2_controller_node_location"),
+        Target("ros1-layer", "a supervisory layer before a controller for ROS 1", "ros1", "layer"),
+        Target(
+            "ros2-layer",
+            "a supervisory layer before a controller for ROS 2",
+            "ros2",
+            "layer",
+            "ros2_supervisor_node_location",
+        ),
         Target("xmi", "the models between the steps"),
     )
 }

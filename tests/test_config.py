@@ -35,6 +35,7 @@ EVERYTHING = {
     "watchdogMs": {"/scan": 500},
     "watchdogStops": True,
     "onShutdown": ["halt"],
+    "lifecycle": True,
     "package": {
         "name": "my_robot",
         "version": "1.2.3",

@@ -6,7 +6,7 @@ parser must parse. A target may also refuse the text, with a located error.
 
 import ast
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path, PurePosixPath
 from xml.etree import ElementTree as ET
 
@@ -45,6 +45,7 @@ robot Robot {
   component Part {
     outgoing message heard with identifier: "/heard", type: string
     incoming message said with identifier: "/said", type: string
+    service asked with identifier: "/asked", request: none, response: none
     behaviour {
       variable last: string = "initial"
       initial marked state here { on response from heard do last := value }
@@ -54,7 +55,11 @@ robot Robot {
   provide said with "provided" if Part.here
 }
 """
-TARGETS = ("cif", "supervisor", "ros1", "ros2")
+TARGETS = ("cif", "supervisor", "ros1", "ros2", "ros1-layer", "ros2-layer")
+
+#: How the configuration starts a controller behind a supervisory layer.
+RUN = {"packageName": "drive", "executable": "drive", "name": "drive", "namespace": "left"}
+LAUNCH = {"packageName": "drive", "file": "drive.launch"}
 
 
 def quoted(text: str) -> str:
@@ -63,9 +68,18 @@ def quoted(text: str) -> str:
     return '"' + "".join(escapes.get(each, each) for each in text) + '"'
 
 
-def generated(models: Models, configuration: Configuration | None = None) -> Iterator[tuple[str, str]]:
+@pytest.fixture(scope="module")
+def harmless(tmp_path_factory: pytest.TempPathFactory) -> Models:
+    models = models_of(MODEL, tmp_path_factory.mktemp("harmless"))
+    assert models is not None
+    return models
+
+
+def generated(
+    models: Models, configuration: Configuration | None = None, targets: Sequence[str] = TARGETS
+) -> Iterator[tuple[str, str]]:
     """Every file that a target makes of the models, unless it refuses them with located findings."""
-    for target in TARGETS:
+    for target in targets:
         try:
             files = robosc.generate(target, models, configuration=configuration)
         except robosc.ModelError as error:
@@ -102,6 +116,9 @@ def bare(path: str, text: str) -> str:
         return re.sub(r'"(?:\\.|[^"\\\n])*"|/\*.*?\*/|//[^\n]*', "", text, flags=re.DOTALL)
     if kind == ".txt":
         return re.sub(r'"(?:\\.|[^"\\])*"|#[^\n]*', "", text, flags=re.DOTALL)
+    if kind == ".yaml":
+        # A parameter of a topic has its name.
+        return re.sub(r'"(?:\\.|[^"\\\n])*"|#[^\n]*|^ +\w+(?=: \d+$)', "", text, flags=re.MULTILINE)
     if kind == ".py":
         tree_of_it = ast.parse(text)
         return " ".join(each.id for each in ast.walk(tree_of_it) if isinstance(each, ast.Name))
@@ -125,7 +142,7 @@ def assert_contained(files: Iterator[tuple[str, str]]) -> int:
 
 
 @pytest.mark.parametrize("text", HOSTILE)
-@pytest.mark.parametrize("place", ['"provided"', '"initial"', '"/heard"', '"/said"'])
+@pytest.mark.parametrize("place", ['"provided"', '"initial"', '"/heard"', '"/said"', '"/asked"'])
 def test_texts_of_a_model(place: str, text: str, tmp_path: Path) -> None:
     models = models_of(MODEL.replace(place, quoted(text)), tmp_path)
     if models is not None:
@@ -142,6 +159,14 @@ def test_texts_of_the_configuration(key: str, text: str, tmp_path: Path) -> None
     except ValueError:
         return  # Refused where it is read.
     assert_contained(generated(models, configuration))
+
+
+@pytest.mark.parametrize("text", HOSTILE)
+@pytest.mark.parametrize(("form", "key"), [*(("run", each) for each in RUN), *(("launch", each) for each in LAUNCH)])
+def test_how_an_existing_controller_is_started(form: str, key: str, text: str, harmless: Models) -> None:
+    started = {**(RUN if form == "run" else LAUNCH), key: text}
+    settings = {"supervisor": {"controller": {form: started}}}
+    assert_contained(generated(harmless, Configuration.model_validate(settings), TARGETS[-2:]))
 
 
 @pytest.mark.parametrize("text", HOSTILE)

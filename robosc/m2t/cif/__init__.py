@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from robosc.models import Models
 
 _NAME = re.compile("[A-Za-z_][A-Za-z0-9_]*")
+_SMALLER = "give the integers smaller ranges"
 
 
 def preconditions(models: Models, _configuration: Configuration) -> list[Diagnostic]:
@@ -35,12 +36,14 @@ def preconditions(models: Models, _configuration: Configuration) -> list[Diagnos
     Numbers beyond 32 bits, names that are none, and expressions that would have to be split into too many cases, since
     CIF's synthesis can neither subtract nor multiply.
     """
-    findings = []
-    for _, element in tree(models.sct):
-        for culprit, reason in _faults(element):
-            file, span = place(culprit)
-            findings.append(Diagnostic(file, span, Severity.ERROR, "cif", f"this can't be said in CIF: {reason}"))
-    return findings
+    elements = [element for _, element in tree(models.sct)]
+    declared = [fault for each in elements for fault in _declaration_faults(each)]
+    # What is computed from numbers that are too large is too large, too.
+    computed = [] if declared else [fault for each in elements for fault in _expression_faults(each)]
+    return [
+        Diagnostic(*place(culprit), Severity.ERROR, "cif", f"this can't be said in CIF: {reason}", hint)
+        for culprit, reason, hint in [*declared, *computed]
+    ]
 
 
 def generate(models: Models, _configuration: Configuration) -> dict[str, str]:
@@ -57,16 +60,21 @@ def generate(models: Models, _configuration: Configuration) -> dict[str, str]:
     }
 
 
-def _faults(element: Any) -> Iterator[tuple[Any, str]]:
+def _declaration_faults(element: Any) -> Iterator[tuple[Any, str, str]]:
     if isinstance(element, ex.NamedElement) and not _NAME.fullmatch(element.name):
-        yield element, f"'{element.name}' is no identifier"
+        yield element, f"'{element.name}' is no identifier", "give it a name of letters, digits and `_`"
     numeric = isinstance(element, (sct.DiscreteVariable, sct.Input)) and isinstance(element.type, ex.IntegerType)
     if numeric and bounds(element)[1] + shift(element) > LARGEST:
-        yield element, "its range does not fit 32 bits"
+        yield element, "its range does not fit 32 bits", _SMALLER
+
+
+def _expression_faults(element: Any) -> Iterator[tuple[Any, str, str]]:
     try:
         _translate(element)
     except Unsupported as error:
-        yield error.expression, error.reason
+        # A supervisor's guard is no text of the user's.
+        culprit = element.event if isinstance(element, sct.EventGuard) else error.expression
+        yield culprit, error.reason, _SMALLER
 
 
 def _translate(element: Any) -> None:

@@ -8,6 +8,7 @@ from robosc.expressions import ATOM, PRECEDENCE, ExpressionPrinter
 from robosc.m2t.c.comments import string_literal
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
+from robosc.metamodel.expression_types import is_double
 from robosc.metamodel.reflection import tree
 
 if TYPE_CHECKING:
@@ -132,22 +133,6 @@ class CppPrinter(ExpressionPrinter):
         """The text, in parentheses where it is not a single operand."""
         text = self(expression)
         return text if self.precedence(expression) == ATOM else f"({text})"
-
-
-def is_double(expression: ex.Expression) -> bool:
-    """Whether the value is a double."""
-    match expression:
-        case ex.DoubleLiteral() | ex.Division() | ex.DoubleConversion():
-            return True
-        case ex.UnaryMinus():
-            return is_double(expression.operand)
-        case ex.Conditional():
-            return is_double(expression.then)
-        case rosgraph.NodeVariableReference():
-            return isinstance(expression.variable.type, ex.DoubleType)
-        case rosgraph.WireAccess():
-            return isinstance(expression.type, ex.DoubleType)
-    return isinstance(expression, _ARITHMETIC) and is_double(expression.left)
 
 
 def parts(expression: ex.Expression) -> Iterator[ex.Expression]:

@@ -6,12 +6,15 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from robosc.expressions import PRECEDENCE
+from robosc.headers import parts_with_headers
 from robosc.m2t.c.types import type_name
 from robosc.m2t.cpp import reports
-from robosc.m2t.cpp.expressions import CppPrinter, is_double, parts, reads_elements
+from robosc.m2t.cpp.expressions import CppPrinter, parts, reads_elements
 from robosc.m2t.cpp.names import CppNames
+from robosc.m2t.cpp.shutdown import message_named, requirements_on
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
+from robosc.metamodel.expression_types import is_double
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -70,7 +73,11 @@ class Alternative:
 
 @dataclass(frozen=True)
 class Message:
-    """A message that the node sends; it may fail where a double could be no finite number."""
+    """Data that the node sends: a message, a request or a goal.
+
+    It may fail where a double could be no finite number. `reaction` is what sending it changes in the node; `parts`
+    may hold headers that are the node's to fill in, "" is the whole.
+    """
 
     word: str
     event: str
@@ -78,6 +85,7 @@ class Message:
     alternatives: list[Alternative]
     may_fail: bool
     reaction: Happening | None
+    parts: list[str]
 
 
 @dataclass(frozen=True)
@@ -88,6 +96,36 @@ class Publisher:
     topic: str
     interface: rosgraph.Interface
     messages: list[Message]
+
+
+@dataclass(frozen=True)
+class Client:
+    """A service that the node calls, or an action that it starts: only these have feedback and are cancelled."""
+
+    word: str
+    name: str
+    interface: rosgraph.Interface
+    request: Message
+    response: Happening
+    error: Happening
+    feedback: Happening | None
+    cancel: str | None
+    cancel_requirements: list[str]
+    reset: str
+
+    @property
+    def data(self) -> str:
+        """The member that holds what is sent."""
+        return f"{self.word}_{'goal' if self.cancel else 'request'}_"
+
+
+@dataclass(frozen=True)
+class LastMessage:
+    """A message that goes out when the node stops the robot, and the requirements that this overrides."""
+
+    publisher: Publisher
+    message: Message
+    overrides: list[str]
 
 
 @dataclass(frozen=True)
@@ -128,9 +166,12 @@ class Variable:
 
 
 class Node:
-    """The node of one graph; everything is ready to be printed, in the order of the model."""
+    """The node of one graph; everything is ready to be printed, in the order of the model.
 
-    def __init__(self, graph: rosgraph.RosGraph) -> None:
+    `on_shutdown` names the messages that go out when the node stops the robot; each must be one that it sends.
+    """
+
+    def __init__(self, graph: rosgraph.RosGraph, on_shutdown: Sequence[str] = ()) -> None:
         self._graph = graph
         self._names = CppNames(graph)
         self._printer = CppPrinter(self._names)
@@ -144,8 +185,15 @@ class Node:
         ]
         self.subscriptions = [self._subscription(each) for each in graph.subscriptions]
         self.publishers = [self._publisher(each) for each in graph.publishers]
+        self.services = [self._service(each) for each in graph.serviceClients]
+        self.actions = [self._action(each) for each in graph.actionClients]
+        self.shutdown = [self._last(name) for name in on_shutdown]
         outside = {each.event for topic in graph.subscriptions for each in topic.receptions}
         outside |= {each.event for topic in graph.publishers for each in topic.sendings}
+        for service in graph.serviceClients:
+            outside |= {service.request.event, service.response.event, service.error}
+        for action in graph.actionClients:
+            outside |= {action.request.event, action.feedback.event, action.response.event, action.error}
         silent = dict.fromkeys(each.event for each in graph.reactions if each.event not in outside)
         self.silent = [self._happening(event) for event in silent]
         self.reported = [
@@ -155,13 +203,16 @@ class Node:
         ]
 
     @property
+    def clients(self) -> list[Client]:
+        """Services, then actions."""
+        return [*self.services, *self.actions]
+
+    @property
     def interfaces(self) -> list[rosgraph.Interface]:
-        """The message types in use, each once, by package and name."""
-        used = [each.interface for each in self._graph.subscriptions] + [
-            each.interface for each in self._graph.publishers
-        ]
-        found = {(each.package, each.type): each for each in used}
-        return [found[key] for key in sorted(found)]
+        """The types in use, each once, by package and name."""
+        used: list[Subscription | Publisher | Client] = [*self.subscriptions, *self.publishers, *self.clients]
+        found = {(each.interface.package, each.interface.type, each.interface.kind.name): each for each in used}
+        return [found[key].interface for key in sorted(found)]
 
     # Types
 
@@ -291,15 +342,52 @@ class Node:
             [self._message(each) for each in publisher.sendings],
         )
 
+    def _service(self, client: rosgraph.ServiceClient) -> Client:
+        return self._client(client, client.response, None, None)
+
+    def _action(self, client: rosgraph.ActionClient) -> Client:
+        return self._client(client, client.response, client.feedback, client.cancel)
+
+    def _client(
+        self,
+        client: rosgraph.ServiceClient | rosgraph.ActionClient,
+        response: rosgraph.Reception,
+        feedback: rosgraph.Reception | None,
+        cancel: sct.Event | None,
+    ) -> Client:
+        request = self._message(client.request)
+        return Client(
+            request.word,
+            client.identifier,
+            client.interface,
+            request,
+            self._reception(response),
+            self._happening(client.error),
+            self._reception(feedback) if feedback else None,
+            self._names.c.enumerator(cancel) if cancel else None,
+            requirements_on(self._graph, cancel) if cancel else [],
+            self._names.c.enumerator(client.reset),
+        )
+
+    def _last(self, name: str) -> LastMessage:
+        sending = message_named(self._graph, name)
+        assert sending is not None
+        event = self._names.c.enumerator(sending.event)
+        publisher, message = next(
+            (topic, each) for topic in self.publishers for each in topic.messages if each.event == event
+        )
+        return LastMessage(publisher, message, message.requirements)
+
     def _message(self, sending: rosgraph.Sending) -> Message:
-        word = self._names.c.member(sending.event.eContainer()).removeprefix("message_")
+        plant: sct.Plant = sending.event.eContainer()
         return Message(
-            word,
+            self._names.c.member(plant).removeprefix(f"{plant.kind.name}_"),
             self._names.c.enumerator(sending.event),
-            [each.text for each in self._graph.model.requirements if each.event == sending.event and each.text],
+            requirements_on(self._graph, sending.event),
             [self._alternative(each) for each in sending.alternatives],
             any(is_double(field.value) for each in sending.alternatives for field in each.fields),
             self._happening(sending.event) if self._reactions(sending.event) else None,
+            [".".join(each) for each in parts_with_headers(sending)],
         )
 
     def _alternative(self, provided: rosgraph.ProvidedData) -> Alternative:

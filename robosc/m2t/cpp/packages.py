@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from robosc.definition import definition_text
 from robosc.m2t.c import engine
-from robosc.m2t.cpp.definition import definition_text
 from robosc.m2t.cpp.rendering import fold, node_environment
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ _PLAIN = frozenset(["Accel", "Inertia", "Point", "Point32", "Polygon", "Twist", 
 
 
 def message_packages(node: Node, configuration: Configuration) -> set[str]:
-    """The packages of the messages that the node uses, its reports on itself included."""
+    """The packages of the types that the node uses, its reports on itself included."""
     reports = {"std_msgs"} if configuration.publish_state_information else set()
     return {each.package for each in node.interfaces} | reports
 
@@ -30,6 +30,8 @@ def has_defaults(interface: rosgraph.Interface) -> bool:
     """Whether a message of this type may hold a header or a quaternion, which the node then sets."""
     if interface.package == "std_msgs":
         return interface.type == "Header"
+    if interface.package == "std_srvs":
+        return False
     return interface.package != "geometry_msgs" or interface.type not in _PLAIN
 
 
@@ -39,6 +41,10 @@ class Target:
 
     package: str
     launch_file: str
+    #: What its node includes beside the headers of all nodes, each from a template of its name.
+    headers: tuple[str, ...] = ()
+    #: Files beside those of all targets: path, with `{name}` for the package's name, to template.
+    files: Mapping[str, str] = field(default_factory=dict)
 
 
 def package(
@@ -46,17 +52,24 @@ def package(
 ) -> dict[str, str]:
     """The files of a package by their path in it; `values` is what only this target's templates read."""
     name = configuration.package_name(graph)
-    headers = ["data.hpp", "fields.hpp", "json.hpp", "parameters.hpp"]
-    if configuration.publish_state_information:
-        headers.append("definition.hpp")
-    if any(has_defaults(each.interface) for each in node.publishers):
-        headers.append("defaults.hpp")
+    sent = [each.interface for each in node.publishers] + [each.interface for each in node.clients]
+    optional = {
+        "action_client.hpp": node.actions,
+        "countdown.hpp": node.clients or node.subscriptions,
+        "defaults.hpp": any(has_defaults(each) for each in sent),
+        "definition.hpp": configuration.publish_state_information,
+        "service_client.hpp": node.services,
+        "watchdog.hpp": node.subscriptions,
+    }
+    headers = ["data.hpp", "fields.hpp", "json.hpp", "parameters.hpp", *target.headers]
+    headers += [header for header, is_used in optional.items() if is_used]
     files = {
         "package.xml": "package.xml.j2",
         "CMakeLists.txt": "CMakeLists.txt.j2",
         f"launch/{name}{target.launch_file}": "launch.j2",
         **{f"include/{name}/{each}": f"{each}.j2" for each in headers},
         f"src/{name}_node.cpp": "node.cpp.j2",
+        **{path.format(name=name): template for path, template in target.files.items()},
     }
     values = {
         **values,
@@ -66,6 +79,8 @@ def package(
         "description": configuration.package.description or f"The supervisory controller of {graph.name}.",
         "own_headers": sorted(headers),
         "period_ms": configuration.control_loop.period_ms,
+        "settings": configuration,
+        "watchdog_ms": lambda topic: configuration.watchdog_ms.get(topic.removeprefix("/"), 0),
         "publishes_state": configuration.publish_state_information,
         "writes_log": configuration.write_events_to_log,
         "definition": definition_text(graph),

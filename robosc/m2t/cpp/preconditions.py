@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from robosc.diagnostics import START, Diagnostic, Severity
 from robosc.m2t.c.preconditions import preconditions as engine_preconditions
+from robosc.m2t.cpp.shutdown import message_named, requirements_on
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph
 from robosc.metamodel.places import place
@@ -31,28 +32,35 @@ _RISKY = re.compile(r'["\\$;\n\r]')
 
 def preconditions(models: Models, configuration: Configuration) -> list[Diagnostic]:
     """What keeps these models from becoming a node, with these settings, and warnings about settings without effect."""
+    found = graph_preconditions(models)
+    graph = models.rosgraph
+    if graph is None:
+        return found
+    name = configuration.package_name(graph)
+    return [*found, *package_preconditions(graph, configuration, name), *_settings(graph, configuration)]
+
+
+def graph_preconditions(models: Models) -> list[Diagnostic]:
+    """What keeps these models from becoming a node of any kind."""
     graph = models.rosgraph
     if graph is None:
         message = "there is no ROS graph beside this model: generate from the .rscd or the .rosgraph.xmi"
         return [Diagnostic(models.sct.name, START, Severity.ERROR, RULE, message)]
-    return [
-        *engine_preconditions(models.sct),
-        *_clients(graph),
-        *_names(graph),
-        *_settings(graph, configuration),
-    ]
+    return [*engine_preconditions(models.sct), *_names(graph)]
+
+
+def package_preconditions(graph: rosgraph.RosGraph, configuration: Configuration, name: str) -> Iterator[Diagnostic]:
+    """What keeps a package from having this name and these settings."""
+    if not _PACKAGE.fullmatch(name):
+        yield _error(graph, f'"{name}" is no name of a ROS package', 'set "package.name" in controller-config.json')
+    if _RISKY.search(configuration.package.maintainer):
+        hint = 'leave out ", \\, $ and ;'
+        yield configuration.error(("package", "maintainer"), "the maintainer would break the package's build", hint)
 
 
 def _error(element: ex.Located, message: str, hint: str | None = None) -> Diagnostic:
     file, span = place(element)
     return Diagnostic(file, span, Severity.ERROR, RULE, message, hint)
-
-
-def _clients(graph: rosgraph.RosGraph) -> Iterator[Diagnostic]:
-    clients: list[rosgraph.ServiceClient | rosgraph.ActionClient] = [*graph.serviceClients, *graph.actionClients]
-    for each in clients:
-        kind = each.interface.kind.name
-        yield _error(each, f"the {kind} {each.request.name} can't be generated for ROS yet: messages only")
 
 
 def _names(graph: rosgraph.RosGraph) -> Iterator[Diagnostic]:
@@ -62,11 +70,16 @@ def _names(graph: rosgraph.RosGraph) -> Iterator[Diagnostic]:
             yield _error(each, f'"{each.package}" is no name of a ROS package')
         if not _TYPE.fullmatch(each.type):
             yield _error(each, f'"{each.type}" is no name of a ROS type')
-    topics: list[rosgraph.Subscription | rosgraph.Publisher] = [*graph.subscriptions, *graph.publishers]
-    for topic in topics:
-        if not _TOPIC.fullmatch(topic.topic):
+    named: list[tuple[ex.Located, str, str]] = [
+        *((each, each.topic, "topic") for each in graph.subscriptions),
+        *((each, each.topic, "topic") for each in graph.publishers),
+        *((each, each.identifier, "service") for each in graph.serviceClients),
+        *((each, each.identifier, "action") for each in graph.actionClients),
+    ]
+    for element, name, kind in named:
+        if not _TOPIC.fullmatch(name):
             hint = "write letters, digits and underscores, with single slashes between them"
-            yield _error(topic, f'"{topic.topic}" is no name of a ROS topic', hint)
+            yield _error(element, f'"{name}" is no name of a ROS {kind}', hint)
     for element, name in _fields(graph):
         if not _FIELD.fullmatch(name):
             yield _error(element, f'"{name}" is no name of a field in ROS')
@@ -81,20 +94,14 @@ def _fields(graph: rosgraph.RosGraph) -> Iterator[tuple[ex.Located, str]]:
 
 
 def _settings(graph: rosgraph.RosGraph, configuration: Configuration) -> Iterator[Diagnostic]:
-    name = configuration.package_name(graph)
-    if not _PACKAGE.fullmatch(name):
-        yield _error(graph, f'"{name}" is no name of a ROS package', 'set "package.name" in controller-config.json')
-    if _RISKY.search(configuration.package.maintainer):
-        hint = 'leave out ", \\, $ and ;'
-        yield configuration.error(("package", "maintainer"), "the maintainer would break the package's build", hint)
-    unfinished = {
-        "watchdogMs": configuration.watchdog_ms,
-        "watchdogStops": configuration.watchdog_stops,
-        "onShutdown": configuration.on_shutdown,
-    }
-    for key, value in unfinished.items():
-        if value:
-            yield configuration.error((key,), f'"{key}" can\'t be generated for ROS yet')
+    yield from _shutdown(graph, configuration)
+    heard = {each.topic.removeprefix("/") for each in graph.subscriptions}
+    others = [each.topic for each in graph.publishers]
+    others += [each.identifier for each in graph.serviceClients] + [each.identifier for each in graph.actionClients]
+    for topic in configuration.watchdog_ms:
+        if topic not in heard and topic in {each.removeprefix("/") for each in others}:
+            finding = configuration.error(("watchdogMs", topic), f'"watchdogMs": the node does not listen to {topic}')
+            yield replace(finding, severity=Severity.WARNING)
     controller = configuration.supervisor.controller
     unused = {
         ("supervisor", "controller"): controller.run or controller.launch,
@@ -103,4 +110,19 @@ def _settings(graph: rosgraph.RosGraph, configuration: Configuration) -> Iterato
     for place_of_key, setting in unused.items():
         if setting:
             finding = configuration.error(place_of_key, f'"{".".join(place_of_key)}" has no effect on this target')
+            yield replace(finding, severity=Severity.WARNING)
+
+
+def _shutdown(graph: rosgraph.RosGraph, configuration: Configuration) -> Iterator[Diagnostic]:
+    """What can't be sent on shutdown; and what is sent then, requirements or not."""
+    for place_of_name, name in enumerate(configuration.on_shutdown):
+        key = ("onShutdown", place_of_name)
+        sending = message_named(graph, name)
+        if sending is None:
+            sent = [each.name for publisher in graph.publishers for each in publisher.sendings]
+            hint = f"messages to the robot: {', '.join(sent)}" if sent else None
+            yield configuration.error(key, f'"onShutdown": {name} is no message that the node sends', hint)
+            continue
+        for requirement in requirements_on(graph, sending.event):
+            finding = configuration.error(key, f'"onShutdown": {name} is sent then in spite of "{requirement}"')
             yield replace(finding, severity=Severity.WARNING)

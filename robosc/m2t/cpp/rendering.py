@@ -20,13 +20,11 @@ _TOKEN = re.compile(r"""\"(?:\\.|[^"\\])*"|'(?:\\.|[^'\\])*'|[][(){}]| (?!\()|(?
 _OPENING, _CLOSING = "([{", ")]}"
 
 
-def node_environment(target: str) -> Environment:
-    """The templates of a target (`robosc.m2t.ros1`), which may extend and import those of this package."""
+def node_environment(target: str, *shared: str) -> Environment:
+    """The templates of a target (`robosc.m2t.ros1`), which may extend others' and those of this package."""
     templates = environment(target)
-    own, shared = templates.loader, environment("robosc.m2t.cpp").loader
-    assert own is not None
-    assert shared is not None
-    templates.loader = ChoiceLoader([own, shared])
+    loaders = (environment(each).loader for each in (target, *shared, "robosc.m2t.cpp"))
+    templates.loader = ChoiceLoader([each for each in loaders if each is not None])
     templates.filters.update(
         literal=string_literal,
         raw_literal=raw_literal,

@@ -12,41 +12,61 @@ from robosc.m2t.cpp.preconditions import preconditions
 if TYPE_CHECKING:
     from robosc.config import Configuration
     from robosc.metamodel import rosgraph
-    from robosc.models import Models
+    from robosc.models import Models, TraceTest
 
 __all__ = ["generate", "preconditions"]
 
-_TARGET = Target("robosc.m2t.ros2", launch_file=".launch.py")
+_FILES = {"config/{name}.yaml": "parameters.yaml.j2"}
+_TEST_FILES = {
+    "Dockerfile": "Dockerfile.j2",
+    "test/play_trace.py": "play_trace.py.j2",
+    "test/test_trace.py": "test_trace.py.j2",
+}
 
 _DEPTH = 10
+_FOLDERS = {"message": "msg", "service": "srv", "action": "action"}
 
 
-def generate(models: Models, configuration: Configuration) -> dict[str, str]:
+def generate(models: Models, configuration: Configuration, tests: TraceTest | None = None) -> dict[str, str]:
     """The files of the package, by their path in it. `preconditions` must have found nothing."""
     graph = models.rosgraph
     assert graph is not None
-    node = Node(graph)
+    node = Node(graph, configuration.on_shutdown)
+    own = ("shutdown_hook.hpp", "wiring.hpp")
+    target = Target("robosc.m2t.ros2", ".launch.py", own, _FILES | (_TEST_FILES if tests else {}))
     messages = message_packages(node, configuration)
+    libraries = {"rclcpp", "rclcpp_components"}
+    if node.actions:
+        libraries |= {"action_msgs", "rclcpp_action"}
+        messages |= {"action_msgs"}
+    if configuration.lifecycle:
+        libraries |= {"rclcpp_lifecycle"}
     values = {
         "headers": _headers(node, configuration),
         "messages": sorted(messages),
-        "dependencies": sorted({"rclcpp", "rclcpp_components", *messages}),
+        "dependencies": sorted(libraries | messages),
         "subscription_qos": lambda topic: _quality(topic, configuration, sensor=_is_sensor(topic)),
         "publisher_qos": lambda topic: _quality(topic, configuration, sensor=False),
+        "service_qos": lambda client: _chosen("rclcpp::ServicesQoS()", client.name, configuration),
+        "action_qos": lambda client: _chosen(f"rclcpp::QoS({_DEPTH})", client.name, configuration),
+        "tests": tests,
     }
-    return package(_TARGET, graph, node, configuration, values)
+    files = package(target, graph, node, configuration, values)
+    return files | ({f"test/{path}": text for path, text in tests.files.items()} if tests else {})
 
 
 def header(interface: rosgraph.Interface) -> str:
-    """The header of a message type, in the spelling of rosidl (`LaserScan`: `sensor_msgs/msg/laser_scan.hpp`)."""
+    """The header of a type, in the spelling of rosidl (`LaserScan`: `sensor_msgs/msg/laser_scan.hpp`)."""
     words = re.sub(r"(.)([A-Z][a-z]+)", r"\1_\2", interface.type)
     name = re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", words).lower()
-    return f"{interface.package}/msg/{name}.hpp"
+    return f"{interface.package}/{_FOLDERS[interface.kind.name]}/{name}.hpp"
 
 
 def _headers(node: Node, configuration: Configuration) -> list[str]:
     reports = {"std_msgs/msg/string.hpp"} if configuration.publish_state_information else set()
     own = {"rclcpp/rclcpp.hpp", "rclcpp_components/register_node_macro.hpp"}
+    if configuration.lifecycle:
+        own |= {"rclcpp_lifecycle/lifecycle_node.hpp", "rclcpp_lifecycle/lifecycle_publisher.hpp"}
     return sorted({header(each) for each in node.interfaces} | reports | own)
 
 
@@ -55,12 +75,15 @@ def _is_sensor(topic: Subscription) -> bool:
 
 
 def _quality(topic: Subscription | Publisher, configuration: Configuration, *, sensor: bool) -> str:
-    """The quality of service of a topic, as C++; what the configuration says of the topic goes first."""
-    text = "rclcpp::SensorDataQoS()" if sensor else f"rclcpp::QoS({_DEPTH})"
-    chosen = configuration.qos.get(topic.topic.removeprefix("/"))
+    return _chosen("rclcpp::SensorDataQoS()" if sensor else f"rclcpp::QoS({_DEPTH})", topic.topic, configuration)
+
+
+def _chosen(default: str, name: str, configuration: Configuration) -> str:
+    """The quality of service of a communication, as C++: the default of its kind, and what the configuration says."""
+    chosen = configuration.qos.get(name.removeprefix("/"))
     if chosen is None:
-        return text
+        return default
     durability = {None: None, "volatile": "durability_volatile", "transient_local": "transient_local"}
     settings = (chosen.reliability, durability[chosen.durability])
     depth = f".keep_last({chosen.depth})" if chosen.depth else ""
-    return text + depth + "".join(f".{each}()" for each in settings if each)
+    return default + depth + "".join(f".{each}()" for each in settings if each)

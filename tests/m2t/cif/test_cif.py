@@ -10,6 +10,7 @@ from robosc.checks import check
 from robosc.config import Configuration
 from robosc.diagnostics import Severity, Span
 from robosc.diagnostics.rules import page
+from robosc.expressions import copied
 from robosc.language import read
 from robosc.m2m import robosc_to_sct
 from robosc.m2t import cif
@@ -275,6 +276,27 @@ def test_what_cannot_be_said_is_an_error_at_its_place(given: sct.SupervisoryCont
     [finding] = found
     assert (finding.file, finding.span, finding.rule) == ("robot.rscd", Span(7, 5, 8, 9), "cif")
     assert (finding.severity, finding.message) == (Severity.ERROR, f"this can't be said in CIF: {message}")
+
+
+def test_what_cannot_be_said_in_a_guard_stands_at_its_event() -> None:
+    given = model(
+        [plant("p", {"l": [edge("e")]}, controllable=["e"], variables={"a": "0..2147483646"})],
+        [needs("e", "a - 3 + a > 3")],
+    )
+    given.plants[0].events[0].source = "robot.rscd:7:5-8:9"
+    given.requirements[0].source = "robot.rscd:9:5-9:9"
+    condition = copied(given.requirements[0].condition)
+    guard = sct.EventGuard(event=given.plants[0].events[0], requirement=condition)
+    given.supervisor = sct.Supervisor(guards=[guard])
+    found = cif.preconditions(Models(given), Configuration())
+    assert [each.span for each in found] == [Span(9, 5, 9, 9), Span(7, 5, 8, 9)]
+
+
+def test_expressions_of_too_large_a_number_draw_nothing_further() -> None:
+    given = expression("a + 3 > 3", a="-2..2147483646")
+    assert [each.message for each in cif.preconditions(Models(given), Configuration())] == [
+        "this can't be said in CIF: its range does not fit 32 bits"
+    ]
 
 
 def test_names_that_clash_are_told_apart(golden) -> None:

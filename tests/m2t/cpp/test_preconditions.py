@@ -74,8 +74,8 @@ def test_nothing_against_a_good_model(tmp_path: Path) -> None:
         ({"field": "_x"}, 'cart.rscd:11: "_x" is no name of a field in ROS'),
         ({"robot": "_Cart"}, 'cart.rscd:1: "_cart_controller" is no name of a ROS package'),
         (
-            {"more": "service reset with request: none, response: none"},
-            "cart.rscd:7: the service reset can't be generated for ROS yet: messages only",
+            {"more": 'service reset with identifier: "re-set", request: none, response: none'},
+            'cart.rscd:7: "re-set" is no name of a ROS service',
         ),
     ],
 )
@@ -86,9 +86,10 @@ def test_names_and_kinds(tmp_path: Path, changes: dict[str, str], expected: str)
 @pytest.mark.parametrize(
     ("settings", "expected"),
     [
-        ('{\n "watchdogMs": {"/scan": 5}}', 'controller-config.json:2: "watchdogMs" can\'t be generated for ROS yet'),
-        ('{\n "watchdogStops": true}', 'controller-config.json:2: "watchdogStops" can\'t be generated for ROS yet'),
-        ('{\n\n "onShutdown": ["halt"]}', 'controller-config.json:3: "onShutdown" can\'t be generated for ROS yet'),
+        (
+            '{\n\n "onShutdown": ["where"]}',
+            'controller-config.json:3: "onShutdown": where is no message that the node sends',
+        ),
         (
             '{"package": {\n "maintainer": "A\\") execute_process(COMMAND id) (\\""}}',
             "controller-config.json:2: the maintainer would break the package's build",
@@ -116,6 +117,39 @@ def test_settings(tmp_path: Path, settings: str, expected: str) -> None:
 def test_settings_without_effect(tmp_path: Path, settings: str, key: str) -> None:
     assert found(tmp_path, settings) == [f'controller-config.json:3: "{key}" has no effect on this target']
     assert found(tmp_path, settings, Severity.ERROR) == []
+
+
+MORE = """incoming message halt with type: boolean
+    incoming message go with type: boolean
+  }
+  component Eye {
+    outgoing message seen with identifier: "eye", type: boolean
+    behaviour { initial marked state open { on response from seen goto closed } marked state closed {} }
+  }
+  requirement Eye.open disables { halt, go }
+  provide halt with true
+  provide go with true
+  component Arm {"""
+
+
+def test_services_and_actions_are_welcome(tmp_path: Path) -> None:
+    assert found(tmp_path, more="service reset with request: none, response: none") == []
+
+
+def test_what_goes_out_in_spite_of_requirements_is_listed(tmp_path: Path) -> None:
+    settings = '{"onShutdown": ["halt",\n "Base.go"]}'
+    assert found(tmp_path, settings, Severity.WARNING, more=MORE) == [
+        'controller-config.json:1: "onShutdown": halt is sent then in spite of "requirement Eye.open disables halt"',
+        'controller-config.json:2: "onShutdown": Base.go is sent then in spite of "requirement Eye.open disables go"',
+    ]
+    assert found(tmp_path, settings, Severity.ERROR, more=MORE) == []
+
+
+def test_only_topics_that_the_node_hears_have_a_watchdog(tmp_path: Path) -> None:
+    settings = '{"watchdogMs": {"eye": 5,\n "halt": 5}}'
+    assert found(tmp_path, settings, more=MORE) == [
+        'controller-config.json:2: "watchdogMs": the node does not listen to halt'
+    ]
 
 
 def test_a_name_in_the_configuration_repairs_the_robot_s(tmp_path: Path) -> None:

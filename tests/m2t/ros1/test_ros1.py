@@ -17,8 +17,7 @@ from robosc.config import Configuration
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-FOLDER = Path(__file__).parent / "courier"
-ENGINE = ("src/courier_supervisor.c", "src/courier_supervisor.h")
+HERE = Path(__file__).parent
 
 
 @pytest.fixture(scope="module")
@@ -26,26 +25,48 @@ def files(courier: robosc.Models, settings: Configuration) -> dict[str, str]:
     return robosc.generate("ros1", courier, settings)
 
 
+@pytest.fixture(scope="module")
+def porter_files(porter: robosc.Models, porter_settings: Configuration) -> dict[str, str]:
+    return robosc.generate("ros1", porter, porter_settings)
+
+
 def test_every_file(files: dict[str, str], golden: Callable[[Path, str], None]) -> None:
+    compare(files, "courier", golden)
+
+
+def test_every_file_for_services_and_actions(porter_files: dict[str, str], golden: Callable[[Path, str], None]) -> None:
+    compare(porter_files, "porter", golden)
+
+
+def compare(files: dict[str, str], name: str, golden: Callable[[Path, str], None]) -> None:
     # The engine in C has goldens of its own.
-    assert set(ENGINE) < set(files)
+    engine = {f"src/{name}_supervisor.{ending}" for ending in "ch"}
+    assert engine < set(files)
     for path, text in files.items():
-        if path not in ENGINE:
-            golden(FOLDER / path, text)
-    kept = {path.relative_to(FOLDER).as_posix() for path in FOLDER.rglob("*") if path.is_file()}
-    assert kept == set(files) - set(ENGINE)
+        if path not in engine:
+            golden(HERE / name / path, text)
+    kept = {path.relative_to(HERE / name).as_posix() for path in (HERE / name).rglob("*") if path.is_file()}
+    assert kept == set(files) - engine
 
 
 def test_package_lists_what_is_used(files: dict[str, str]) -> None:
     package = parse_package_string(files["package.xml"])
     package.validate()
     assert [each.name for each in package.buildtool_depends] == ["catkin"]
-    used = {"geometry_msgs", "roscpp", "sensor_msgs", "std_msgs"}
+    used = {"geometry_msgs", "rosconsole", "roscpp", "sensor_msgs", "std_msgs", "xmlrpcpp"}
     assert {each.name for each in package.build_depends} == used
     assert {each.name for each in package.exec_depends} == used
     described = ElementTree.fromstring(files["package.xml"]).findtext("description")  # noqa: S314  # our own text
     assert described == "Carries <data> & more: ]]> -->"
     assert package.maintainers[0].name == "A. O'Tester <&>"
+
+
+def test_package_lists_what_services_and_actions_need(porter_files: dict[str, str]) -> None:
+    package = parse_package_string(porter_files["package.xml"])
+    messages = {"geometry_msgs", "nav2_msgs", "std_msgs", "std_srvs"}
+    used = {"actionlib", "rosconsole", "roscpp", "xmlrpcpp"} | messages
+    assert {each.name for each in package.build_depends} == used
+    assert {each.name for each in package.exec_depends} == used
 
 
 def test_leaves_out_what_is_not_asked_for(courier: robosc.Models) -> None:
@@ -58,14 +79,16 @@ def test_the_same_twice(courier: robosc.Models, settings: Configuration, files: 
     assert robosc.generate("ros1", courier, settings) == files
 
 
-def test_every_text_is_ends_with_a_line(files: dict[str, str]) -> None:
-    for path, text in files.items():
+def test_every_text_ends_with_a_line(files: dict[str, str], porter_files: dict[str, str]) -> None:
+    for path, text in (*files.items(), *porter_files.items()):
         assert text.endswith("\n"), path
         assert not any(line != line.rstrip() for line in text.split("\n")), path
 
 
-def test_the_platform_s_linter_is_content(files: dict[str, str], tmp_path: Path) -> None:
-    package = tmp_path / "courier_controller"
+@pytest.mark.parametrize("name", ["courier", "porter"])
+def test_the_platform_s_linter_is_content(name: str, request: pytest.FixtureRequest, tmp_path: Path) -> None:
+    files: dict[str, str] = request.getfixturevalue("files" if name == "courier" else "porter_files")
+    package = tmp_path / f"{name}_controller"
     for path, text in files.items():
         (package / path).parent.mkdir(parents=True, exist_ok=True)
         (package / path).write_text(text, encoding="utf-8")

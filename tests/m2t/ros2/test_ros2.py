@@ -11,15 +11,16 @@ from xml.etree import ElementTree
 
 import pytest
 from catkin_pkg.package import parse_package_string
+from ruamel.yaml import YAML
 
 import robosc
+from robosc import config
 from robosc.config import Configuration
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-FOLDER = Path(__file__).parent / "courier"
-ENGINE = ("src/courier_supervisor.c", "src/courier_supervisor.h")
+HERE = Path(__file__).parent
 
 
 @pytest.fixture(scope="module")
@@ -27,14 +28,52 @@ def files(courier: robosc.Models, settings: Configuration) -> dict[str, str]:
     return robosc.generate("ros2", courier, settings)
 
 
+@pytest.fixture(scope="module")
+def porter_files(porter: robosc.Models, porter_settings: Configuration) -> dict[str, str]:
+    return robosc.generate("ros2", porter, porter_settings)
+
+
+@pytest.fixture(scope="module")
+def managed_files(porter: robosc.Models) -> dict[str, str]:
+    return robosc.generate("ros2", porter, config.read(HERE.parent / "cpp" / "managed-porter-config.json"))
+
+
 def test_every_file(files: dict[str, str], golden: Callable[[Path, str], None]) -> None:
+    compare(files, "courier", golden)
+
+
+def test_every_file_for_services_and_actions(porter_files: dict[str, str], golden: Callable[[Path, str], None]) -> None:
+    compare(porter_files, "porter", golden)
+
+
+def test_what_is_special_in_a_managed_node(
+    porter_files: dict[str, str], managed_files: dict[str, str], golden: Callable[[Path, str], None]
+) -> None:
+    def renamed(text: str) -> str:
+        return text.replace("managed_porter", "porter_controller").replace("MANAGED_PORTER", "PORTER_CONTROLLER")
+
+    same = {path for path, text in managed_files.items() if renamed(text) == porter_files[renamed(path)]}
+    special = sorted(set(managed_files) - same)
+    assert special == [
+        "CMakeLists.txt",
+        "config/managed_porter.yaml",
+        "launch/managed_porter.launch.py",
+        "package.xml",
+        "src/managed_porter_node.cpp",
+    ]
+    for path in special:
+        golden(HERE / "managed" / path, managed_files[path])
+
+
+def compare(files: dict[str, str], name: str, golden: Callable[[Path, str], None]) -> None:
     # The engine in C has goldens of its own.
-    assert set(ENGINE) < set(files)
+    engine = {f"src/{name}_supervisor.{ending}" for ending in "ch"}
+    assert engine < set(files)
     for path, text in files.items():
-        if path not in ENGINE:
-            golden(FOLDER / path, text)
-    kept = {path.relative_to(FOLDER).as_posix() for path in FOLDER.rglob("*") if path.is_file()}
-    assert kept == set(files) - set(ENGINE)
+        if path not in engine:
+            golden(HERE / name / path, text)
+    kept = {path.relative_to(HERE / name).as_posix() for path in (HERE / name).rglob("*") if path.is_file()}
+    assert kept == set(files) - engine
 
 
 def test_package_lists_what_is_used(files: dict[str, str]) -> None:
@@ -49,13 +88,28 @@ def test_package_lists_what_is_used(files: dict[str, str]) -> None:
     assert package.maintainers[0].name == "A. O'Tester <&>"
 
 
-def test_launch_file_is_python(files: dict[str, str]) -> None:
-    (function,) = [
-        each
-        for each in ast.parse(files["launch/courier_controller.launch.py"]).body
-        if isinstance(each, ast.FunctionDef)
-    ]
-    assert function.name == "generate_launch_description"
+def test_package_lists_what_services_actions_and_managed_nodes_need(
+    porter_files: dict[str, str], managed_files: dict[str, str]
+) -> None:
+    messages = {"action_msgs", "geometry_msgs", "nav2_msgs", "std_msgs", "std_srvs"}
+    used = {"rclcpp", "rclcpp_action", "rclcpp_components"} | messages
+    package = parse_package_string(porter_files["package.xml"])
+    assert {each.name for each in package.build_depends} == used
+    managed = parse_package_string(managed_files["package.xml"])
+    assert {each.name for each in managed.build_depends} == used | {"rclcpp_lifecycle"}
+    launching = {each.name for each in managed.exec_depends} - {each.name for each in managed.build_depends}
+    assert launching == {"launch", "launch_ros", "lifecycle_msgs"}
+
+
+@pytest.mark.parametrize("name", ["courier", "managed"])
+def test_launch_file_is_python(name: str, files: dict[str, str], managed_files: dict[str, str]) -> None:
+    path = {"courier": "launch/courier_controller.launch.py", "managed": "launch/managed_porter.launch.py"}[name]
+    tree = ast.parse((files | managed_files)[path])
+    functions = [each.name for each in tree.body if isinstance(each, ast.FunctionDef)]
+    assert functions == ["start", "generate_launch_description"]
+    imported = [alias.name for each in tree.body if isinstance(each, ast.ImportFrom) for alias in each.names]
+    used = {each.id for each in ast.walk(tree) if isinstance(each, ast.Name)}
+    assert set(imported) <= used
 
 
 @pytest.mark.parametrize(
@@ -79,6 +133,35 @@ def test_quality_of_service(courier: robosc.Models, quality: str, expected: str)
     assert '"count", rclcpp::QoS(10),' in " ".join(node.split())
 
 
+@pytest.mark.parametrize(
+    ("name", "default"), [("/gripper/grip", "rclcpp::ServicesQoS()"), ("/travel", "rclcpp::QoS(10)")]
+)
+def test_quality_of_service_of_clients(porter: robosc.Models, name: str, default: str) -> None:
+    quality = f'{{"qos": {{"{name}": {{"depth": 3, "reliability": "best_effort"}}}}}}'
+    for settings, expected in (("{}", default), (quality, f"{default}.keep_last(3).best_effort()")):
+        files = robosc.generate("ros2", porter, Configuration.model_validate_json(settings))
+        assert f'"{name}", {expected},' in " ".join(files["src/porter_controller_node.cpp"].split())
+
+
+def test_parameters_of_the_file_are_those_of_the_node(porter_files: dict[str, str]) -> None:
+    parameters = YAML(typ="safe").load(porter_files["config/porter_controller.yaml"])["/**"]["ros__parameters"]
+    assert parameters == {
+        "period_ms": 100,
+        "events_per_tick": 0,
+        "react_immediately": True,
+        "reactions_per_tick": 10,
+        "event_log": "",
+        "service_timeout_ms": 3000,
+        "action_timeout_ms": 2000,
+        "retry_ms": 500,
+        "watchdog_stops": True,
+        "watchdog_ms": {"order": 0, "stop": 400},
+    }
+    node = " ".join(porter_files["src/porter_controller_node.cpp"].split())
+    names = [*parameters, *(f"watchdog_ms.{topic}" for topic in parameters.pop("watchdog_ms"))]
+    assert [each for each in names if f'"{each}",' not in node] == ["watchdog_ms"]
+
+
 def test_leaves_out_what_is_not_asked_for(courier: robosc.Models) -> None:
     silent = robosc.generate("ros2", courier, Configuration(publish_state_information=False))
     assert "include/courier_controller/definition.hpp" not in silent
@@ -89,13 +172,15 @@ def test_the_same_twice(courier: robosc.Models, settings: Configuration, files: 
     assert robosc.generate("ros2", courier, settings) == files
 
 
-def test_every_text_ends_with_a_line(files: dict[str, str]) -> None:
-    for path, text in files.items():
+def test_every_text_ends_with_a_line(files: dict[str, str], managed_files: dict[str, str]) -> None:
+    for path, text in (files | managed_files).items():
         assert text.endswith("\n"), path
         assert not any(line != line.rstrip() for line in text.split("\n")), path
 
 
-def test_the_platform_s_linter_is_content(files: dict[str, str], tmp_path: Path) -> None:
+@pytest.mark.parametrize("name", ["courier", "porter", "managed"])
+def test_the_platform_s_linter_is_content(name: str, request: pytest.FixtureRequest, tmp_path: Path) -> None:
+    files = request.getfixturevalue("files" if name == "courier" else f"{name}_files")
     # As ament_lint_cmake calls it.
     filters = "--filter=-convention/filename,-package/consistency,-package/stdargs"
     (tmp_path / "CMakeLists.txt").write_text(files["CMakeLists.txt"], encoding="utf-8")

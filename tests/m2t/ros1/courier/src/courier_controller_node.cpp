@@ -5,12 +5,16 @@
 // What may happen, the supervisor decides (courier_supervisor.h). This file connects it to ROS: a message that comes
 // in becomes events, and an event that sends something becomes a message.
 
+#include <chrono>
 #include <cstdint>
 #include <exception>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <geometry_msgs/PoseStamped.h>
+#include <ros/callback_queue.h>
 #include <ros/ros.h>
 #include <sensor_msgs/LaserScan.h>
 #include <std_msgs/Bool.h>
@@ -19,12 +23,16 @@
 #include <std_msgs/String.h>
 #include <std_msgs/UInt8.h>
 
+#include "courier_controller/countdown.hpp"
 #include "courier_controller/data.hpp"
 #include "courier_controller/defaults.hpp"
 #include "courier_controller/definition.hpp"
 #include "courier_controller/fields.hpp"
+#include "courier_controller/interruption.hpp"
 #include "courier_controller/json.hpp"
 #include "courier_controller/parameters.hpp"
+#include "courier_controller/watchdog.hpp"
+#include "courier_controller/wiring.hpp"
 #include "courier_supervisor.h"
 
 namespace courier_controller {
@@ -79,23 +87,28 @@ model::Size to_Size([[maybe_unused]] const Data& value) {
 
 class Controller {
  public:
-  // Parameters: period_ms (time from one tick to the next), events_per_tick (most events sent in a tick; 0: no limit),
-  // react_immediately (whether incoming data may start events at once), reactions_per_tick (most events started by
-  // incoming data between two ticks), event_log (a file that gets a line of JSON for each event; empty: none).
-  Controller() : log_(private_.param<std::string>("event_log", default_log("courier_controller"))) {
+  // All that happens comes through the queue of `node`, which one thread serves. The parameters are described in
+  // config/courier_controller.yaml.
+  explicit Controller(const ros::NodeHandle& node)
+      : node_(node), log_(parameter<std::string>(private_, "event_log", default_log("courier_controller"))) {
     courier_settings settings = courier_default_settings;
     settings.events_per_tick =
         static_cast<std::uint16_t>(parameter(private_, "events_per_tick", settings.events_per_tick, 0, 65535));
     settings.reactions_per_tick =
         static_cast<std::uint16_t>(parameter(private_, "reactions_per_tick", settings.reactions_per_tick, 0, 65535));
-    settings.react_immediately = private_.param<bool>("react_immediately", settings.react_immediately);
-    const double period = parameter(private_, "period_ms", 100, 1, 24 * 3600 * 1000) / 1000.0;
+    settings.react_immediately = parameter<bool>(private_, "react_immediately", settings.react_immediately);
+    const double period = std::chrono::duration<double>(milliseconds("period_ms", 100)).count();
 
     target_publisher_ = node_.advertise<geometry_msgs::PoseStamped>("target", 10);
+    wiring_.commands<geometry_msgs::PoseStamped>("target");
     sum_publisher_ = node_.advertise<std_msgs::UInt8>("sum", 10);
+    wiring_.commands<std_msgs::UInt8>("sum");
     ratio_publisher_ = node_.advertise<std_msgs::Float32>("ratio", 10);
+    wiring_.commands<std_msgs::Float32>("ratio");
     report_publisher_ = node_.advertise<std_msgs::String>("report", 10);
+    wiring_.commands<std_msgs::String>("report");
     busy_publisher_ = node_.advertise<std_msgs::Bool>("busy", 10);
+    wiring_.commands<std_msgs::Bool>("busy");
     state_report_ = private_.advertise<std_msgs::String>("state", 10);
     definition_report_ = private_.advertise<std_msgs::String>("definition", 1, true);
     std_msgs::String definition;
@@ -109,22 +122,43 @@ class Controller {
     hooks.livelock = [](void*) { ROS_ERROR("internal transitions follow each other without end"); };
     courier_init(&supervisor_, &settings, &hooks);
 
+    watchdog_stops_ = parameter<bool>(private_, "watchdog_stops", false);
     const auto hints = ros::TransportHints().tcpNoDelay();
+    scan_watchdog_.emplace(node_, parameter(private_, "watchdog_ms/scan", 0, 0, kDay),
+        [this](const Watchdog& watchdog) { on_silence("/scan", watchdog); });
     scan_subscription_ = node_.subscribe("/scan", 10, &Controller::on_scan, this, hints);
+    scan_watchdog_->start();
+    wiring_.listens_to<sensor_msgs::LaserScan>("/scan");
+    count_watchdog_.emplace(node_, parameter(private_, "watchdog_ms/count", 0, 0, kDay),
+        [this](const Watchdog& watchdog) { on_silence("count", watchdog); });
     count_subscription_ = node_.subscribe("count", 10, &Controller::on_count, this, hints);
+    count_watchdog_->start();
+    wiring_.listens_to<std_msgs::Int16>("count");
+    word_watchdog_.emplace(node_, parameter(private_, "watchdog_ms/word", 0, 0, kDay),
+        [this](const Watchdog& watchdog) { on_silence("word", watchdog); });
     word_subscription_ = node_.subscribe("word", 10, &Controller::on_word, this, hints);
+    word_watchdog_->start();
+    wiring_.listens_to<std_msgs::String>("word");
     if (ros::Time::isSimTime()) {
       timer_ = node_.createTimer(ros::Duration(period), [this](const ros::TimerEvent&) { tick(); });
     } else {
       steady_timer_ =
           node_.createSteadyTimer(ros::WallDuration(period), [this](const ros::SteadyTimerEvent&) { tick(); });
     }
+    wiring_.start();
   }
+
+  // When nothing is delivered any more, but ROS still runs.
+  ~Controller() { stop(); }
+
+  Controller(const Controller&) = delete;
+  Controller& operator=(const Controller&) = delete;
 
  private:
   // What the robot tells. A message is one batch: its events in the order of the model, with nothing in between.
 
   void on_scan(const sensor_msgs::LaserScan& message) {
+    if (scan_watchdog_->hear()) ROS_INFO("%s: speaks again", "/scan");
     courier_begin(&supervisor_);
     supervisor_.inputs.message_side_i_response = to_Side(message);
     if (log_.active()) log_.note(courier_literal_name_Side(to_Side(message)));
@@ -165,6 +199,7 @@ class Controller {
   }
 
   void on_count(const std_msgs::Int16& message) {
+    if (count_watchdog_->hear()) ROS_INFO("%s: speaks again", "count");
     courier_begin(&supervisor_);
     {
       supervisor_.inputs.message_count_i_response = Integer(message.data).within(-5, 200).to<std::int16_t>();
@@ -181,6 +216,7 @@ class Controller {
   }
 
   void on_word(const std_msgs::String& message) {
+    if (word_watchdog_->hear()) ROS_INFO("%s: speaks again", "word");
     courier_begin(&supervisor_);
     data_.Counter.text = message.data;
     if (log_.active()) log_.note(message.data);
@@ -188,11 +224,12 @@ class Controller {
     courier_end(&supervisor_);
   }
 
-  // What the robot is told. A message is made before its event: where it can't be, the event does not happen.
+  // What the robot is told. Its data is made before the event: where it can't be, the event does not happen.
 
   bool prepare_target() {
     target_message_ = geometry_msgs::PoseStamped();
-    set_defaults(target_message_, ros::Time::now(), "map");
+    set_defaults(target_message_, ros::Time::now(), "map", target_message_, target_message_.pose,
+        target_message_.pose.position);
     FieldWriter write(log_.active());
     if (supervisor_.state.data_target == courier_data_target_d1) {
       write.set("pose.position.x", target_message_.pose.position.x, data_.Scanner.first);
@@ -254,23 +291,29 @@ class Controller {
     return true;
   }
 
+  // Whether nothing may be sent now: the node ends, or stopped the robot because a topic is silent.
+  bool held() const {
+    if (stopping_) return true;
+    return watchdog_stops_ && (scan_watchdog_->silent() || count_watchdog_->silent() || word_watchdog_->silent());
+  }
+
   // Before an event; false withholds it.
   bool before(courier_event event) {
     switch (event) {
       // requirement target needs Scanner.seen != nothing
       // requirement Counter.limited > 100 disables target
       case courier_message_target_c_trigger:
-        return prepare_target();
+        return !held() && prepare_target();
       case courier_message_sum_c_trigger:
-        return prepare_sum();
+        return !held() && prepare_sum();
       case courier_message_ratio_c_trigger:
-        return prepare_ratio();
+        return !held() && prepare_ratio();
       // requirement Counter.limited > 100 disables report
       // requirement report needs Scanner.looking => Counter.limited < 50
       case courier_message_report_c_trigger:
-        return prepare_report();
+        return !held() && prepare_report();
       case courier_message_busy_c_trigger:
-        return prepare_busy();
+        return !held() && prepare_busy();
       case courier_component_Scanner_c_tau2: {
         const auto old = data_;
         if (supervisor_.state.component_Scanner == courier_component_Scanner_turning) {
@@ -284,7 +327,7 @@ class Controller {
     }
   }
 
-  // After an event: its message goes out, and what happened is noted.
+  // After an event: what it sends goes out, and what happened is noted.
   void after(courier_event event) {
     const char* direction = "internal";
     switch (event) {
@@ -327,6 +370,22 @@ class Controller {
     publish_state();
   }
 
+  void on_silence(const char* topic, const Watchdog& watchdog) {
+    ROS_WARN("%s: silent for %d ms", topic, watchdog.patience());
+    if (watchdog_stops_) halt();
+  }
+
+  // Stops the robot while all triggers are held: running actions are cancelled.
+  void halt() {
+  }
+
+  // Before the node ends, and while it can still send.
+  void stop() {
+    if (std::exchange(stopping_, true)) return;
+    halt();
+    ros::WallDuration(0.2).sleep();  // nothing tells when a message has left the node
+  }
+
   // On every change, and to everyone who begins to listen.
   void publish_state() {
     const std::size_t listeners = state_report_.getNumSubscribers();
@@ -364,7 +423,13 @@ class Controller {
         .add("transitions", transitions);
   }
 
+  std::chrono::milliseconds milliseconds(const std::string& name, int value) const {
+    return std::chrono::milliseconds(parameter(private_, name, value, 1, kDay));
+  }
+
   double seconds() const { return ros::Time::now().toSec(); }
+
+  static constexpr int kDay = 24 * 3600 * 1000;
 
   ros::NodeHandle node_;
   ros::NodeHandle private_{"~"};
@@ -391,6 +456,8 @@ class Controller {
   std_msgs::String report_message_;
   std_msgs::Bool busy_message_;
 
+  bool stopping_ = false;
+  bool watchdog_stops_ = false;
   EventLog log_;
   std::vector<courier_event> transitions_;
   std::size_t listeners_ = 0;
@@ -402,20 +469,37 @@ class Controller {
   ros::Publisher busy_publisher_;
   ros::Publisher state_report_;
   ros::Publisher definition_report_;
+  std::optional<Watchdog> scan_watchdog_;
   ros::Subscriber scan_subscription_;
+  std::optional<Watchdog> count_watchdog_;
   ros::Subscriber count_subscription_;
+  std::optional<Watchdog> word_watchdog_;
   ros::Subscriber word_subscription_;
   ros::Timer timer_;
   ros::SteadyTimer steady_timer_;
+  Wiring wiring_{node_};
 };
 
 }  // namespace courier_controller
 
 int main(int argc, char** argv) {
-  ros::init(argc, argv, "courier_controller");
+  courier_controller::Interruption interruption;
+  ros::init(argc, argv, "courier_controller", ros::init_options::NoSigintHandler);
+  courier_controller::Interruption::take_requests();
+  if (!interruption.wait_until([] { return ros::master::check(); })) return 0;
+  ros::CallbackQueue queue;
+  ros::NodeHandle node;
+  node.setCallbackQueue(&queue);
+  if (!interruption.wait_until([] { return ros::Time::isValid(); })) return 0;
   try {
-    courier_controller::Controller controller;
-    ros::spin();
+    courier_controller::set_log_level(ros::NodeHandle("~"));
+    std::optional<courier_controller::Controller> controller(std::in_place, node);
+    ros::AsyncSpinner spinner(1, &queue);
+    spinner.start();
+    interruption.wait();
+    spinner.stop();
+    controller.reset();
+    interruption.let_go();
   } catch (const std::exception& error) {
     ROS_FATAL("%s", error.what());
     return 1;

@@ -1,35 +1,46 @@
 """Starts courier_controller."""
 
 from launch import LaunchDescription
-from launch.actions import DeclareLaunchArgument
-from launch.substitutions import LaunchConfiguration
+from launch.actions import DeclareLaunchArgument, OpaqueFunction
+from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
 from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
+from launch_ros.substitutions import FindPackageShare
+
+PACKAGE = "courier_controller"
+
+
+def start(context):
+    """The node; its remappings are one text until here."""
+    remappings = LaunchConfiguration("remappings").perform(context).split()
+    node = Node(
+        package=PACKAGE,
+        executable=PACKAGE,
+        name=LaunchConfiguration("name"),
+        namespace=LaunchConfiguration("namespace"),
+        parameters=[
+            LaunchConfiguration("params_file"),
+            {"use_sim_time": ParameterValue(LaunchConfiguration("use_sim_time"), value_type=bool)},
+        ],
+        remappings=[tuple(each.split(":=", 1)) for each in remappings],
+        arguments=["--ros-args", "--log-level", LaunchConfiguration("log_level")],
+        output="screen",
+    )
+    return [node]
 
 
 def generate_launch_description():
+    parameters = PathJoinSubstitution([FindPackageShare(PACKAGE), "config", f"{PACKAGE}.yaml"])
     return LaunchDescription(
         [
-            DeclareLaunchArgument("name", default_value="courier_controller", description="Name of the node"),
+            DeclareLaunchArgument("name", default_value=PACKAGE, description="Name of the node"),
             DeclareLaunchArgument("namespace", default_value="", description="Namespace of the node"),
+            DeclareLaunchArgument("params_file", default_value=parameters, description="Parameters, as YAML"),
             DeclareLaunchArgument("log_level", default_value="info", description="debug, info, warn, error or fatal"),
             DeclareLaunchArgument("use_sim_time", default_value="false", description="Whether /clock gives the time"),
             DeclareLaunchArgument(
-                "period_ms", default_value="100", description="Milliseconds from one tick to the next"
+                "remappings", default_value="", description="Other names, such as '/scan:=/front/scan stop:=/stop'"
             ),
-            Node(
-                package="courier_controller",
-                executable="courier_controller",
-                name=LaunchConfiguration("name"),
-                namespace=LaunchConfiguration("namespace"),
-                parameters=[
-                    {
-                        "use_sim_time": ParameterValue(LaunchConfiguration("use_sim_time"), value_type=bool),
-                        "period_ms": ParameterValue(LaunchConfiguration("period_ms"), value_type=int),
-                    }
-                ],
-                arguments=["--ros-args", "--log-level", LaunchConfiguration("log_level")],
-                output="screen",
-            ),
+            OpaqueFunction(function=start),
         ]
     )

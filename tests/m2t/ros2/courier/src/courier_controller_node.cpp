@@ -8,7 +8,9 @@
 #include <chrono>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <geometry_msgs/msg/pose_stamped.hpp>
@@ -21,12 +23,16 @@
 #include <std_msgs/msg/string.hpp>
 #include <std_msgs/msg/u_int8.hpp>
 
+#include "courier_controller/countdown.hpp"
 #include "courier_controller/data.hpp"
 #include "courier_controller/defaults.hpp"
 #include "courier_controller/definition.hpp"
 #include "courier_controller/fields.hpp"
 #include "courier_controller/json.hpp"
 #include "courier_controller/parameters.hpp"
+#include "courier_controller/shutdown_hook.hpp"
+#include "courier_controller/watchdog.hpp"
+#include "courier_controller/wiring.hpp"
 #include "courier_supervisor.h"
 
 namespace courier_controller {
@@ -82,61 +88,19 @@ model::Size to_Size([[maybe_unused]] const Data& value) {
 class Controller : public rclcpp::Node {
  public:
   explicit Controller(const rclcpp::NodeOptions& options = rclcpp::NodeOptions())
-      : rclcpp::Node("courier_controller", options),
-        log_(parameter<std::string>(*this, "event_log", default_log("courier_controller"),
-            "A file that gets a line of JSON for each event; empty: none.")) {
-    courier_settings settings = courier_default_settings;
-    settings.events_per_tick = static_cast<std::uint16_t>(parameter(
-        *this, "events_per_tick", settings.events_per_tick, 0, 65535, "Most events sent in a tick; 0: no limit."));
-    settings.reactions_per_tick = static_cast<std::uint16_t>(
-        parameter(*this, "reactions_per_tick", settings.reactions_per_tick, 0, 65535,
-                  "Most events started by incoming data between two ticks."));
-    settings.react_immediately = parameter<bool>(*this, "react_immediately", settings.react_immediately,
-                                                 "Whether incoming data may start events at once.");
-    const std::chrono::milliseconds period(
-        parameter(*this, "period_ms", 100, 1, 24 * 3600 * 1000, "Time from one tick to the next."));
-
-    target_publisher_ = create_publisher<geometry_msgs::msg::PoseStamped>("target", rclcpp::QoS(10));
-    sum_publisher_ = create_publisher<std_msgs::msg::UInt8>("sum", rclcpp::QoS(10));
-    ratio_publisher_ = create_publisher<std_msgs::msg::Float32>("ratio", rclcpp::QoS(10));
-    report_publisher_ = create_publisher<std_msgs::msg::String>("report", rclcpp::QoS(10));
-    busy_publisher_ = create_publisher<std_msgs::msg::Bool>("busy", rclcpp::QoS(10));
-    state_report_ = create_publisher<std_msgs::msg::String>("~/state", 10);
-    definition_report_ = create_publisher<std_msgs::msg::String>("~/definition", rclcpp::QoS(1).transient_local());
-    std_msgs::msg::String definition;
-    definition.data = kDefinition;
-    definition_report_->publish(definition);
-
-    courier_hooks hooks = {};
-    hooks.context = this;
-    hooks.before = [](void* self, courier_event event) { return static_cast<Controller*>(self)->before(event); };
-    hooks.after = [](void* self, courier_event event) { static_cast<Controller*>(self)->after(event); };
-    hooks.livelock = [](void* self) {
-      RCLCPP_ERROR(static_cast<Controller*>(self)->get_logger(), "internal transitions follow each other without end");
-    };
-    courier_init(&supervisor_, &settings, &hooks);
-
-    scan_subscription_ = create_subscription<sensor_msgs::msg::LaserScan>(
-        "/scan", rclcpp::SensorDataQoS().keep_last(20).reliable(),
-        [this](const sensor_msgs::msg::LaserScan& message) { on_scan(message); });
-    count_subscription_ = create_subscription<std_msgs::msg::Int16>(
-        "count", rclcpp::QoS(10),
-        [this](const std_msgs::msg::Int16& message) { on_count(message); });
-    word_subscription_ = create_subscription<std_msgs::msg::String>(
-        "word", rclcpp::QoS(10),
-        [this](const std_msgs::msg::String& message) { on_word(message); });
-    const auto tick = [this] { this->tick(); };
-    if (get_parameter("use_sim_time").as_bool()) {
-      timer_ = rclcpp::create_timer(this, get_clock(), period, tick);
-    } else {
-      timer_ = create_wall_timer(period, tick);
-    }
+      : rclcpp::Node("courier_controller", options) {
+    configure();
+    activate();
+    shutdown_hook_.emplace(*this, [this] {
+      if (active_) stop();
+    });
   }
 
  private:
   // What the robot tells. A message is one batch: its events in the order of the model, with nothing in between.
 
   void on_scan(const sensor_msgs::msg::LaserScan& message) {
+    if (scan_watchdog_->hear()) RCLCPP_INFO(get_logger(), "%s: speaks again", "/scan");
     courier_begin(&supervisor_);
     supervisor_.inputs.message_side_i_response = to_Side(message);
     if (log_.active()) log_.note(courier_literal_name_Side(to_Side(message)));
@@ -177,6 +141,7 @@ class Controller : public rclcpp::Node {
   }
 
   void on_count(const std_msgs::msg::Int16& message) {
+    if (count_watchdog_->hear()) RCLCPP_INFO(get_logger(), "%s: speaks again", "count");
     courier_begin(&supervisor_);
     {
       supervisor_.inputs.message_count_i_response = Integer(message.data).within(-5, 200).to<std::int16_t>();
@@ -193,6 +158,7 @@ class Controller : public rclcpp::Node {
   }
 
   void on_word(const std_msgs::msg::String& message) {
+    if (word_watchdog_->hear()) RCLCPP_INFO(get_logger(), "%s: speaks again", "word");
     courier_begin(&supervisor_);
     data_.Counter.text = message.data;
     if (log_.active()) log_.note(message.data);
@@ -200,11 +166,11 @@ class Controller : public rclcpp::Node {
     courier_end(&supervisor_);
   }
 
-  // What the robot is told. A message is made before its event: where it can't be, the event does not happen.
+  // What the robot is told. Its data is made before the event: where it can't be, the event does not happen.
 
   bool prepare_target() {
     target_message_ = geometry_msgs::msg::PoseStamped();
-    set_defaults(target_message_, now(), "map");
+    set_defaults(target_message_, now(), "map", target_message_, target_message_.pose, target_message_.pose.position);
     FieldWriter write(log_.active());
     if (supervisor_.state.data_target == courier_data_target_d1) {
       write.set("pose.position.x", target_message_.pose.position.x, data_.Scanner.first);
@@ -268,23 +234,29 @@ class Controller : public rclcpp::Node {
     return true;
   }
 
+  // Whether nothing may be sent now: the node ends, or stopped the robot because a topic is silent.
+  bool held() const {
+    if (stopping_) return true;
+    return watchdog_stops_ && (scan_watchdog_->silent() || count_watchdog_->silent() || word_watchdog_->silent());
+  }
+
   // Before an event; false withholds it.
   bool before(courier_event event) {
     switch (event) {
       // requirement target needs Scanner.seen != nothing
       // requirement Counter.limited > 100 disables target
       case courier_message_target_c_trigger:
-        return prepare_target();
+        return !held() && prepare_target();
       case courier_message_sum_c_trigger:
-        return prepare_sum();
+        return !held() && prepare_sum();
       case courier_message_ratio_c_trigger:
-        return prepare_ratio();
+        return !held() && prepare_ratio();
       // requirement Counter.limited > 100 disables report
       // requirement report needs Scanner.looking => Counter.limited < 50
       case courier_message_report_c_trigger:
-        return prepare_report();
+        return !held() && prepare_report();
       case courier_message_busy_c_trigger:
-        return prepare_busy();
+        return !held() && prepare_busy();
       case courier_component_Scanner_c_tau2: {
         const auto old = data_;
         if (supervisor_.state.component_Scanner == courier_component_Scanner_turning) {
@@ -298,7 +270,7 @@ class Controller : public rclcpp::Node {
     }
   }
 
-  // After an event: its message goes out, and what happened is noted.
+  // After an event: what it sends goes out, and what happened is noted.
   void after(courier_event event) {
     const char* direction = "internal";
     switch (event) {
@@ -341,6 +313,22 @@ class Controller : public rclcpp::Node {
     publish_state();
   }
 
+  void on_silence(const char* topic, const Watchdog& watchdog) {
+    RCLCPP_WARN(get_logger(), "%s: silent for %d ms", topic, watchdog.patience());
+    if (watchdog_stops_) halt();
+  }
+
+  // Stops the robot while all triggers are held: running actions are cancelled.
+  void halt() {
+  }
+
+  // Before the node ends, and while it can still send.
+  void stop() {
+    if (std::exchange(stopping_, true)) return;
+    halt();
+    if (wiring_) wiring_->stop();
+  }
+
   // On every change, and to everyone who begins to listen.
   void publish_state() {
     const std::size_t listeners = state_report_->get_subscription_count();
@@ -378,6 +366,101 @@ class Controller : public rclcpp::Node {
         .add("transitions", transitions);
   }
 
+  // Connects the node to everything that the model names.
+  void configure() {
+    log_ =
+        EventLog(parameter<std::string>(*this, "event_log", default_log("courier_controller"),
+        "A file that gets a line of JSON for each event; empty: none."));
+    courier_settings settings = courier_default_settings;
+    settings.events_per_tick = static_cast<std::uint16_t>(parameter(
+        *this, "events_per_tick", settings.events_per_tick, 0, 65535, "Most events sent in a tick; 0: no limit."));
+    settings.reactions_per_tick = static_cast<std::uint16_t>(
+        parameter(*this, "reactions_per_tick", settings.reactions_per_tick, 0, 65535,
+                  "Most events started by incoming data between two ticks."));
+    settings.react_immediately = parameter<bool>(*this, "react_immediately", settings.react_immediately,
+                                                 "Whether incoming data may start events at once.");
+    const auto milliseconds = [this](const std::string& name, int value, const std::string& meaning) {
+      return std::chrono::milliseconds(parameter(*this, name, value, 1, 24 * 3600 * 1000, meaning));
+    };
+    const auto period = milliseconds("period_ms", 100, "Time from one tick to the next.");
+
+    courier_hooks hooks = {};
+    hooks.context = this;
+    hooks.before = [](void* self, courier_event event) { return static_cast<Controller*>(self)->before(event); };
+    hooks.after = [](void* self, courier_event event) { static_cast<Controller*>(self)->after(event); };
+    hooks.livelock = [](void* self) {
+      RCLCPP_ERROR(static_cast<Controller*>(self)->get_logger(), "internal transitions follow each other without end");
+    };
+    courier_init(&supervisor_, &settings, &hooks);
+
+    wiring_.emplace(*this);
+    rclcpp::PublisherOptions sending;
+    sending.qos_overriding_options = rclcpp::QosOverridingOptions::with_default_policies();
+    sending.use_default_callbacks = false;  // The wiring says what does not fit.
+    target_publisher_ = create_publisher<geometry_msgs::msg::PoseStamped>("target", rclcpp::QoS(10), sending);
+    wiring_->command("target", "geometry_msgs/msg/PoseStamped", target_publisher_->get_actual_qos(),
+        target_publisher_->get_gid());
+    sum_publisher_ = create_publisher<std_msgs::msg::UInt8>("sum", rclcpp::QoS(10), sending);
+    wiring_->command("sum", "std_msgs/msg/UInt8", sum_publisher_->get_actual_qos(), sum_publisher_->get_gid());
+    ratio_publisher_ = create_publisher<std_msgs::msg::Float32>("ratio", rclcpp::QoS(10), sending);
+    wiring_->command("ratio", "std_msgs/msg/Float32", ratio_publisher_->get_actual_qos(), ratio_publisher_->get_gid());
+    report_publisher_ = create_publisher<std_msgs::msg::String>("report", rclcpp::QoS(10), sending);
+    wiring_->command("report", "std_msgs/msg/String", report_publisher_->get_actual_qos(),
+        report_publisher_->get_gid());
+    busy_publisher_ = create_publisher<std_msgs::msg::Bool>("busy", rclcpp::QoS(10), sending);
+    wiring_->command("busy", "std_msgs/msg/Bool", busy_publisher_->get_actual_qos(), busy_publisher_->get_gid());
+
+    rclcpp::PublisherOptions reporting;
+    reporting.use_intra_process_comm = rclcpp::IntraProcessSetting::Disable;
+    state_report_ = rclcpp::create_publisher<std_msgs::msg::String>(*this, "~/state", 10, reporting);
+    definition_report_ =
+        rclcpp::create_publisher<std_msgs::msg::String>(*this, "~/definition", rclcpp::QoS(1).transient_local(),
+        reporting);
+    std_msgs::msg::String definition;
+    definition.data = kDefinition;
+    definition_report_->publish(definition);
+
+    watchdog_stops_ = parameter<bool>(*this, "watchdog_stops", false, "Whether a silent topic stops the robot.");
+    rclcpp::SubscriptionOptions hearing;
+    hearing.qos_overriding_options = rclcpp::QosOverridingOptions::with_default_policies();
+    hearing.use_default_callbacks = false;
+    scan_watchdog_.emplace(*this,
+        parameter(*this, "watchdog_ms.scan", 0, 0, 24 * 3600 * 1000, "Longest silence of the topic; 0: any."),
+        [this](const Watchdog& watchdog) { on_silence("/scan", watchdog); });
+    scan_subscription_ = create_subscription<sensor_msgs::msg::LaserScan>(
+        "/scan", rclcpp::SensorDataQoS().keep_last(20).reliable(),
+        [this](const sensor_msgs::msg::LaserScan& message) { on_scan(message); }, hearing);
+    wiring_->hear("/scan", "sensor_msgs/msg/LaserScan", scan_subscription_->get_actual_qos());
+    count_watchdog_.emplace(*this,
+        parameter(*this, "watchdog_ms.count", 0, 0, 24 * 3600 * 1000, "Longest silence of the topic; 0: any."),
+        [this](const Watchdog& watchdog) { on_silence("count", watchdog); });
+    count_subscription_ = create_subscription<std_msgs::msg::Int16>(
+        "count", rclcpp::QoS(10),
+        [this](const std_msgs::msg::Int16& message) { on_count(message); }, hearing);
+    wiring_->hear("count", "std_msgs/msg/Int16", count_subscription_->get_actual_qos());
+    word_watchdog_.emplace(*this,
+        parameter(*this, "watchdog_ms.word", 0, 0, 24 * 3600 * 1000, "Longest silence of the topic; 0: any."),
+        [this](const Watchdog& watchdog) { on_silence("word", watchdog); });
+    word_subscription_ = create_subscription<std_msgs::msg::String>(
+        "word", rclcpp::QoS(10),
+        [this](const std_msgs::msg::String& message) { on_word(message); }, hearing);
+    wiring_->hear("word", "std_msgs/msg/String", word_subscription_->get_actual_qos());
+
+    const auto tick = [this] { this->tick(); };
+    if (get_parameter("use_sim_time").as_bool()) {
+      timer_ = rclcpp::create_timer(this, get_clock(), period, tick);
+    } else {
+      timer_ = create_wall_timer(period, tick);
+    }
+  }
+
+  void activate() {
+    scan_watchdog_->start();
+    count_watchdog_->start();
+    word_watchdog_->start();
+    active_ = true;
+  }
+
   double seconds() const { return now().seconds(); }
 
   courier_supervisor supervisor_;
@@ -403,6 +486,8 @@ class Controller : public rclcpp::Node {
   std_msgs::msg::String report_message_;
   std_msgs::msg::Bool busy_message_;
 
+  bool stopping_ = false;
+  bool watchdog_stops_ = false;
   EventLog log_;
   std::vector<courier_event> transitions_;
   std::size_t listeners_ = 0;
@@ -414,10 +499,16 @@ class Controller : public rclcpp::Node {
   rclcpp::Publisher<std_msgs::msg::Bool>::SharedPtr busy_publisher_;
   rclcpp::Publisher<std_msgs::msg::String>::SharedPtr state_report_;
   rclcpp::Publisher<std_msgs::msg::String>::SharedPtr definition_report_;
+  std::optional<Watchdog> scan_watchdog_;
   rclcpp::Subscription<sensor_msgs::msg::LaserScan>::SharedPtr scan_subscription_;
+  std::optional<Watchdog> count_watchdog_;
   rclcpp::Subscription<std_msgs::msg::Int16>::SharedPtr count_subscription_;
+  std::optional<Watchdog> word_watchdog_;
   rclcpp::Subscription<std_msgs::msg::String>::SharedPtr word_subscription_;
+  std::optional<Wiring> wiring_;
   rclcpp::TimerBase::SharedPtr timer_;
+  bool active_ = false;
+  std::optional<ShutdownHook> shutdown_hook_;  // The last member: it goes first.
 };
 
 }  // namespace courier_controller

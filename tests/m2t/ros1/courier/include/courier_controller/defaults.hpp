@@ -30,14 +30,26 @@ struct UnitQuaternions {
   }
 };
 
-/// Gives a header, where the message has one, the time and the frame, and every quaternion no rotation.
-template <typename Message>
-void set_defaults(Message& message, [[maybe_unused]] const ros::Time& time, [[maybe_unused]] const std::string& frame) {
-  UnitQuaternions().next(message);
-  if constexpr (ros::message_traits::HasHeader<Message>::value) {
-    message.header.stamp = time;
-    message.header.frame_id = frame;
+template <typename Part, typename = void>
+struct has_header : std::false_type {};
+template <typename Part>
+struct has_header<Part, std::void_t<decltype(std::declval<Part&>().header.stamp)>> : std::true_type {};
+
+template <typename Part>
+void set_header([[maybe_unused]] const ros::Time& time, [[maybe_unused]] const std::string& frame,
+                [[maybe_unused]] Part& part) {
+  if constexpr (has_header<Part>::value) {
+    part.header.stamp = time;
+    part.header.frame_id = frame;
   }
+}
+
+/// Gives every quaternion of a message no rotation, and the headers of parts of it, where they have one, time and frame.
+template <typename Message, typename... Parts>
+void set_defaults(Message& message, [[maybe_unused]] const ros::Time& time, [[maybe_unused]] const std::string& frame,
+                  Parts&... parts) {
+  UnitQuaternions().next(message);
+  (set_header(time, frame, parts), ...);
 }
 
 }  // namespace courier_controller

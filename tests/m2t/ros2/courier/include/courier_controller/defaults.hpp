@@ -15,14 +15,19 @@ struct has_header : std::false_type {};
 template <typename Message>
 struct has_header<Message, std::void_t<decltype(std::declval<Message&>().header.stamp)>> : std::true_type {};
 
-/// Gives a header, where the message has one, the time and the frame.
-template <typename Message>
-void set_defaults([[maybe_unused]] Message& message, [[maybe_unused]] const rclcpp::Time& time,
-                  [[maybe_unused]] const std::string& frame) {
-  if constexpr (has_header<Message>::value) {
-    message.header.stamp = time;
-    message.header.frame_id = frame;
+template <typename Part>
+void set_header([[maybe_unused]] const rclcpp::Time& time, [[maybe_unused]] const std::string& frame,
+                [[maybe_unused]] Part& part) {
+  if constexpr (has_header<Part>::value) {
+    part.header.stamp = time;
+    part.header.frame_id = frame;
   }
+}
+
+/// Gives the headers of parts of a message, where they have one, the time and the frame.
+template <typename Message, typename... Parts>
+void set_defaults(Message&, const rclcpp::Time& time, const std::string& frame, Parts&... parts) {
+  (set_header(time, frame, parts), ...);
 }
 
 }  // namespace courier_controller

@@ -159,7 +159,7 @@ inline std::string default_log(const std::string& node) {
 /// A file that gets a line of JSON for each event; without a name, none.
 class EventLog {
  public:
-  explicit EventLog(const std::string& path) {
+  explicit EventLog(const std::string& path = "") {
     if (path.empty()) return;
     file_.open(path, std::ios::app);
     if (!file_) throw std::runtime_error("the event log " + path + " can't be written");

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from jsonschema import Draft202012Validator
 
-from robosc.m2t.cpp.definition import definition, definition_text
+from robosc.definition import definition, definition_text
 from robosc.resources import locate
 
 if TYPE_CHECKING:
