@@ -1,0 +1,71 @@
+"""Starts usher_layer, and the controller behind it."""
+
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument, OpaqueFunction
+from launch.substitutions import LaunchConfiguration
+from launch_ros.actions import Node
+from launch_ros.parameter_descriptions import ParameterValue
+
+# What a controller is started with other names for, which are below the layer's own name. Actions are re-mapped by the
+# names of their services and topics.
+NAMES = [
+    "/stop",
+    "/resume",
+    "battery",
+    "/speed",
+    "label",
+    "/lamp/light",
+    "/go_to/_action/send_goal",
+    "/go_to/_action/cancel_goal",
+    "/go_to/_action/get_result",
+    "/go_to/_action/feedback",
+    "/go_to/_action/status",
+]
+
+
+def remappings(context):
+    namespace = LaunchConfiguration("namespace").perform(context).strip("/")
+    layer = "/".join(filter(None, [namespace, LaunchConfiguration("name").perform(context)]))
+    return [(each, f"/{layer}/controller/{each.lstrip('/')}") for each in NAMES]
+
+
+def controller(context):
+    return [
+        Node(
+            package="usher_driver",
+            executable="driver.py",
+            name="driver",
+            parameters=[{"use_sim_time": ParameterValue(LaunchConfiguration("use_sim_time"), value_type=bool)}],
+            remappings=remappings(context),
+            output="screen",
+        )
+    ]
+
+
+def generate_launch_description():
+    return LaunchDescription(
+        [
+            DeclareLaunchArgument("name", default_value="usher_layer", description="Name of the layer's node"),
+            DeclareLaunchArgument("namespace", default_value="", description="Namespace of the layer's node"),
+            DeclareLaunchArgument("log_level", default_value="info", description="debug, info, warn, error or fatal"),
+            DeclareLaunchArgument("use_sim_time", default_value="false", description="Whether /clock gives the time"),
+            DeclareLaunchArgument(
+                "event_log", default_value="", description="A file that gets a line of JSON for each event"
+            ),
+            Node(
+                package="usher_layer",
+                executable="usher_layer",
+                name=LaunchConfiguration("name"),
+                namespace=LaunchConfiguration("namespace"),
+                parameters=[
+                    {
+                        "use_sim_time": ParameterValue(LaunchConfiguration("use_sim_time"), value_type=bool),
+                        "event_log": ParameterValue(LaunchConfiguration("event_log"), value_type=str),
+                    }
+                ],
+                arguments=["--ros-args", "--log-level", LaunchConfiguration("log_level")],
+                output="screen",
+            ),
+            OpaqueFunction(function=controller),
+        ]
+    )

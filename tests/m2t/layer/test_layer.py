@@ -1,0 +1,243 @@
+"""The packages of a supervisory layer, file by file; that they build and work, `tests/ros` shows."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+from xml.etree import ElementTree
+
+import pytest
+from catkin_pkg.package import parse_package_string
+
+import robosc
+from robosc import config
+from robosc.config import Configuration
+from robosc.metamodel import sct
+from robosc.targets import TARGETS
+from tests.ros.launching import launched
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+HERE = Path(__file__).parent
+ENGINE = ("src/usher_supervisor.c", "src/usher_supervisor.h")
+LAYERS = ("ros1-layer", "ros2-layer")
+
+
+@pytest.fixture(scope="module")
+def usher() -> robosc.Models:
+    return models_of(HERE / "usher.rscd")
+
+
+@pytest.fixture(scope="module")
+def settings() -> Configuration:
+    return config.read(HERE / "controller-config.json")
+
+
+def models_of(path: Path) -> robosc.Models:
+    robot = robosc.load(path)
+    model = robosc.to_sct(robot)
+    robosc.synthesize(model)
+    return robosc.Models(model, robosc.to_rosgraph(robot), robot)
+
+
+@pytest.mark.parametrize("target", LAYERS)
+def test_every_file(
+    target: str, usher: robosc.Models, settings: Configuration, golden: Callable[[Path, str], None]
+) -> None:
+    # The engine in C and what all nodes have in common have goldens of their own.
+    shared = {*ENGINE, *(f"include/usher_layer/{each}.hpp" for each in ("data", "json", "definition"))}
+    files = robosc.generate(target, usher, settings)
+    assert shared < set(files)
+    for path, text in files.items():
+        assert text.endswith("\n"), path
+        assert not any(line != line.rstrip() for line in text.split("\n")), path
+        if path not in shared:
+            golden(HERE / target / path, text)
+    kept = {path.relative_to(HERE / target).as_posix() for path in (HERE / target).rglob("*") if path.is_file()}
+    assert kept == set(files) - shared
+    assert robosc.generate(target, usher, settings) == files
+
+
+def test_packages_list_what_is_used(usher: robosc.Models, settings: Configuration) -> None:
+    messages = {"nav2_msgs", "std_msgs", "std_srvs"}
+    ros1 = parse_package_string(robosc.generate("ros1-layer", usher, settings)["package.xml"])
+    ros1.validate()
+    assert ros1.name == "usher_layer"
+    assert {each.name for each in ros1.build_depends} == {"roscpp", "actionlib_msgs", *messages}
+    assert {each.name for each in ros1.exec_depends} == {"roscpp", "actionlib_msgs", "usher_driver", *messages}
+    text = robosc.generate("ros2-layer", usher, settings)["package.xml"]
+    ros2 = parse_package_string(text)
+    ros2.validate()
+    used = {"action_msgs", "rclcpp", "rclcpp_components", *messages}
+    assert {each.name for each in ros2.build_depends} == used
+    assert {each.name for each in ros2.exec_depends} == {*used, "launch", "launch_ros", "usher_driver"}
+    described = ElementTree.fromstring(text).findtext("description")  # noqa: S314  # our own text
+    assert described == "Lets <data> & more pass: ]]> -->"
+
+
+def test_a_layer_and_its_controller_share_a_workspace(usher: robosc.Models) -> None:
+    folders = {name: TARGETS[name].folder(usher, Configuration()) for name in ("ros1", "ros2", *LAYERS)}
+    assert folders == {
+        "ros1": "ros1/usher_controller",
+        "ros2": "ros2/usher_controller",
+        "ros1-layer": "ros1/usher_layer",
+        "ros2-layer": "ros2/usher_layer",
+    }
+    assert (
+        TARGETS["ros1-layer"].folder(usher, Configuration.model_validate({"package": {"name": "gate"}})) == "ros1/gate"
+    )
+
+
+NAMES = {
+    "ros1-layer": [f"/go_to/{each}" for each in ("goal", "cancel", "result", "feedback", "status")],
+    "ros2-layer": [
+        f"/go_to/_action/{each}" for each in ("send_goal", "cancel_goal", "get_result", "feedback", "status")
+    ],
+}
+
+
+def test_the_launch_file_of_ros1_re_maps_everything(usher: robosc.Models, settings: Configuration) -> None:
+    text = robosc.generate("ros1-layer", usher, settings)["launch/usher_layer.launch"]
+    group = ElementTree.fromstring(text).find("group")  # noqa: S314  # our own text
+    assert group is not None
+    found = {each.get("from"): each.get("to") for each in group.findall("remap")}
+    names = ["/stop", "/resume", "battery", "/speed", "label", "/lamp/light", *NAMES["ros1-layer"]]
+    assert found == {each: f"/$(arg namespace)/$(arg name)/controller/{each.lstrip('/')}" for each in names}
+    (node,) = group.findall("node")
+    assert node.attrib == {"pkg": "usher_driver", "type": "driver.py", "name": "driver", "output": "screen"}
+
+
+def test_the_launch_file_of_ros2_re_maps_everything(usher: robosc.Models, settings: Configuration) -> None:
+    text = robosc.generate("ros2-layer", usher, settings)["launch/usher_layer.launch.py"]
+    names = ["/stop", "/resume", "battery", "/speed", "label", "/lamp/light", *NAMES["ros2-layer"]]
+    layer, driver = launched(text).of("Node")
+    assert (layer.named["package"], layer.named["executable"]) == ("usher_layer", "usher_layer")
+    assert (driver.named["package"], driver.named["executable"]) == ("usher_driver", "driver.py")
+    assert driver.named["remappings"] == [(each, f"/usher_layer/controller/{each.lstrip('/')}") for each in names]
+    moved = launched(text, namespace="/left/", name="gate").of("Node")[1]
+    assert moved.named["remappings"][0] == ("/stop", "/left/gate/controller/stop")
+
+
+def test_a_controller_with_a_launch_file_of_its_own(usher: robosc.Models) -> None:
+    controller = {"launch": {"packageName": "my_robot", "file": "drive.launch"}}
+    settings = Configuration.model_validate({"supervisor": {"controller": controller}})
+    text = robosc.generate("ros1-layer", usher, settings)["launch/usher_layer.launch"]
+    included = ElementTree.fromstring(text).find("group/include")  # noqa: S314  # our own text
+    assert included is not None
+    assert included.get("file") == "$(find my_robot)/launch/drive.launch"
+    there = launched(robosc.generate("ros2-layer", usher, settings)["launch/usher_layer.launch.py"])
+    remaps = there.of("SetRemap")
+    assert len(remaps) == 11
+    assert remaps[0].positional == ("/stop", "/usher_layer/controller/stop")
+    (include,) = there.of("IncludeLaunchDescription")
+    (path,) = include.positional[0].positional
+    assert [path.positional[0][0].positional, path.positional[0][1]] == [("my_robot",), "launch/drive.launch"]
+    assert there.actions.index(include) > there.actions.index(remaps[-1])
+
+
+def test_a_layer_alone(usher: robosc.Models) -> None:
+    assert len(launched(robosc.generate("ros2-layer", usher)["launch/usher_layer.launch.py"]).of("Node")) == 1
+    text = robosc.generate("ros1-layer", usher)["launch/usher_layer.launch"]
+    assert ElementTree.fromstring(text).find("group/node") is None  # noqa: S314  # our own text
+
+
+def test_leaves_out_what_is_not_asked_for(usher: robosc.Models, tmp_path: Path) -> None:
+    ear = tmp_path / "ear.rscd"
+    ear.write_text("robot Ear { component One { outgoing message heard with type: none } }", encoding="utf-8")
+    for target in LAYERS:
+        silent = robosc.generate(target, usher, Configuration(publish_state_information=False))
+        assert "include/usher_layer/definition.hpp" not in silent
+        assert "state_report_" not in silent["src/usher_layer_node.cpp"]
+        headers = {path for path in robosc.generate(target, models_of(ear)) if path.startswith("include")}
+        names = {"data", "definition", "json", "message_relay", "parameters"}
+        assert headers == {f"include/ear_layer/{each}.hpp" for each in names}
+
+
+def test_the_platform_s_linter_is_content(usher: robosc.Models, settings: Configuration, tmp_path: Path) -> None:
+    package = tmp_path / "usher_layer"
+    for path, text in robosc.generate("ros1-layer", usher, settings).items():
+        (package / path).parent.mkdir(parents=True, exist_ok=True)
+        (package / path).write_text(text, encoding="utf-8")
+    command = [sys.executable, "-m", "catkin_lint", "-W2", "--strict", package]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout) == (0, ""), done.stderr
+
+
+SHARED = """
+robot Cart {
+  component Button {
+    outgoing message down with identifier: "/button", type: none
+    outgoing message up with identifier: "button", type: none
+  }
+  component Drive {
+    incoming message go with identifier: "/drive", type: boolean
+    incoming message halt with identifier: "/drive", type: boolean
+  }
+}
+"""
+
+
+@pytest.mark.parametrize("target", LAYERS)
+def test_two_communications_on_one_topic(target: str, tmp_path: Path) -> None:
+    cart = tmp_path / "cart.rscd"
+    cart.write_text(SHARED, encoding="utf-8")
+    models = models_of(cart)
+    found = TARGETS[target].findings(models, Configuration())
+    assert [(each.rule, each.severity.value, each.span.line) for each in found] == [
+        ("layer-topic", "error", 5),
+        ("layer-topic", "error", 9),
+    ]
+    assert "go and halt are both on" in found[1].message
+    assert TARGETS[target.removesuffix("-layer")].findings(models, Configuration()) == []
+
+
+@pytest.mark.parametrize(
+    ("controller", "message"),
+    [
+        ({"run": {"packageName": "Drive", "executable": "drive"}}, "run.packageName"),
+        ({"run": {"packageName": "drive", "executable": '"/><x>'}}, "run.executable"),
+        ({"run": {"packageName": "drive", "executable": "drive", "name": "2nd"}}, "run.name"),
+        ({"run": {"packageName": "drive", "executable": "drive", "namespace": "a//b"}}, "run.namespace"),
+        ({"launch": {"packageName": "drive", "file": "../drive.launch"}}, "launch.file"),
+        (
+            {"run": {"packageName": "a_b", "executable": "c"}, "launch": {"packageName": "a_b", "file": "c.launch"}},
+            "both start",
+        ),
+    ],
+)
+def test_a_controller_that_no_launch_file_could_start(
+    controller: dict[str, object], message: str, usher: robosc.Models
+) -> None:
+    settings = Configuration.model_validate({"supervisor": {"controller": controller}})
+    for target in LAYERS:
+        (found,) = TARGETS[target].findings(usher, settings)
+        assert (found.rule, found.severity.value) == ("configuration", "error")
+        assert message in found.message
+
+
+def test_a_launch_file_of_the_wrong_ros(usher: robosc.Models) -> None:
+    controller = {"launch": {"packageName": "my_robot", "file": "drive.launch.py"}}
+    settings = Configuration.model_validate({"supervisor": {"controller": controller}})
+    assert [each.severity.value for each in TARGETS["ros1-layer"].findings(usher, settings)] == ["error"]
+    assert TARGETS["ros2-layer"].findings(usher, settings) == []
+
+
+def test_settings_that_mean_nothing_to_a_layer(usher: robosc.Models) -> None:
+    settings = Configuration.model_validate({"retryMs": 5, "onShutdown": ["speed"], "watchdogMs": {"stop": 100}})
+    for target in LAYERS:
+        found = TARGETS[target].findings(usher, settings)
+        assert [each.severity.value for each in found] == 3 * ["warning"]
+        assert [each.message.split()[0] for each in found] == ['"retryMs"', '"watchdogMs"', '"onShutdown"']
+
+
+def test_says_what_synthesis_added_is_the_reason(usher: robosc.Models) -> None:
+    # A message needs nothing: whatever blocks it is what synthesis added.
+    text = robosc.generate("ros2-layer", usher)["src/usher_layer_node.cpp"]
+    label = text.partition("bool pass_message_label()")[2].partition("}\n\n")[0]
+    assert "add_requirement" not in label
+    assert "add_state" not in label
+    assert sum(each.kind == sct.PlantKind.data for each in usher.sct.plants) == 1
+    assert "data_speed" not in text.replace("usher_data_speed_c_d1:", "").replace("usher_data_speed_c_none:", "")
