@@ -1,0 +1,100 @@
+"""`robosc run`."""
+
+from __future__ import annotations
+
+import gc
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from robosc import config
+from robosc.cli import CallError
+from robosc.cli.options import FILE, findings_format, interface_path, library_path, model
+from robosc.cli.progress import progress
+from robosc.cli.reading import read_models
+from robosc.cli.report import Report
+from robosc.supervision import supervise
+from robosc.targets import TARGETS
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from robosc.models import Models
+
+
+@click.command("run", context_settings={"ignore_unknown_options": True})
+@model
+@click.option("--ros1", "version", flag_value=1, type=int, help="Be a node of ROS 1.")
+@click.option("--ros2", "version", flag_value=2, type=int, help="Be a node of ROS 2.")
+@click.option("--layer", is_flag=True, help="Be the supervisory layer between an existing controller and the robot.")
+@click.option(
+    "--config", "chosen", type=FILE, help="The configuration, if not the controller-config.json near the model."
+)
+@findings_format
+@library_path
+@interface_path
+@click.argument("arguments", nargs=-1, type=click.UNPROCESSED, metavar="[ROS ARGUMENTS]")
+def command(
+    model: str,
+    version: int | None,
+    layer: bool,
+    chosen: str | None,
+    form: str,
+    library_paths: Sequence[str],
+    interface_paths: Sequence[str],
+    arguments: Sequence[str],
+) -> None:
+    """Be a robot's controller: the node that `transform` would generate, straight from the model.
+
+    MODEL is a .rscd file with a robot, or a .rosgraph.xmi file that `transform --to xmi` wrote. ROS 2 needs no
+    installation: pip install 'robosc[ros2]'. Ctrl-C stops the robot as the configuration says, then the node.
+
+    \b
+    Examples:
+      robosc run line_follower.rscd --ros2
+      robosc run line_follower.rscd --ros2 --ros-args -p period_ms:=50 -r /cmd_vel:=/robot/cmd_vel
+      robosc run line_follower.rscd --ros1 _period_ms:=50 /cmd_vel:=/robot/cmd_vel
+      robosc run supervised_line_follower.rscd --ros2 --layer
+
+    Exit status: 0 interrupted, 1 errors in the model, 2 a wrong call, 3 no supervisor exists.
+    """
+    if version is None:
+        raise CallError("say which ROS the node is for: --ros1 or --ros2")
+    with Report(form) as report:
+        models = read_models(model, library_paths, report, interface_paths)
+        if models.rosgraph is None:
+            raise CallError(f"{model} has no ROS graph: give its .rosgraph.xmi or .rscd")
+        file = Path(chosen) if chosen else config.find(Path(model).parent)
+        configuration = config.read(file) if file else config.Configuration()
+        if models.sct.supervisor is None:
+            with progress("synthesizing the supervisor"):
+                supervision = supervise(models.sct)
+            report.add(supervision.findings)
+            report.stop_on_errors()
+        target = TARGETS[f"ros{version}-layer" if layer else f"ros{version}"]
+        report.add(target.findings(models, configuration))
+        report.stop_on_errors()
+    _run(models, configuration, version, arguments, layer=layer)
+
+
+def _run(
+    models: Models, configuration: config.Configuration, version: int, arguments: Sequence[str], *, layer: bool
+) -> None:
+    from robosc.m2t.cpp.shutdown import message_named
+    from robosc.runtime.node import run_controller, run_layer
+    from robosc.runtime.starting import StartError
+
+    graph = models.rosgraph
+    assert graph is not None
+    last = [message_named(graph, name) for name in configuration.on_shutdown]
+    # The models stay until the end; what is made from now on is collected as ever.
+    gc.freeze()
+    gc.set_threshold(700, 10, 10)
+    try:
+        if layer:
+            run_layer(graph, configuration, version, arguments)
+        else:
+            run_controller(graph, configuration, version, arguments, [each for each in last if each is not None])
+    except StartError as error:
+        raise CallError(f"{error}\n  {error.hint}" if error.hint else str(error)) from error

@@ -1,0 +1,338 @@
+"""The controller of a robot, as a node of some ROS: what comes in becomes events, and what happens goes out."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import reduce
+from typing import TYPE_CHECKING
+
+from robosc.definition import definition_text
+from robosc.engine import ControlLoop, Hooks
+from robosc.engine import Settings as LoopSettings
+from robosc.headers import parts_with_headers
+from robosc.metamodel import expression as ex
+from robosc.metamodel import rosgraph, sct
+from robosc.roles import Roles, event_name
+from robosc.runtime.clients import ActionClient, Answers, ServiceClient
+from robosc.runtime.fields import NotFiniteError, fill
+from robosc.runtime.happenings import Happenings
+from robosc.runtime.node_data import NodeData, bounded
+from robosc.runtime.port import Part
+from robosc.runtime.reports import EventLog, nested
+from robosc.runtime.settings import watchdog
+from robosc.runtime.state import StateReporter
+from robosc.runtime.throttle import Throttle
+from robosc.runtime.watchdog import Watchdog
+from robosc.runtime.wiring import Wiring
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from robosc.runtime.agenda import Agenda, Appointment
+    from robosc.runtime.json_text import Json
+    from robosc.runtime.port import Message, Port
+    from robosc.runtime.settings import Settings
+
+_Client = rosgraph.ServiceClient | rosgraph.ActionClient
+
+
+@dataclass
+class _Sender:
+    """How one trigger's data goes out."""
+
+    sending: rosgraph.Sending
+    interface: rosgraph.Interface
+    part: Part
+    frame: str
+    send: Callable[[Message], None]
+    client: ActionClient | None = None
+    message: Message = None
+    noted: Mapping[str, Json] | None = None
+
+
+@dataclass
+class _Connected:
+    """A service or action, and what is known of its last failure."""
+
+    client: ServiceClient | ActionClient
+    fault: str = ""
+    retry: Appointment | None = None
+
+
+class Controller:
+    """A robot's controller. All its functions belong to the thread that works on the agenda.
+
+    `last` is what is sent when the node stops the robot. Raises OSError where the event log can't be written.
+    """
+
+    def __init__(
+        self,
+        graph: rosgraph.RosGraph,
+        settings: Settings,
+        port: Port,
+        agenda: Agenda,
+        last: Sequence[rosgraph.Sending] = (),
+    ) -> None:
+        self._graph = graph
+        self._settings = settings
+        self._port = port
+        self._agenda = agenda
+        self._last = last
+        self._log = EventLog(str(settings.parameters["event_log"]))
+        loop = LoopSettings(
+            settings.number("events_per_tick"),
+            settings.number("reactions_per_tick"),
+            bool(settings.parameters["react_immediately"]),
+        )
+        self._loop = ControlLoop(graph.model, loop, Hooks(self._before, self._after, self._livelock))
+        self._data = NodeData(graph, self._loop.engine)
+        self._reports = StateReporter(graph, self._loop.engine, self._data, port, settings.configuration)
+        self._warn = Throttle(port.warn, agenda.clock)
+        self._happenings = Happenings(graph, self._data, self._warn)
+        self._wiring = Wiring(port, agenda)
+        self._watchdogs: dict[rosgraph.Subscription, Watchdog] = {}
+        self._stopping = False
+        roles = Roles(graph.model)
+        self._events = {event_name(each): each for each in roles.events}
+        self._incoming = set(roles.incoming)
+        self._noted: Mapping[str, Json] | None = None
+        self._senders: dict[sct.Event, _Sender] = {}
+        self._connected: dict[_Client, _Connected] = {}
+        self._resets: dict[sct.Event, _Connected] = {}
+        self._cancels: dict[sct.Event, ActionClient] = {}
+        self._connect()
+
+    def _connect(self) -> None:
+        for publisher in self._graph.publishers:
+            for sending in publisher.sendings:
+                self._add_sender(publisher, publisher.topic, sending, Part.MESSAGE, self._publishing(publisher))
+        for service in self._graph.serviceClients:
+            answers = Answers(self._response(service), self._error(service))
+            timeout = self._settings.seconds("service_timeout_ms")
+            caller = ServiceClient(self._port, self._agenda, service, timeout, answers)
+            self._add_client(service, caller)
+            self._add_sender(service, service.identifier, service.request, Part.REQUEST, caller.call)
+        for action in self._graph.actionClients:
+            answers = Answers(self._response(action), self._error(action), self._feedback(action), self._wake)
+            timeout = self._settings.seconds("action_timeout_ms")
+            starter = ActionClient(self._port, self._agenda, action, timeout, answers)
+            self._add_client(action, starter)
+            self._add_sender(action, action.identifier, action.request, Part.GOAL, starter.start)
+            self._senders[action.request.event].client = starter
+            self._cancels[action.cancel] = starter
+
+    def _add_client(self, client: _Client, connected: ServiceClient | ActionClient) -> None:
+        self._connected[client] = self._resets[client.reset] = _Connected(connected)
+
+    def _add_sender(
+        self,
+        owner: rosgraph.Publisher | _Client,
+        name: str,
+        sending: rosgraph.Sending,
+        part: Part,
+        send: Callable[[Message], None],
+    ) -> None:
+        frame = self._settings.configuration.frame_id.get(name.removeprefix("/"), "")
+        self._senders[sending.event] = _Sender(sending, owner.interface, part, frame, send)
+
+    def _publishing(self, publisher: rosgraph.Publisher) -> Callable[[Message], None]:
+        return lambda message: self._port.publish(publisher, message)
+
+    # The node's life
+
+    def start(self) -> None:
+        """Tells what it is and begins to act: the first tick comes after one period."""
+        self._reports.define(definition_text(self._graph))
+        self._wiring.start()
+        stops = bool(self._settings.parameters["watchdog_stops"])
+        for subscription in self._graph.subscriptions:
+            seconds = self._settings.seconds(watchdog(subscription))
+            if seconds:
+                self._watchdogs[subscription] = self._watch(subscription.topic, seconds, stops=stops)
+        period = self._settings.seconds("period_ms")
+        self._plan(self._agenda.clock() + period, period)
+
+    def _plan(self, time: float, period: float) -> None:
+        def tick() -> None:
+            late = self._agenda.clock() - time
+            self.tick()
+            self._plan(time + period * (1 + late // period), period)
+
+        self._agenda.after(time - self._agenda.clock(), tick)
+
+    def tick(self) -> None:
+        """One period of the control loop is over."""
+        self._loop.tick()
+        self._reports.publish(self._port.now())
+
+    def stop(self) -> None:
+        """Stops the robot, before the node ends and while it can still send. Nothing more starts."""
+        if not self._stopping:
+            self._stopping = True
+            self._halt()
+
+    @property
+    def busy(self) -> bool:
+        """Whether a goal has not ended yet."""
+        return any(each.busy for each in self._cancels.values())
+
+    def close(self) -> None:
+        """Nothing more will happen."""
+        self._log.close()
+
+    def _watch(self, topic: str, seconds: float, *, stops: bool) -> Watchdog:
+        def fall_silent() -> None:
+            self._port.warn(f"{topic}: silent for {round(seconds * 1000)} ms")
+            if stops:
+                self._halt()
+
+        return Watchdog(self._agenda, seconds, fall_silent, lambda: self._port.info(f"{topic}: speaks again"))
+
+    @property
+    def _held(self) -> bool:
+        stops = self._settings.parameters["watchdog_stops"]
+        return self._stopping or bool(stops and any(each.tripped for each in self._watchdogs.values()))
+
+    def _halt(self) -> None:
+        """Cancels running actions, then sends the last messages, whatever the requirements on them say."""
+        self._loop.begin()
+        for event, client in self._cancels.items():
+            if client.busy and not self._loop.perform(event_name(event)):
+                client.cancel(expected=False)
+        self._loop.end()
+        for sending in self._last:
+            sender = self._senders[sending.event]
+            if self._prepare(sender):
+                sender.send(sender.message)
+                self._log.write(self._port.now(), "outside", event_name(sending.event), sender.noted)
+
+    # What comes in
+
+    def receive(self, subscription: rosgraph.Subscription, message: Message) -> None:
+        """A message on a topic: one batch of events."""
+        if subscription in self._watchdogs:
+            self._watchdogs[subscription].hear()
+        self._loop.begin()
+        for reception in subscription.receptions:
+            self._happen(reception.event, subscription.topic, reception.inputs, message)
+        self._loop.end()
+
+    def _response(self, client: _Client) -> Callable[[Message], None]:
+        def respond(message: Message) -> None:
+            self._connected[client].fault = ""
+            self._batch(client.response.event, client.identifier, client.response.inputs, message)
+
+        return respond
+
+    def _feedback(self, client: rosgraph.ActionClient) -> Callable[[Message], None]:
+        def feed_back(message: Message) -> None:
+            self._batch(client.feedback.event, client.identifier, client.feedback.inputs, message)
+
+        return feed_back
+
+    def _error(self, client: _Client) -> Callable[[str], None]:
+        def fail(why: str) -> None:
+            connected = self._connected[client]
+            if connected.fault != why:
+                self._port.warn(f"{client.identifier}: {why}")
+            connected.fault = why
+            connected.retry = self._agenda.after(self._settings.seconds("retry_ms"), self._try_again(connected))
+            self._batch(client.error, client.identifier)
+
+        return fail
+
+    def _try_again(self, connected: _Connected) -> Callable[[], None]:
+        def wake() -> None:
+            connected.retry = None
+            self._wake()
+
+        return wake
+
+    def _wake(self) -> None:
+        """What was withheld for some time may happen now."""
+        self._loop.begin()
+        self._loop.end()
+
+    def _batch(
+        self,
+        event: sct.Event,
+        name: str,
+        inputs: Sequence[rosgraph.InputAssignment] = (),
+        message: Message = None,
+    ) -> None:
+        self._loop.begin()
+        self._happen(event, name, inputs, message)
+        self._loop.end()
+
+    def _happen(
+        self, event: sct.Event, name: str, inputs: Sequence[rosgraph.InputAssignment], message: Message
+    ) -> None:
+        """One event of the robot, with what its data changes in the supervisor and in the node."""
+        if not self._loop.enabled(event_name(event)):
+            return
+        values = self._happenings.inputs(name, inputs, message)
+        self._happenings.change(event, name, message)
+        self._noted = self._happenings.noted(event, message) if self._log.active else None
+        self._loop.perform(event_name(event), values)
+
+    # What goes out
+
+    def _before(self, name: str) -> bool:
+        event = self._events[name]
+        sender = self._senders.get(event)
+        if sender is not None:
+            busy = sender.client is not None and sender.client.busy
+            if self._held or busy or not self._prepare(sender):
+                return False
+            self._noted = sender.noted
+        elif event in self._resets and self._resets[event].retry is not None:
+            return False
+        if event not in self._incoming:
+            self._happenings.change(event, name)
+        return True
+
+    def _prepare(self, sender: _Sender) -> bool:
+        """Makes the data of a trigger; False where it can't be sent."""
+        message = self._port.create(sender.interface, sender.part)
+        for part in parts_with_headers(sender.sending):
+            self._port.stamp(reduce(getattr, part, message), sender.frame)
+        fields: dict[tuple[str, ...], Json] = {}
+        alternatives = sender.sending.alternatives
+        chosen = next((each for each in alternatives if self._data.is_in(each.location)), None)
+        try:
+            for field in chosen.fields if chosen is not None else ():
+                value = self._data.value(field.value)
+                if isinstance(field.type, ex.IntegerType):
+                    value = bounded(value, field.type)
+                fields[tuple(field.path)] = fill(self._port, message, field.path, value)
+        except NotFiniteError as fault:
+            name = event_name(sender.sending.event)
+            self._warn((name, str(fault)), f"{_word(sender.sending)} is withheld: its {fault} would not be finite")
+            return False
+        sender.message = message
+        sender.noted = None
+        if alternatives:
+            sender.noted = {"value": fields["data",] if list(fields) == [("data",)] else nested(fields)}
+        return True
+
+    def _after(self, name: str) -> None:
+        event = self._events[name]
+        direction = "in" if event in self._incoming else "internal"
+        noted, self._noted = self._noted, None
+        sender = self._senders.get(event)
+        if sender is not None:
+            direction = "out"
+            sender.send(sender.message)
+        elif event in self._cancels:
+            direction = "out"
+            self._cancels[event].cancel()
+        self._log.write(self._port.now(), direction, name, noted if direction != "internal" else None)
+        self._reports.note(name)
+
+    def _livelock(self) -> None:
+        self._port.error("internal transitions follow each other without end")
+
+
+def _word(sending: rosgraph.Sending) -> str:
+    plant: sct.Plant = sending.event.eContainer()
+    return plant.name.partition("_")[2]

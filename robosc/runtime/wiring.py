@@ -1,0 +1,69 @@
+"""Reports, by name and once each, what is wrong with the topics of a node."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robosc.metamodel import rosgraph
+
+if TYPE_CHECKING:
+    from robosc.runtime.agenda import Agenda
+    from robosc.runtime.port import Endpoint, Port
+
+_PERIOD = 1.0
+_PATIENCE = 5
+
+
+class Wiring:
+    """Looks every second who else publishes on the node's topics.
+
+    Reported are another type, a quality of service that does not fit, nobody for five seconds, and somebody beside the
+    controller on a topic that it commands.
+    """
+
+    def __init__(self, port: Port, agenda: Agenda) -> None:
+        self._port = port
+        self._agenda = agenda
+        self._looks = 0
+        self._heard: set[str] = set()
+        self._reported: set[str] = set()
+
+    def start(self) -> None:
+        """Looks from now on."""
+        self._agenda.after(_PERIOD, self._look)
+
+    def _look(self) -> None:
+        self._looks += 1
+        for element, endpoints in self._port.wiring().items():
+            if isinstance(element, rosgraph.Subscription):
+                self._listened(element, endpoints)
+            else:
+                self._commanded(element, endpoints)
+        self.start()
+
+    def _listened(self, subscription: rosgraph.Subscription, endpoints: list[Endpoint]) -> None:
+        topic = subscription.topic
+        if endpoints:
+            self._heard.add(topic)
+        elif topic not in self._heard and self._looks >= _PATIENCE:
+            self._report(f"{topic}: nobody publishes it after {_PATIENCE} s")
+        for each in endpoints:
+            if not self._differs(topic, each, subscription.interface) and each.incompatible:
+                self._report(f"{topic}: {each.node} offers a quality of service that does not fit: {each.incompatible}")
+
+    def _commanded(self, publisher: rosgraph.Publisher, endpoints: list[Endpoint]) -> None:
+        for each in endpoints:
+            if not self._differs(publisher.topic, each, publisher.interface):
+                self._report(f"{publisher.topic}: {each.node} publishes it, too")
+
+    def _differs(self, topic: str, endpoint: Endpoint, interface: rosgraph.Interface) -> bool:
+        expected = self._port.type_name(interface)
+        if endpoint.type == expected:
+            return False
+        self._report(f"{topic}: {endpoint.node} publishes {endpoint.type}, not {expected}")
+        return True
+
+    def _report(self, text: str) -> None:
+        if text not in self._reported:
+            self._reported.add(text)
+            self._port.warn(text)

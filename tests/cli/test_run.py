@@ -1,0 +1,46 @@
+"""`robosc run`: what it says when it can't start."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+MODEL = EXAMPLES / "line_follower" / "line_follower.rscd"
+
+
+def run(*arguments: str | Path, blocked: str = "") -> subprocess.CompletedProcess[str]:
+    """The command in a Python that lacks a module."""
+    code = "import sys; sys.modules[sys.argv.pop(1)] = None; from robosc.cli import run; run()"
+    return subprocess.run(
+        [sys.executable, "-c", code, blocked, "run", *arguments], capture_output=True, text=True, check=False
+    )
+
+
+def test_wants_to_know_which_ros() -> None:
+    done = run(MODEL)
+    assert done.returncode == 2
+    assert "--ros1 or --ros2" in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("option", "module", "repair"),
+    [("--ros2", "rclpy", "pip install 'robosc[ros2]'"), ("--ros1", "rospy", "apt install python3-rospy")],
+)
+def test_names_the_repair_where_ros_is_missing(option: str, module: str, repair: str) -> None:
+    done = run(MODEL, option, blocked=module)
+    assert done.returncode == 2
+    assert f"ROS {option[-1]} is not there for this Python" in done.stderr
+    assert repair in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+def test_an_error_in_the_model_comes_first(tmp_path: Path) -> None:
+    broken = tmp_path / "broken.rscd"
+    broken.write_text("robot Broken { component A { behaviour { } } }")
+    done = run(broken, "--ros2", blocked="rclpy")
+    assert done.returncode == 1
+    assert "ROS 2" not in done.stderr

@@ -1,0 +1,156 @@
+"""A port without middleware, and a clock that stands still until a test moves it."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import robosc
+from robosc.config import Configuration
+from robosc.runtime.agenda import Agenda
+from robosc.runtime.controller import Controller
+from robosc.runtime.settings import Settings, controller_parameters
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from robosc.metamodel import rosgraph
+    from robosc.runtime.port import CallHandlers, Endpoint, GoalHandlers
+
+
+class Record:
+    """Data of ROS that has every field that somebody asks for."""
+
+    def __init__(self, **fields: Any) -> None:
+        vars(self).update(fields)
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("__"):
+            raise AttributeError(name)
+        return vars(self).setdefault(name, Record())
+
+    def plain(self) -> dict[str, Any]:
+        """The fields that were set, as nested dicts."""
+        return {name: each.plain() if isinstance(each, Record) else each for name, each in vars(self).items()}
+
+
+@dataclass
+class FakeGoal:
+    """A goal on its way; the test answers for the server."""
+
+    handlers: GoalHandlers
+    data: Record | None = None
+    cancels: int = 0
+
+    def cancel(self) -> None:
+        self.cancels += 1
+
+
+@dataclass
+class FakePort:
+    """Remembers what is asked of it. `types`: of fields by their names, else double."""
+
+    time: float = 100.0
+    types: dict[str, str] = field(default_factory=dict)
+    served: bool = True
+    sent: list[tuple[str, dict[str, Any]]] = field(default_factory=list)
+    calls: list[CallHandlers] = field(default_factory=list)
+    goals: list[FakeGoal] = field(default_factory=list)
+    told: list[tuple[str, str]] = field(default_factory=list)
+    said: list[str] = field(default_factory=list)
+    endpoints: dict[Any, list[Endpoint]] = field(default_factory=dict)
+    hearing: int = 1
+
+    def now(self) -> float:
+        return self.time
+
+    def create(self, interface: rosgraph.Interface, part: str) -> Record:
+        return Record()
+
+    def stamp(self, message: Record, frame: str) -> None:
+        pass
+
+    def type_name(self, interface: rosgraph.Interface) -> str:
+        return f"{interface.package}/{interface.type}"
+
+    def wire_types(self, message: Record) -> dict[str, str]:
+        return defaultdict(lambda: "float64", self.types)
+
+    def publish(self, publisher: rosgraph.Publisher, message: Record) -> None:
+        self.sent.append((publisher.topic, message.plain()))
+
+    def is_served(self, client: object) -> bool:
+        return self.served
+
+    def call(self, client: object, request: Record, handlers: CallHandlers) -> None:
+        self.calls.append(handlers)
+
+    def send_goal(self, client: object, goal: Record, handlers: GoalHandlers) -> FakeGoal:
+        self.goals.append(FakeGoal(handlers, goal))
+        return self.goals[-1]
+
+    def tell(self, what: str, text: str) -> None:
+        self.told.append((what, text))
+
+    def listeners(self, what: str) -> int:
+        return self.hearing
+
+    def wiring(self) -> dict[Any, list[Endpoint]]:
+        return self.endpoints
+
+    def info(self, text: str) -> None:
+        self.said.append(text)
+
+    warn = error = info
+
+
+class World:
+    """A controller on a fake port. Time passes when `wait` says so."""
+
+    def __init__(self, model: Path, log: Path, configuration: Configuration | None = None, **parameters: Any) -> None:
+        self.graph = supervised(model)
+        self.port = FakePort()
+        self.agenda = Agenda(lambda: self.port.time)
+        self.log = log
+        chosen = configuration or Configuration()
+        values = {each.name: each.default for each in controller_parameters(self.graph, chosen, str(log))}
+        last = [
+            each
+            for name in chosen.on_shutdown
+            for topic in self.graph.publishers
+            for each in topic.sendings
+            if each.name == name
+        ]
+        self.controller = Controller(self.graph, Settings(values | parameters, chosen), self.port, self.agenda, last)
+
+    def start(self) -> World:
+        self.controller.start()
+        return self
+
+    def wait(self, seconds: float) -> None:
+        """Lets time pass, in steps no longer than what is planned."""
+        until = self.port.time + seconds
+        while True:
+            left = self.agenda.work()
+            if left is None or self.port.time + left > until:
+                break
+            self.port.time += left
+        self.port.time = until
+        self.agenda.work()
+
+    def hear(self, topic: str, **fields: Any) -> None:
+        subscription = next(each for each in self.graph.subscriptions if each.topic.removeprefix("/") == topic)
+        self.controller.receive(subscription, Record(**fields))
+
+
+_GRAPHS: dict[Path, rosgraph.RosGraph] = {}
+
+
+def supervised(model: Path) -> rosgraph.RosGraph:
+    """The graph of a robot whose model has its supervisor."""
+    if model not in _GRAPHS:
+        robot = robosc.load(model)
+        robosc.synthesize(robosc.to_sct(robot))
+        _GRAPHS[model] = robosc.to_rosgraph(robot)
+    return _GRAPHS[model]

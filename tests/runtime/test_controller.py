@@ -1,0 +1,265 @@
+"""The controller without middleware: what it sends, when, and what it tells of it."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from jsonschema import Draft202012Validator
+
+from robosc.config import Configuration
+from robosc.resources import locate
+from robosc.runtime.port import Endpoint, Outcome
+from tests.runtime.fake import Record, World
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+TESTS = Path(__file__).parents[1]
+COURIER = TESTS / "m2t" / "cpp" / "courier.rscd"
+SCOUT = TESTS / "ros" / "faults" / "scout.rscd"
+LINE = TESTS.parent / "examples" / "line_follower" / "line_follower.rscd"
+MAZE = TESTS.parent / "examples" / "maze_solver" / "maze_solver.rscd"
+
+
+@pytest.fixture
+def courier(tmp_path: Path) -> World:
+    world = World(COURIER, tmp_path / "events.jsonl")
+    world.port.types = {"ranges": "sequence<float>"}
+    return world.start()
+
+
+def events(world: World) -> list[dict[str, Any]]:
+    return [json.loads(line) for line in world.log.read_text().splitlines()]
+
+
+def sent(world: World, topic: str) -> list[dict[str, Any]]:
+    return [data for each, data in world.port.sent if each == topic]
+
+
+def component(world: World, name: str) -> dict[str, Any]:
+    world.wait(0.1)
+    told = [json.loads(text) for what, text in world.port.told if what == "state"]
+    variables: dict[str, Any] = told[-1]["components"][name]["variables"]
+    return variables
+
+
+def test_does_nothing_before_the_first_tick(courier: World) -> None:
+    courier.hear("scan", ranges=[0.5, 3.0, 3.0, 7.0], angle_min=1.0)
+    courier.wait(0.09)
+    assert courier.port.sent == []
+    courier.wait(0.02)
+    (target,) = sent(courier, "target")
+    assert target == {"pose": {"position": {"x": 0.5, "y": -1.5, "z": 13.0}}}
+
+
+def test_what_reads_past_the_end_is_skipped_and_said_once_in_five_seconds(courier: World) -> None:
+    for _ in range(3):
+        courier.hear("scan", ranges=[0.625], angle_min=0.0)
+    assert component(courier, "Scanner") == {"seen": "ahead", "first": 0.625, "before": 0.625, "fourth": 0.25}
+    assert courier.port.said == ["/scan: there is no element 3 in an array of 1"]
+    courier.wait(5)
+    courier.hear("scan", ranges=[0.625], angle_min=0.0)
+    assert len([each for each in courier.port.said if "element" in each]) == 2
+
+
+def test_integers_saturate_and_what_is_not_finite_is_withheld(courier: World) -> None:
+    courier.port.types = {"data": "uint8"}
+    courier.hear("count", data=299)
+    assert component(courier, "Counter")["limited"] == 200
+    assert component(courier, "Counter")["capped"] == -297
+    assert {"data": 255} in sent(courier, "sum")
+    courier.hear("count", data=-298)
+    assert component(courier, "Counter")["capped"] == 0
+    before = len(sent(courier, "ratio"))
+    courier.wait(0.5)
+    assert len(sent(courier, "ratio")) == before
+    assert "ratio is withheld: its data would not be finite" in courier.port.said
+
+
+def test_integers_of_the_node_saturate_at_64_bits(courier: World) -> None:
+    for _ in range(3):
+        courier.hear("count", data=2**62)
+    assert component(courier, "Counter")["total"] == 2**63 - 1
+
+
+def test_the_log_has_each_event_with_its_data(courier: World) -> None:
+    courier.hear("word", data='idle "ü"')
+    courier.hear("scan", ranges=[0.5, 3.0, 3.0, 7.0], angle_min=1.0)
+    courier.wait(0.2)
+    courier.controller.close()
+    told = events(courier)
+    validator = Draft202012Validator(json.loads(locate("schemas/event-log.schema.json").read_text()))
+    assert not [error for each in told for error in validator.iter_errors(each)]
+    data = {each["event"]: each.get("data") for each in told}
+    assert data["message_word.u_response"] == {"value": 'idle "ü"'}
+    assert data["message_side.u_response"] == {"value": "ahead"}
+    assert data["message_detail.u_response"] == {"value": {"ranges": {"0": 0.5, "3": 7.0}}}
+    assert data["message_sum.c_trigger"] == {"value": 1.0}
+
+
+def test_what_one_message_feeds_is_one_batch(tmp_path: Path) -> None:
+    # Turning on half a scan would be a command between two events of one message.
+    world = World(MAZE, tmp_path / "events.jsonl").start()
+    world.wait(0.15)
+    subscription = next(each for each in world.graph.subscriptions if each.topic == "/scan")
+    batch = [f"message_{each.name}.u_response" for each in subscription.receptions]
+    assert len(batch) > 1
+    for distance in (0.2, 3.0, 0.3, 2.0):
+        world.hear("scan", ranges=[distance] * 360)
+    world.controller.close()
+    names = [each["event"] for each in events(world)]
+    starts = [place for place, name in enumerate(names) if name == batch[0]]
+    assert len(starts) == 4
+    assert all(names[start : start + len(batch)] == batch for start in starts)
+
+
+@pytest.fixture
+def make(tmp_path: Path) -> Callable[..., World]:
+    def made(**values: Any) -> World:
+        configuration = Configuration.model_validate({"retryMs": 400, "onShutdown": ["halt"], **values})
+        world = World(SCOUT, tmp_path / "events.jsonl", configuration)
+        world.port.types = {"data": "boolean"}
+        return world.start()
+
+    return made
+
+
+def test_a_service_is_called_again_after_the_retry_time(make: Callable[..., World]) -> None:
+    world = make()
+    world.hear("light", data=True)
+    world.wait(0.15)
+    assert len(world.port.calls) == 1
+    world.port.calls[0].failed("torn")
+    world.wait(0.3)
+    assert len(world.port.calls) == 1
+    world.wait(0.3)
+    assert len(world.port.calls) == 2
+    assert [each for each in world.port.said if "lamp" in each] == ["/lamp: the call failed: torn"]
+    names = [each["event"] for each in events(world)]
+    assert names.index("service_lamp.u_error") < names.index("service_lamp.c_reset")
+
+
+def travelling(world: World) -> None:
+    world.port.types = {}
+    world.hear("scan", ranges=[3.0, 0.3])
+    world.hear("travel_order", data=True)
+    world.wait(0.15)
+    world.port.goals[0].handlers.accepted()
+    world.agenda.work()
+
+
+def test_a_silent_topic_trips_the_watchdog_and_speaking_again_ends_it(make: Callable[..., World]) -> None:
+    world = make(watchdogMs={"scan": 500}, watchdogStops=True)
+    world.wait(0.45)
+    world.hear("scan", ranges=[3.0, 0.3])
+    world.wait(0.49)
+    assert not any("silent" in each for each in world.port.said)
+    world.wait(0.1)
+    assert "/scan: silent for 500 ms" in world.port.said
+    assert [each for each in events(world) if each["direction"] == "outside"]
+    count = len(world.port.sent)
+    world.wait(1)
+    assert len(world.port.sent) == count
+    world.hear("scan", ranges=[3.0, 0.3])
+    world.wait(0.2)
+    assert "/scan: speaks again" in world.port.said
+    assert len(world.port.sent) > count
+
+
+def test_stopping_cancels_goals_then_sends_the_last_messages_and_nothing_more(make: Callable[..., World]) -> None:
+    world = make()
+    travelling(world)
+    count = len(world.port.sent)
+    world.controller.stop()
+    assert world.port.goals[0].cancels == 1
+    assert len(world.port.sent) == count + 1
+    assert world.controller.busy
+    world.port.goals[0].handlers.ended(Outcome.CANCELLED, None, "")
+    world.wait(2)
+    assert not world.controller.busy
+    assert len(world.port.sent) == count + 1
+    assert [each["event"] for each in events(world) if each["direction"] == "outside"] == ["message_halt.c_trigger"]
+
+
+def test_wiring_is_reported_by_name_and_once(make: Callable[..., World]) -> None:
+    world = make()
+    scan, other = world.graph.subscriptions[0], world.graph.publishers[0]
+    fits = Endpoint("/camera", world.port.type_name(scan.interface), "it is best effort")
+    world.port.endpoints = {
+        scan: [Endpoint("/lidar", "std_msgs/Empty"), fits],
+        other: [Endpoint("/teleop", world.port.type_name(other.interface))],
+        world.graph.subscriptions[1]: [],
+    }
+    world.wait(10)
+    expected = world.port.type_name(scan.interface)
+    assert world.port.said == [
+        f"{scan.topic}: /lidar publishes std_msgs/Empty, not {expected}",
+        f"{scan.topic}: /camera offers a quality of service that does not fit: it is best effort",
+        f"{other.topic}: /teleop publishes it, too",
+        f"{world.graph.subscriptions[1].topic}: nobody publishes it after 5 s",
+    ]
+
+
+def test_the_state_is_told_on_change_and_to_whoever_comes(make: Callable[..., World]) -> None:
+    world = make()
+    assert [what for what, _ in world.port.told] == ["definition"]
+    world.wait(0.5)
+    states = [json.loads(text) for what, text in world.port.told if what == "state"]
+    validator = Draft202012Validator(json.loads(locate("schemas/state.schema.json").read_text()))
+    assert states
+    assert not [error for each in states for error in validator.iter_errors(each)]
+    world.port.hearing = 0
+    count = len(world.port.told)
+    world.wait(0.5)
+    assert len(world.port.told) == count
+
+
+_STEPS = st.lists(
+    st.tuples(
+        st.sampled_from(("light", "order", "scan", "wait", "answer", "fail", "accept", "end")), st.integers(0, 9)
+    ),
+    max_size=25,
+)
+
+
+@settings(max_examples=40, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(steps=_STEPS)
+def test_what_goes_out_is_what_is_logged(steps: list[tuple[str, int]], tmp_path: Path) -> None:
+    log = tmp_path / "events.jsonl"
+    log.unlink(missing_ok=True)
+    world = World(SCOUT, log, Configuration.model_validate({"onShutdown": ["halt"]})).start()
+    for step, number in steps:
+        if step == "light":
+            world.hear("light", data=bool(number % 2))
+        elif step == "order":
+            world.hear("travel_order", data=bool(number % 2))
+        elif step == "scan":
+            world.hear("scan", ranges=[number / 3] * (number % 4))
+        elif step == "wait":
+            world.wait(number / 10)
+        elif world.port.calls and step in ("answer", "fail"):
+            handlers = world.port.calls[-1]
+            handlers.answered(Record(message="m", success=True)) if step == "answer" else (handlers.failed(""))
+        elif world.port.goals and step == "accept":
+            world.port.goals[-1].handlers.accepted()
+        elif world.port.goals and step == "end":
+            world.port.goals[-1].handlers.ended(list(Outcome)[number % 3], None, "")
+        world.agenda.work()
+    world.controller.stop()
+    count = len(world.port.sent)
+    world.wait(3)
+    world.controller.close()
+    told = events(world)
+    assert len(world.port.sent) == count
+    messages = [
+        each for each in told if each["direction"] in ("out", "outside") and each["event"].startswith("message")
+    ]
+    assert len(messages) == count
+    assert sum(each["event"] == "action_travel.c_trigger" for each in told) >= len(world.port.goals)
+    assert sum(each["event"] == "service_lamp.c_trigger" for each in told) >= len(world.port.calls)
+    assert all(each.cancels <= 2 for each in world.port.goals)

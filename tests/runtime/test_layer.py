@@ -1,0 +1,141 @@
+"""The supervisory layer without middleware: what passes, what is blocked, and what is told of it."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from jsonschema import Draft202012Validator
+
+from robosc.config import Configuration
+from robosc.resources import locate
+from robosc.runtime.agenda import Agenda
+from robosc.runtime.layer import Layer, below_layer
+from robosc.runtime.settings import Settings, layer_parameters
+from tests.runtime.fake import FakePort, Record, supervised
+
+if TYPE_CHECKING:
+    from robosc.metamodel import rosgraph
+
+USHER = Path(__file__).parents[1] / "m2t" / "layer" / "usher.rscd"
+
+
+class Passage:
+    """A layer, and its robot's graph by names."""
+
+    def __init__(self, log: Path) -> None:
+        self.graph = supervised(USHER)
+        self.port = FakePort()
+        self.agenda = Agenda(lambda: self.port.time)
+        self.log = log
+        configuration = Configuration()
+        values = {each.name: each.default for each in layer_parameters(self.graph, configuration, str(log))}
+        self.layer = Layer(self.graph, Settings(values, configuration), self.port, self.agenda)
+        (self.action,) = self.graph.actionClients
+        (self.service,) = self.graph.serviceClients
+        self.cancelled = 0
+        self.layer.cancels[self.action.cancel] = self._cancel
+        self.layer.start()
+
+    def _cancel(self) -> None:
+        self.cancelled += 1
+
+    def hear(self, topic: str, **fields: Any) -> None:
+        subscription = next(each for each in self.graph.subscriptions if each.topic == topic)
+        self.layer.hear(subscription, Record(**fields))
+
+    def sending(self, name: str) -> rosgraph.Sending:
+        sendings = [each for publisher in self.graph.publishers for each in publisher.sendings]
+        return next(each for each in [*sendings, self.service.request, self.action.request] if each.name == name)
+
+    def passes(self, name: str) -> bool:
+        return self.layer.passes(self.sending(name))
+
+    def blocked(self) -> list[dict[str, Any]]:
+        return [json.loads(text) for what, text in self.port.told if what == "blocked"]
+
+    def directions(self) -> list[tuple[str, str]]:
+        lines = [json.loads(line) for line in self.log.read_text().splitlines()]
+        return [(each["direction"], each["event"]) for each in lines]
+
+
+@pytest.fixture
+def passage(tmp_path: Path) -> Passage:
+    return Passage(tmp_path / "events.jsonl")
+
+
+def test_what_is_allowed_passes_and_is_logged(passage: Passage) -> None:
+    assert passage.passes("speed")
+    assert passage.passes("label")
+    assert passage.blocked() == []
+    assert passage.directions() == [("out", "message_speed.c_trigger"), ("out", "message_label.c_trigger")]
+
+
+def test_all_requirements_that_fail_are_told(passage: Passage) -> None:
+    passage.hear("/stop")
+    passage.hear("battery", data=10)
+    assert not passage.passes("speed")
+    (report,) = passage.blocked()
+    assert report["reason"] == "requirement"
+    assert report["because"] == ["requirement speed needs Guard.clear", "requirement speed needs Guard.charge > 20"]
+    assert report["components"]["Guard"] == {"state": "blocked", "variables": {"charge": 10}}
+    assert passage.directions()[-1] == ("blocked", "message_speed.c_trigger")
+    schema = json.loads(locate("schemas/blocked.schema.json").read_text(encoding="utf-8"))
+    Draft202012Validator(schema).validate(report)
+
+
+def test_a_state_without_a_transition_is_told(passage: Passage) -> None:
+    assert passage.passes("go_to")
+    assert not passage.passes("go_to")
+    (report,) = passage.blocked()
+    assert (report["name"], report["reason"]) == ("Navigation.go_to", "state")
+    assert report["because"] == ["Navigation.go_to.executing", "Navigation.going"]
+
+
+def test_a_goal_is_cancelled_when_its_requirement_falls(passage: Passage) -> None:
+    assert passage.passes("go_to")
+    passage.layer.feed_back(passage.action, Record(distance_remaining=0.5))
+    passage.hear("/stop")
+    assert passage.cancelled == 1
+    assert passage.directions()[-2:] == [("in", "message_stop.u_response"), ("out", "action_go_to.c_cancel")]
+    # What the cancelled goal comes to is no event any more.
+    passage.layer.respond(passage.action, Record())
+    assert passage.directions()[-1] == ("out", "action_go_to.c_cancel")
+
+
+def test_answers_and_failures_move_the_supervisor_and_it_settles(passage: Passage) -> None:
+    assert passage.passes("light")
+    passage.layer.respond(passage.service, Record(success=True))
+    assert passage.passes("light"), "the reset has run"
+    passage.layer.fail(passage.service, "no server within 5000 ms")
+    assert passage.passes("light")
+    assert passage.port.said == ["/lamp/light: no server within 5000 ms"]
+    told = [each for each in passage.directions() if each[1].startswith("service")]
+    assert told == [
+        ("out", "service_light.c_trigger"),
+        ("in", "service_light.u_response"),
+        ("internal", "service_light.c_reset"),
+        ("out", "service_light.c_trigger"),
+        ("in", "service_light.u_error"),
+        ("internal", "service_light.c_reset"),
+        ("out", "service_light.c_trigger"),
+    ]
+
+
+def test_who_is_turned_away_is_told_busy(passage: Passage) -> None:
+    passage.layer.turn_away(passage.sending("light"))
+    (report,) = passage.blocked()
+    assert (report["reason"], report["because"]) == ("busy", [])
+
+
+def test_provided_data_plays_no_part(passage: Passage) -> None:
+    passage.hear("/stop")
+    passage.hear("/resume")
+    assert not [each for _, each in passage.directions() if each.startswith("data_")]
+
+
+def test_names_for_the_controller_are_below_the_layers_own() -> None:
+    assert below_layer("/lamp/light") == "~/controller/lamp/light"
+    assert below_layer("battery") == "~/controller/battery"
