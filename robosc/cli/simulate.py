@@ -1,0 +1,138 @@
+"""`robosc simulate`."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from random import Random
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from robosc import config
+from robosc.cli.options import FILE, interface_path, library_path, model
+from robosc.cli.progress import progress
+from robosc.cli.reading import read_models
+from robosc.cli.report import Report
+from robosc.engine import Settings
+from robosc.simulation import Simulation, read_script, unfit_data
+from robosc.simulation.loop import LoopSimulation
+from robosc.simulation.session import Session, trace_line
+from robosc.supervision import supervise
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from robosc.models import Models
+
+
+@click.command("simulate")
+@model
+@click.option("--script", type=click.Path(allow_dash=True), help="Play FILE (-: standard input), print JSON Lines.")
+@click.option("--loop", is_flag=True, help="Run the control loop: lines are what comes in, `tick`, `begin`, `end`.")
+@click.option("--random", "number", type=click.IntRange(0), metavar="N", help="Let N random events happen; print them.")
+@click.option("--seed", type=int, default=0, show_default=True, help="Of everything random.")
+@click.option("--config", "chosen", type=FILE, help="For --loop: the configuration, if not the one near the model.")
+@library_path
+@interface_path
+def command(
+    model: str,
+    script: str | None,
+    loop: bool,
+    number: int | None,
+    seed: int,
+    chosen: str | None,
+    library_paths: Sequence[str],
+    interface_paths: Sequence[str],
+) -> None:
+    """Try a supervised robot: step by step by hand, by a script, or at random.
+
+    MODEL is a .rscd file with a robot, or an .xmi file that `transform --to xmi` wrote. Without --script and --random
+    commands are read from the terminal; `h` lists them. A line of a script is an event with its data, or a line of an
+    event log. Only what the script names happens, unless --loop runs the control loop between the lines.
+
+    \b
+    Examples:
+      robosc simulate line_follower.rscd
+      robosc simulate line_follower.rscd --random 20 --seed 7 > trace.jsonl
+      robosc simulate line_follower.rscd --script trace.jsonl
+      echo 'message_scan.u_response {"value": "clear"}' | robosc simulate line_follower.rscd --script -
+
+    Exit status: 0 done, 1 errors in the model or script, 2 a wrong call, 3 no supervisor exists.
+    """
+    if sum((script is not None, number is not None)) > 1:
+        raise click.UsageError("--script and --random exclude each other")
+    if loop and script is None:
+        raise click.UsageError("--loop needs a --script")
+    with Report(aside=True) as report:
+        models = read_models(model, library_paths, report, interface_paths)
+        settings = _settings(Path(model), chosen) if loop else None
+        if models.sct.supervisor is None:
+            with progress("synthesizing the supervisor"):
+                supervision = supervise(models.sct)
+            report.add(supervision.findings)
+            report.stop_on_errors()
+        if script is not None:
+            answers = _played(models, script, settings, report)
+    if script is not None:
+        for answer in answers:
+            click.echo(json.dumps(answer))
+        return
+    simulation = Simulation(models.sct, models.rosgraph)
+    if number is not None:
+        _run(simulation, number, seed)
+    else:
+        _converse(simulation, seed)
+
+
+def _settings(model: Path, chosen: str | None) -> Settings:
+    file = Path(chosen) if chosen else config.find(model.parent)
+    loop = (config.read(file) if file else config.Configuration()).control_loop
+    return Settings(loop.events_per_tick, loop.reactions_per_tick, loop.react_immediately)
+
+
+def _played(models: Models, script: str, settings: Settings | None, report: Report) -> Iterator[dict[str, Any]]:
+    """The answer to each line of a script; what is wrong with the script goes to the report, which then ends."""
+    name = "<stdin>" if script == "-" else script
+    with click.open_file(script, encoding="utf-8") as file:
+        text = file.read()
+    simulation = Simulation(models.sct, models.rosgraph)
+    looped = None if settings is None else LoopSimulation(models.sct, models.rosgraph, settings)
+    steps, findings = read_script(name, text, simulation.engine.events if looped is None else looped.events)
+    own = () if looped is None else looped.OWN
+    found = unfit_data(name, (each for each in steps if each.event not in own), simulation.data)
+    report.add([*findings, *found], {name: text})
+    report.stop_on_errors()
+    if looped is not None:
+        return (looped.step(each.event, each.data) for each in steps)
+    return (simulation.perform(each.event, each.data).answer() for each in steps)
+
+
+def _run(simulation: Simulation, number: int, seed: int) -> None:
+    random = Random(seed)  # noqa: S311
+    for _ in range(number):
+        happened = simulation.random_step(random)
+        if happened is None:
+            return
+        click.echo(trace_line(happened))
+
+
+def _converse(simulation: Simulation, seed: int) -> None:
+    session = Session(simulation, seed)
+    interactive = sys.stdin.isatty()
+    if interactive:
+        click.echo(f"{simulation.engine.model.name}: h for help, q to end")
+    click.echo(session.enabled())
+    while not session.ended:
+        if interactive:
+            click.echo("> ", nl=False)
+        line = sys.stdin.readline()
+        if not line:
+            return
+        try:
+            answer = session.do(line)
+        except (OSError, UnicodeDecodeError) as error:
+            answer = str(error)
+        if answer:
+            click.echo(answer)

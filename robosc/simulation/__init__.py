@@ -1,0 +1,7 @@
+"""The supervised robot on the desk: its events one at a time, by script, by hand or at random, without any ROS."""
+
+from robosc.simulation.data import DataError, EventData
+from robosc.simulation.script import Step, read_script, unfit_data
+from robosc.simulation.simulation import Happened, Simulation
+
+__all__ = ["DataError", "EventData", "Happened", "Simulation", "Step", "read_script", "unfit_data"]

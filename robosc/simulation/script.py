@@ -1,0 +1,111 @@
+"""Scripts: a line for each event, by its name with its data in JSON, or as a line of an event log."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from difflib import get_close_matches
+from typing import TYPE_CHECKING, Any
+
+from robosc.diagnostics import Diagnostic, Severity, Span
+from robosc.simulation.data import DataError
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterable, Iterator, Mapping
+
+    from robosc.simulation.data import EventData
+
+RULE = "script"
+
+
+@dataclass(frozen=True)
+class Step:
+    """A line of a script: an event, or `tick`, `begin` or `end` for a control loop."""
+
+    line: int
+    event: str
+    data: Mapping[str, Any]
+
+
+def read_script(file: str, text: str, events: Collection[str]) -> tuple[list[Step], list[Diagnostic]]:
+    """The steps of a script, and what is wrong with its text; `events` are the names that it may use.
+
+    A line is `EVENT [JSON]`, or a JSON object with `event` and maybe `data` (other keys of an event log are ignored).
+    Empty lines and lines that begin with `#` are no steps.
+    """
+    steps: list[Step] = []
+    findings: list[Diagnostic] = []
+    for number, line in enumerate(text.splitlines(), 1):
+        if not line.strip() or line.lstrip().startswith("#"):
+            continue
+        read = _Line(file, number, line, events)
+        found = read.step()
+        if found is not None:
+            steps.append(found)
+        findings += read.findings
+    return steps, findings
+
+
+def unfit_data(file: str, steps: Iterable[Step], data: EventData) -> Iterator[Diagnostic]:
+    """What is wrong with the data of steps: known before any of them is played."""
+    for each in steps:
+        try:
+            data.inputs(each.event, each.data)
+        except DataError as error:
+            span = Span(each.line, 1, each.line, 1)
+            yield Diagnostic(file, span, Severity.ERROR, RULE, f"{each.event}: {error}")
+
+
+class _Line:
+    """One line that is not empty."""
+
+    def __init__(self, file: str, number: int, line: str, events: Collection[str]) -> None:
+        self._file, self._number, self._line, self._events = file, number, line, events
+        self._start = len(line) - len(line.lstrip())
+        self.findings: list[Diagnostic] = []
+
+    def step(self) -> Step | None:
+        if self._line[self._start] == "{":
+            logged = self._json(self._start)
+            if logged is None:
+                return None
+            name, data = logged.get("event"), logged.get("data", {})
+            if not isinstance(name, str) or not isinstance(data, dict):
+                self._fault(self._start, 'expected an object like {"event": "...", "data": {"value": ...}}')
+                return None
+            return Step(self._number, name, data) if self._known(name, self._line.find(name)) else None
+        name, _, rest = self._line[self._start :].partition(" ")
+        name = name.rstrip()
+        known = self._known(name, self._start)
+        data = self._json(len(self._line) - len(rest.lstrip())) if rest.strip() else {}
+        return Step(self._number, name, data) if known and data is not None else None
+
+    def _known(self, name: str, column: int) -> bool:
+        if name in self._events:
+            return True
+        close = get_close_matches(name, sorted(self._events), n=1)
+        hint = f"did you mean `{close[0]}`?" if close else "`robosc synthesize --json` lists the events"
+        self._fault(column, f"there is no event `{name}`", hint, len(name))
+        return False
+
+    def _json(self, column: int) -> dict[str, Any] | None:
+        try:
+            read = json.loads(self._line[column:], parse_constant=_refuse)
+        except json.JSONDecodeError as error:
+            self._fault(column + error.pos, f"not JSON: {error.msg}")
+            return None
+        except (ValueError, RecursionError) as error:
+            self._fault(column, f"not JSON: {error}")
+            return None
+        if not isinstance(read, dict):
+            self._fault(column, "data is an object", f'write {{"value": {self._line[column:].strip()}}}')
+            return None
+        return read
+
+    def _fault(self, column: int, message: str, hint: str | None = None, length: int = 1) -> None:
+        span = Span(self._number, column + 1, self._number, column + 1 + length)
+        self.findings.append(Diagnostic(self._file, span, Severity.ERROR, RULE, message, hint))
+
+
+def _refuse(constant: str) -> None:
+    raise ValueError(f"{constant} is no number of JSON")

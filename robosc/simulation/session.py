@@ -1,0 +1,157 @@
+"""A simulation by hand: a command at a time, each answered with text."""
+
+from __future__ import annotations
+
+import json
+from random import Random
+from typing import TYPE_CHECKING
+
+from robosc.engine import Blocked
+from robosc.expressions import SctPrinter
+from robosc.roles import event_name
+from robosc.simulation.data import DataError
+from robosc.simulation.script import read_script
+from robosc.simulation.simulation import whole_state
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from robosc.diagnostics import Diagnostic
+    from robosc.simulation.simulation import Happened, Simulation
+
+HELP = """\
+NUMBER or EVENT, with data in JSON where it carries some: let it happen, as in  1 {"value": 3}
+  e          what can happen now      d          what can't, and why
+  s          the state                u          undo
+  r [N]      N random events          t          what has happened
+  save FILE  the trace to a file      load FILE  play a trace or script
+  h          this help                q          the end"""
+
+
+class Session:
+    """Understands commands about a simulation; random events are the same for the same seed."""
+
+    def __init__(self, simulation: Simulation, seed: int) -> None:
+        self.ended = False
+        self._simulation = simulation
+        self._random = Random(seed)  # noqa: S311
+        self._shown = whole_state(simulation.engine)
+        self._commands: dict[str, Callable[[str], str]] = {
+            "e": lambda _: self.enabled(),
+            "d": lambda _: self._disabled(),
+            "s": lambda _: self.state(),
+            "u": lambda _: self._undo(),
+            "r": self._run,
+            "t": lambda _: "\n".join(map(trace_line, self._simulation.trace)) or "nothing yet",
+            "save": self._save,
+            "load": self._load,
+            "h": lambda _: HELP,
+            "q": self._quit,
+        }
+
+    def do(self, line: str) -> str:
+        """The answer to a command; OSError where a file can't be read or written."""
+        word, _, rest = line.strip().partition(" ")
+        if not word:
+            return self.enabled()
+        if word in self._commands:
+            return self._commands[word](rest.strip())
+        enabled = self._simulation.enabled
+        if word.isdecimal() and 1 <= int(word) <= len(enabled):
+            word = enabled[int(word) - 1]
+        steps, findings = read_script("", f"{word} {rest}", self._simulation.engine.events)
+        return _complaints(findings) or self._perform(steps[0].event, dict(steps[0].data))
+
+    def enabled(self) -> str:
+        """The events that can happen, numbered."""
+        enabled = self._simulation.enabled
+        return (
+            "\n".join(f"{number:4} {each}" for number, each in enumerate(enabled, 1)) or "nothing can happen any more"
+        )
+
+    def state(self) -> str:
+        """The whole state."""
+        return "\n".join(f"  {name} = {_shown(value)}" for name, value in whole_state(self._simulation.engine).items())
+
+    def _perform(self, event: str, data: dict[str, object]) -> str:
+        try:
+            happened = self._simulation.perform(event, data)
+        except DataError as error:
+            return f"{event}: {error}"
+        if happened.by is not None:
+            return self._reason(event, happened.by)
+        return "\n".join([event, *self._changes()])
+
+    def _changes(self) -> list[str]:
+        """What is different from what was shown last."""
+        old, self._shown = self._shown, whole_state(self._simulation.engine)
+        return [f"  {name} = {_shown(value)}" for name, value in self._shown.items() if old[name] != value]
+
+    def _disabled(self) -> str:
+        engine = self._simulation.engine
+        blocked = ((each, engine.blocked_by(each)) for each in engine.events)
+        return "\n".join(self._reason(each, by) for each, by in blocked if by is not None) or "everything can happen"
+
+    def _reason(self, event: str, by: Blocked) -> str:
+        model = self._simulation.engine.model
+        if by is Blocked.PLANT:
+            return f"{event}: the robot is not ready for it"
+        if by is Blocked.REQUIREMENT:
+            texts = [str(each.text) for each in model.requirements if event_name(each.event) == event and each.text]
+            return f"{event}: forbidden by {' and '.join(texts) or 'a requirement'}"
+        assert model.supervisor is not None
+        guard = next(each for each in model.supervisor.guards if event_name(each.event) == event)
+        needed = SctPrinter()(guard.synthesis) if guard.synthesis is not None else "false"
+        return f"{event}: forbidden by synthesis, which asks for {needed}"
+
+    def _undo(self) -> str:
+        undone = self._simulation.undo()
+        return "nothing to undo" if undone is None else "\n".join([f"undone: {undone.event}", *self._changes()])
+
+    def _run(self, rest: str) -> str:
+        if rest and not rest.isdecimal():
+            return f"{rest} is no number of events"
+        lines = []
+        for _ in range(int(rest or "1")):
+            happened = self._simulation.random_step(self._random)
+            if happened is None:
+                lines.append("nothing can happen any more")
+                break
+            lines.append(happened.event)
+        return "\n".join([*lines, *self._changes()])
+
+    def _save(self, file: str) -> str:
+        if not file:
+            return "save where? give a file"
+        with open(file, "w", encoding="utf-8") as saved:  # noqa: PTH123
+            saved.writelines(f"{trace_line(each)}\n" for each in self._simulation.trace)
+        return f"{len(self._simulation.trace)} events in {file}"
+
+    def _load(self, file: str) -> str:
+        if not file:
+            return "load what? give a file"
+        with open(file, encoding="utf-8") as saved:  # noqa: PTH123
+            steps, findings = read_script(file, saved.read(), self._simulation.engine.events)
+        if findings:
+            return _complaints(findings)
+        return "\n".join(self._perform(each.event, dict(each.data)) for each in steps)
+
+    def _quit(self, _: str) -> str:
+        self.ended = True
+        return ""
+
+
+def trace_line(happened: Happened) -> str:
+    """An event as a line that scripts and `load` understand: the event log's shape, without the time and direction."""
+    line: dict[str, object] = {"event": happened.event}
+    if happened.data:
+        line["data"] = dict(happened.data)
+    return json.dumps(line)
+
+
+def _complaints(findings: Sequence[Diagnostic]) -> str:
+    return "\n".join(f"{each.message}{f' ({each.hint})' if each.hint else ''}" for each in findings)
+
+
+def _shown(value: object) -> str:
+    return json.dumps(value) if isinstance(value, bool) else str(value)

@@ -1,0 +1,163 @@
+"""Scripts: what they say about each event, and what is wrong with them."""
+
+import json
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from robosc.cli import main
+
+MODEL = Path(__file__).parent / "gauge.rscd"
+
+
+def simulate(*arguments: str, lines: str = "", model: Path = MODEL):
+    return CliRunner().invoke(main, ["simulate", str(model), *arguments], input=lines)
+
+
+def play(*lines: str, options: tuple[str, ...] = ()) -> list[dict]:
+    done = simulate("--script", "-", *options, lines="\n".join(lines))
+    assert done.exit_code == 0, done.stderr
+    return [json.loads(line) for line in done.stdout.splitlines()]
+
+
+def faults(*lines: str) -> list[str]:
+    done = simulate("--script", "-", lines="\n".join(lines))
+    assert done.exit_code == 1
+    assert not done.stdout
+    return [line for line in done.stderr.splitlines() if "[script]" in line]
+
+
+def test_what_is_not_accepted_changes_nothing_and_the_script_goes_on() -> None:
+    first, second, third = play(
+        "message_refill.c_trigger", 'message_level.u_response {"value": 3}', "message_drain.c_trigger"
+    )
+    assert (first["accepted"], first["by"], first["state"]["Gauge.level"]) == (False, "requirement", 0)
+    assert (second["accepted"], second["by"], second["state"]["Gauge.level"]) == (True, None, 3)
+    assert (third["accepted"], third["state"]["component_Gauge"]) == (True, "drained")
+
+
+def test_the_plant_goes_before_the_requirement() -> None:
+    assert play("message_drain.c_trigger", "message_refill.c_trigger")[1]["by"] == "plant"
+
+
+def test_the_state_has_every_plant_and_variable() -> None:
+    (answer,) = play("message_drain.c_trigger")
+    assert answer["state"] == {
+        "message_refill": "ready",
+        "message_drain": "ready",
+        "message_level": "ready",
+        "message_report": "ready",
+        "message_filling": "ready",
+        "message_lamp": "ready",
+        "component_Gauge": "drained",
+        "Gauge.level": 0,
+        "Gauge.slots": 0,
+        "Gauge.filling": "partly",
+        "Gauge.lamp": "other",
+    }
+
+
+@pytest.mark.parametrize(
+    ("event", "value", "name", "result"),
+    [
+        ("level", 3, "level", 3),
+        ("level", 99, "level", 10),
+        ("level", -1, "level", 0),
+        ("report", {"size": {"slots": 2}}, "slots", 2),
+        ("report", {"name": "x"}, "slots", 0),
+        ("lamp", "red", "lamp", "red"),
+        ("lamp", "#f00", "lamp", "red"),
+        ("lamp", "#0f0", "lamp", "other"),
+        ("filling", "full", "filling", "full"),
+        ("filling", {"size": {"rows": [0, 8]}}, "filling", "full"),
+        ("filling", {"size": {"rows": {"1": 8}}}, "filling", "full"),
+        ("filling", {"size": {"rows": [8]}}, "filling", "partly"),
+    ],
+)
+def test_data(event, value, name, result) -> None:
+    (answer,) = play(f"message_{event}.u_response {json.dumps({'value': value})}")
+    assert answer["state"][f"Gauge.{name}"] == result
+
+
+def test_without_data_it_is_that_of_ros() -> None:
+    answers = play('message_level.u_response {"value": 3}', "message_level.u_response", "message_lamp.u_response")
+    assert [each["state"]["Gauge.level"] for each in answers] == [3, 0, 0]
+    assert answers[-1]["state"]["Gauge.lamp"] == "other"
+
+
+def test_a_saved_model_without_its_graph_reads_the_same_data(tmp_path) -> None:
+    done = CliRunner().invoke(main, ["transform", str(MODEL), "--to", "xmi", "-o", str(tmp_path)])
+    assert done.exit_code == 0
+    lines = 'message_report.u_response {"value": {"size": {"slots": 2}}}\nmessage_level.u_response {"value": 4}'
+    bare = simulate("--script", "-", lines=lines, model=tmp_path / "Tank.sct.xmi")
+    assert bare.stdout == simulate("--script", "-", lines=lines).stdout
+
+
+def test_all_faults_are_found_before_anything_is_played() -> None:
+    found = faults(
+        "message_level.u_response",
+        "",
+        "# a remark",
+        "message_levle.u_response",
+        'message_level.u_response {"value": "much"}',
+        "message_level.u_response 3",
+        'message_level.u_response {"value": 3',
+        '{"data": {}}',
+        'message_level.u_response {"level": 3}',
+        'message_report.u_response {"value": 3}',
+        'message_filling.u_response {"value": {"size": 1}}',
+        'message_level.u_response {"value": NaN}',
+    )
+    assert [each.split(": error: ")[0] for each in found] == [
+        "<stdin>:4:1",
+        "<stdin>:5:1",
+        "<stdin>:6:26",
+        "<stdin>:7:37",
+        "<stdin>:8:1",
+        "<stdin>:9:1",
+        "<stdin>:10:1",
+        "<stdin>:11:1",
+        "<stdin>:12:26",
+    ]
+
+
+def test_a_log_is_a_script() -> None:
+    line = {"time": 1.5, "direction": "in", "event": "message_level.u_response", "data": {"value": 7}}
+    assert play(json.dumps(line))[0]["state"]["Gauge.level"] == 7
+
+
+def test_random_events_are_the_same_for_the_same_seed_and_can_be_played() -> None:
+    first = simulate("--random", "60", "--seed", "5").stdout
+    assert first == simulate("--random", "60", "--seed", "5").stdout
+    assert first != simulate("--random", "60", "--seed", "6").stdout
+    answers = play(*first.splitlines())
+    assert len(answers) == 60
+    assert all(each["accepted"] for each in answers)
+    assert len({json.dumps(each["state"]) for each in answers}) > 10
+
+
+def test_the_control_loop_does_the_rest_itself() -> None:
+    answers = play(
+        'message_level.u_response {"value": 1}',
+        "tick",
+        "begin",
+        'message_report.u_response {"value": {"size": {"slots": 3}}}',
+        'message_lamp.u_response {"value": "red"}',
+        "end",
+        "tick",
+        options=("--loop",),
+    )
+    happened = [each["happened"] for each in answers]
+    assert happened[:2] == [["message_level.u_response"], ["message_drain.c_trigger"]]
+    assert answers[3]["by"] is None
+    assert answers[-1]["state"]["component_Gauge"] == "drained"
+    assert play("tick", "message_level.u_response", options=("--loop",))[1]["happened"] == [
+        "message_level.u_response",
+        "message_drain.c_trigger",
+    ]
+
+
+@pytest.mark.parametrize("options", [["--loop"], ["--random", "1", "--script", "-"]])
+def test_options_that_make_no_sense_together(options) -> None:
+    assert simulate(*options).exit_code == 2
