@@ -15,8 +15,11 @@ from .conftest import MODELS, models_of
 EACH = pytest.mark.parametrize("name", MODELS)
 STOP = "component_EmergencyStop"
 STOPPABLE = pytest.mark.parametrize("name", [each for each in MODELS if each != "line_stepper"])
-#: While this plant is in this location, somebody else drives the wheels.
-TURNING = {"maze_solver": ("component_Platform", "turning"), "object_finder": ("component_Rotator", "turning")}
+#: While this plant is in one of these locations, somebody else drives the wheels.
+TURNING = {
+    "maze_solver": ("component_Platform", {"turning_left", "turning_right"}),
+    "object_finder": ("component_Rotator", {"turning"}),
+}
 HALTING = pytest.mark.parametrize(
     "name", ["line_follower", "maze_solver", "object_finder", "person_follower", "push_ball"]
 )
@@ -74,9 +77,9 @@ def test_one_topic_has_one_command(name: str) -> None:
 @HALTING
 def test_somebody_always_commands_the_wheels(name: str) -> None:
     engine = Engine(models_of(name).sct)
-    plant, turning = TURNING.get(name, ("", ""))
+    plant, turning = TURNING.get(name, ("", set()))
     for state in states(engine):
-        if plant and state[plant] == turning and state[STOP] != "stopped":
+        if plant and state[plant] in turning and state[STOP] != "stopped":
             continue
         assert engine.enabled("message_move.c_trigger") or engine.enabled("message_halt.c_trigger"), state
 
@@ -155,6 +158,20 @@ def test_the_maze_solver_comes_free_of_a_turn_that_is_never_reported() -> None:
     assert robot.hears(**{"continue": None}) == []
     assert robot.ticks() == ["halt"]
     assert robot.hears(**scan("way_ahead", "wall_right", "wall_back_right")) == ["move"]
+
+
+def test_the_maze_solver_rounds_a_corner_once() -> None:
+    robot = Robot("maze_solver")
+    around = scan("way_ahead", "no_wall_right", "wall_back_right")
+    assert "rotate_right" in robot.hears(**around) + robot.ticks()
+    robot.hears(rotate_done=None)
+    # What it sees behind its right side now is another wall.
+    assert robot.hears(**around) == ["move"]
+    assert robot.ticks() == ["move"]
+    # When it has seen the wall beyond the corner, and that ends, it turns again.
+    assert robot.hears(**scan("way_ahead", "wall_right", "wall_back_right")) == []
+    assert robot.hears(**around) == ["halt"]
+    assert "rotate_right" in robot.ticks()
 
 
 def test_the_object_finder_leaves_a_dead_end_and_stops_at_the_sign() -> None:

@@ -1,0 +1,160 @@
+"""A camera, reduced to what the software behind it publishes: lines, balls, goals, signs, people."""
+
+from __future__ import annotations
+
+import math
+
+from .devices import EMPTY, NUMBER, Device, header
+from .geometry import clear
+from .world import Sight
+
+#: Pixels of an image, and what it shows: the Raspberry Pi's camera.
+WIDTH, HEIGHT, OPENING = 640, 480, math.radians(62.2)
+FOCAL = WIDTH / 2 / math.tan(OPENING / 2)
+#: How far before the robot's centre the camera is.
+MOUNT = 0.07
+
+
+def place(world, thing, walls, reach=math.inf):
+    """Where something is in the image: the pixels at which it begins and ends, cut off at the image's edges.
+
+    None where its middle is not in the image, is further than `reach`, or is hidden by one of the walls.
+    """
+    eye = world.pose.ahead(MOUNT)
+    ahead, left = world.pose.towards(thing.x, thing.y)
+    ahead -= MOUNT
+    if ahead <= 0 or math.hypot(ahead, left) > reach:
+        return None
+    middle, half = -left / ahead * FOCAL, thing.width / 2 / ahead * FOCAL
+    if abs(middle) > WIDTH / 2 or not clear(eye, (thing.x, thing.y), walls):
+        return None
+    return max(0, WIDTH / 2 + middle - half), min(WIDTH, WIDTH / 2 + middle + half)
+
+
+def right_of_centre(seen):
+    """How many pixels right of the image's centre something is."""
+    return sum(seen) / 2 - WIDTH / 2
+
+
+class LineDetector(Device):
+    """Looks at the floor before the robot, and says how far right the middle of all that is yellow is."""
+
+    period = 0.06
+    says = {"/correction": NUMBER, "/no_line": EMPTY}  # noqa: RUF012
+    #: The part of the floor that it sees: this far ahead, so far before and behind that, one metre wide.
+    ahead, depth, half_width = 0.2, 0.06, 0.5
+
+    def __init__(self, noise):
+        """`noise` gives an error in pixels."""
+        self._noise = noise
+
+    def say(self, world):
+        """A correction, or that there is no line."""
+        places = (world.pose.towards(*point) for point in world.line)
+        seen = [left for ahead, left in places if self._sees(ahead, left)]
+        if not seen or world.line_covered:
+            return [("/no_line", {})]
+        right = -sum(seen) / len(seen)
+        return [("/correction", {"data": right / self.half_width * WIDTH / 2 + self._noise()})]
+
+    def _sees(self, ahead, left):
+        return abs(ahead - self.ahead) <= self.depth and abs(left) <= self.half_width
+
+
+class BallDetector(Device):
+    """Says where something red is, whether it slips to a side, and when it is so large that it touches the robot."""
+
+    says = {  # noqa: RUF012
+        "/ball_correction": NUMBER,
+        "/no_ball": EMPTY,
+        "/needs_adjustment": EMPTY,
+        "/no_adjustment": EMPTY,
+        "/ball_front_check": EMPTY,
+    }
+    #: Pixels off the centre from which on a ball is lost soon; the part of the image that a ball in front fills.
+    aside, in_front = 90, 0.5
+
+    def __init__(self, noise):
+        """`noise` gives an error in pixels."""
+        self._noise = noise
+
+    def say(self, world):
+        """What it sees of the ball."""
+        seen = place(world, world.ball, world.walls)
+        if seen is None:
+            return [("/no_ball", {})]
+        correction = right_of_centre(seen) + self._noise()
+        said = [("/ball_correction", {"data": correction})]
+        said.append(("/needs_adjustment" if abs(correction) > self.aside else "/no_adjustment", {}))
+        if (seen[1] - seen[0]) / WIDTH > self.in_front:
+            said.append(("/ball_front_check", {}))
+        return said
+
+
+class GoalDetector(Device):
+    """Says where something green is: the goal's back wall."""
+
+    says = {"/goal_correction": NUMBER, "/no_goal": EMPTY}  # noqa: RUF012
+
+    def __init__(self, noise):
+        """`noise` gives an error in pixels."""
+        self._noise = noise
+
+    def say(self, world):
+        """What it sees of the goal."""
+        _, y1, x2, y2 = world.goal
+        seen = place(world, Sight("goal", x2 - 0.01, (y1 + y2) / 2, y2 - y1), world.walls)
+        if seen is None:
+            return [("/no_goal", {})]
+        return [("/goal_correction", {"data": right_of_centre(seen) + self._noise()})]
+
+
+class ObjectDetector(Device):
+    """Darknet: what it has a name for, the surest first; while it sees nothing it publishes no boxes."""
+
+    period = 0.2
+    says = {  # noqa: RUF012
+        "/darknet_ros/found_object": "darknet_ros_msgs/ObjectCount",
+        "/darknet_ros/bounding_boxes": "darknet_ros_msgs/BoundingBoxes",
+    }
+    reach = 2.2
+
+    def say(self, world):
+        """How many things it sees, and which."""
+        boxes = []
+        for each in sorted(world.sights, key=lambda sight: -sight.certainty):
+            seen = place(world, each, world.walls, self.reach)
+            if seen is not None:
+                boxes.append(box(each.name, each.certainty, seen))
+        stamped = header(world, "camera")
+        said = [("/darknet_ros/found_object", {"header": stamped, "count": len(boxes)})]
+        if boxes:
+            said.append(("/darknet_ros/bounding_boxes", {"header": stamped, "bounding_boxes": boxes}))
+        return said
+
+
+class PersonDetector(Device):
+    """YOLOX, set to find people: a list of boxes for each image, empty where nobody is seen."""
+
+    says = {"/bounding_boxes": "bboxes_ex_msgs/BoundingBoxes"}  # noqa: RUF012
+    reach = 4.0
+
+    def say(self, world):
+        """Where the person is."""
+        person = world.person
+        seen = place(world, person, [*world.walls, *world.pillars], self.reach)
+        boxes = [] if seen is None else [{**box("person", 0.9, seen), "img_width": WIDTH, "img_height": HEIGHT}]
+        return [("/bounding_boxes", {"header": header(world, "camera"), "bounding_boxes": boxes})]
+
+
+def box(name, certainty, seen):
+    """A box around something; how high it is in the image nobody asks."""
+    left, right = seen
+    return {
+        "class_id": name,
+        "probability": certainty,
+        "xmin": round(left),
+        "xmax": round(right),
+        "ymin": 160,
+        "ymax": 320,
+    }

@@ -1,0 +1,71 @@
+"""Two driven wheels, and what their encoders say: a TurtleBot3 Waffle Pi."""
+
+from __future__ import annotations
+
+import math
+
+from .geometry import Pose
+
+MAX_LINEAR, MAX_ANGULAR = 0.26, 1.82
+TRACK, WHEEL_RADIUS = 0.287, 0.033
+#: How fast a wheel's speed changes, in m/s².
+ACCELERATION = 2.0
+ENCODER_STEPS = 4096
+
+
+class Drive:
+    """Wheels that follow commanded speeds as fast as they can, and count their turns.
+
+    `pose` is where the robot is, `odometry` where the encoders say it is, from where it started. They differ by what
+    an encoder can't see: less than one of its steps, and wheels that turn while the robot is held.
+    """
+
+    def __init__(self, pose):
+        self.pose = pose
+        self.odometry = Pose()
+        self.linear = self.angular = 0.0
+        self._speeds = [0.0, 0.0]
+        self._rolled = [0.0, 0.0]
+        self._counted = [0, 0]
+
+    @property
+    def speed(self):
+        """The linear and the angular speed at which it moves now."""
+        left, right = self._speeds
+        return (left + right) / 2, (right - left) / TRACK
+
+    def command(self, linear, angular):
+        """The speeds to hold from now on, within what the motors can; what is no number is no command."""
+        if math.isfinite(linear) and math.isfinite(angular):
+            self.linear = max(-MAX_LINEAR, min(MAX_LINEAR, linear))
+            self.angular = max(-MAX_ANGULAR, min(MAX_ANGULAR, angular))
+
+    def step(self, seconds):
+        """Turns the wheels for so long; the pose that they lead to. Whoever finds it free assigns it to `pose`."""
+        ways = []
+        for wheel, side in enumerate((-1, 1)):
+            wanted = self.linear + side * self.angular * TRACK / 2
+            change = ACCELERATION * seconds
+            self._speeds[wheel] += max(-change, min(change, wanted - self._speeds[wheel]))
+            ways.append(self._speeds[wheel] * seconds)
+        self._count(ways)
+        return rolled(self.pose, *ways)
+
+    def _count(self, ways):
+        resolution = 2 * math.pi * WHEEL_RADIUS / ENCODER_STEPS
+        seen = []
+        for wheel, way in enumerate(ways):
+            self._rolled[wheel] += way
+            count = round(self._rolled[wheel] / resolution)
+            seen.append((count - self._counted[wheel]) * resolution)
+            self._counted[wheel] = count
+        self.odometry = rolled(self.odometry, *seen)
+
+
+def rolled(pose, left, right):
+    """Where a robot is after its wheels have rolled so far: an arc, exactly."""
+    way, turn = (left + right) / 2, (right - left) / TRACK
+    # The chord of the arc: sin(a)/a without a division by nothing.
+    chord = way * (math.sin(turn / 2) / (turn / 2) if abs(turn) > 1e-9 else 1.0)
+    middle = pose.heading + turn / 2
+    return Pose(pose.x + chord * math.cos(middle), pose.y + chord * math.sin(middle), pose.heading + turn)

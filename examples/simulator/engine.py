@@ -1,0 +1,252 @@
+"""A scenario without any middleware: the controller, as `robosc run` runs it, and the world in one process.
+
+Needs robosc. All that is sent arrives at once, so that every run of a scenario is the same.
+"""
+
+from __future__ import annotations
+
+import json
+import tempfile
+from itertools import count
+from pathlib import Path
+
+import robosc
+from robosc import config
+from robosc.runtime.agenda import Agenda
+from robosc.runtime.controller import Controller
+from robosc.runtime.layer import Layer
+from robosc.runtime.port import Outcome
+from robosc.runtime.settings import Settings, controller_parameters, layer_parameters
+
+from .playing import tell
+from .simulation import GoalNews
+
+EXAMPLES = Path(__file__).resolve().parents[1]
+OUTCOMES = {"succeeded": Outcome.SUCCEEDED, "canceled": Outcome.CANCELLED, "aborted": Outcome.ABORTED}
+ZERO = {"x": 0.0, "y": 0.0, "z": 0.0}
+#: Fields that are there also if nobody sets them.
+DEFAULTS = {"Twist": {"linear": ZERO, "angular": ZERO}, "Int16": {"data": 0}}
+
+
+def play(simulation, until, models=None, kind=Controller, quiet=False):
+    """Lets a scenario take place until `until()` holds; what the controller has logged.
+
+    `models` take the place of the scenario's own, `kind` that of the controller.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        log = Path(folder) / "events.jsonl"
+        node = connected(simulation, models or load(model_of(simulation.scenario)), log, kind)
+        told = 0
+        while not until():
+            for each in simulation.advance():
+                node.take(each)
+            node.work()
+            if not quiet:
+                told = tell(simulation, told)
+        return [json.loads(line) for line in log.read_text(encoding="utf-8").splitlines()]
+
+
+def model_of(scenario):
+    """The file with a scenario's model."""
+    return EXAMPLES / scenario.name / f"{scenario.name}.rscd"
+
+
+def load(path):
+    """All models of the robot in a file, with its supervisor."""
+    robot = robosc.load(path)
+    plants = robosc.to_sct(robot)
+    robosc.synthesize(plants)
+    return robosc.Models(plants, robosc.to_rosgraph(robot), robot)
+
+
+def connected(simulation, models, log, kind=Controller):
+    """What stands between the world's sensors and its wheels: a controller, or one behind its layer."""
+    scenario = simulation.scenario
+    if scenario.controller is None:
+        return Node(simulation, models, config_beside(model_of(scenario)), log, kind)
+    return SupervisedNode(simulation, models, log)
+
+
+def config_beside(model):
+    """The configuration of a model."""
+    return config.read(model.parent / config.FILE_NAME)
+
+
+class Node:
+    """A controller that is connected to a simulation and to nothing else."""
+
+    def __init__(self, simulation, models, configuration, log, kind=Controller):
+        graph = models.rosgraph
+        self._agenda = Agenda(lambda: simulation.time)
+        self._port = WorldPort(simulation)
+        parameters = {each.name: each.default for each in controller_parameters(graph, configuration, str(log))}
+        self._controller = kind(graph, Settings(parameters, configuration), self._port, self._agenda)
+        self._subscriptions = {each.topic: each for each in graph.subscriptions}
+        self._controller.start()
+
+    def take(self, item):
+        """Takes a message or news of a goal."""
+        if isinstance(item, GoalNews):
+            self._port.take(item)
+        elif item.topic in self._subscriptions:
+            subscription, message = self._subscriptions[item.topic], Received(item.data)
+            self._agenda.post(lambda: self._controller.receive(subscription, message))
+
+    def work(self):
+        """Does all that is due now."""
+        while self._agenda.work() == 0.0:
+            pass
+
+
+class SupervisedNode:
+    """A controller that reaches the world, and is reached by it, through its supervisory layer only."""
+
+    def __init__(self, simulation, models, log):
+        scenario, graph = simulation.scenario, models.rosgraph
+        behind = EXAMPLES / scenario.name / scenario.controller
+        self._world = simulation
+        self._controller = Node(self, load(behind), config_beside(behind), "")
+        configuration = config_beside(model_of(scenario))
+        parameters = {each.name: each.default for each in layer_parameters(graph, configuration, str(log))}
+        self._agenda = Agenda(lambda: simulation.time)
+        self._layer = Layer(graph, Settings(parameters, configuration), WorldPort(simulation), self._agenda)
+        self._subscriptions = {each.topic: each for each in graph.subscriptions}
+        self._sendings = {each.topic: each.sendings[0] for each in graph.publishers}
+        self._layer.start()
+
+    @property
+    def time(self):
+        """The world's time."""
+        return self._world.time
+
+    def take(self, item):
+        """Takes a message: first to the layer, then to the controller."""
+        if item.topic in self._subscriptions:
+            self._layer.hear(self._subscriptions[item.topic], Received(item.data))
+            self._controller.take(item)
+
+    def receive(self, topic, data):
+        """Takes what the controller sends, and lets it pass to the world or not."""
+        if self._layer.passes(self._sendings[topic]):
+            self._world.receive(topic, data)
+
+    def work(self):
+        """Does all that is due now."""
+        self._agenda.work()
+        self._controller.work()
+
+
+class WorldPort:
+    """What a controller asks of its middleware, answered by the simulation."""
+
+    def __init__(self, simulation):
+        self._simulation = simulation
+        self._numbers = count(1)
+        self._goals = {}
+
+    def now(self):
+        """The world's time."""
+        return self._simulation.time
+
+    def create(self, interface, part):
+        """Data to be filled."""
+        del part
+        return Sent(json.loads(json.dumps(DEFAULTS.get(interface.type, {}))))
+
+    def stamp(self, message, frame):
+        """Headers need no time here."""
+
+    def wire_types(self, message):
+        """The types of a message's fields: whole numbers of 16 bits where they are whole by default, else doubles."""
+        return _Types(message)
+
+    def publish(self, publisher, message):
+        """Sends a message to the world."""
+        self._simulation.receive(publisher.topic, message.data)
+
+    def is_served(self, client):
+        """Whether the world has such a server."""
+        return client.identifier in self._simulation.serves
+
+    def send_goal(self, client, goal, handlers):
+        """Sends a goal to the world."""
+        number = next(self._numbers)
+        self._goals[number] = handlers
+        if self._simulation.start(client.identifier, number, goal.data):
+            handlers.accepted()
+        else:
+            handlers.rejected("rejected")
+        return Goal(self._simulation, client.identifier, number)
+
+    def take(self, news):
+        """Hands on news of a goal."""
+        handlers = self._goals[news.goal]
+        if news.what == "feedback":
+            handlers.feedback(Received(news.data))
+        else:
+            handlers.ended(OUTCOMES[news.what], Received(news.data), "")
+
+    def tell(self, what, text):
+        """Nobody listens."""
+
+    def listeners(self, what):
+        """Nobody."""
+        del what
+        return 0
+
+    def wiring(self):
+        """All fits."""
+        return {}
+
+    def info(self, text):
+        """Nobody listens."""
+
+    warn = error = info
+
+
+class Goal:
+    """A goal that the world has."""
+
+    def __init__(self, simulation, action, number):
+        self._simulation, self._action, self._number = simulation, action, number
+
+    def cancel(self):
+        """Asks the world to end it."""
+        self._simulation.cancel(self._action, self._number)
+
+
+class Received:
+    """Data as ROS gives it: fields are attributes."""
+
+    def __init__(self, data):
+        self._data = data
+
+    def __getattr__(self, name):
+        return _received(self._data[name])
+
+
+def _received(value):
+    if isinstance(value, dict):
+        return Received(value)
+    return [_received(each) for each in value] if isinstance(value, list) else value
+
+
+class Sent:
+    """Data to be filled as ROS fills it; a field of fields comes to be when it is asked for."""
+
+    def __init__(self, data):
+        self.__dict__["data"] = data
+
+    def __getattr__(self, name):
+        return Sent(self.data.setdefault(name, {}))
+
+    def __setattr__(self, name, value):
+        self.data[name] = value
+
+
+class _Types:
+    def __init__(self, message):
+        self._message = message
+
+    def __getitem__(self, name):
+        return "int16" if isinstance(self._message.data.get(name), int) else "float64"

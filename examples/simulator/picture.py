@@ -1,0 +1,122 @@
+"""A run as a drawing (SVG): walls, the line, the way of everything that moved, and what happened where."""
+
+from __future__ import annotations
+
+import math
+from xml.sax.saxutils import escape
+
+#: Pixels of a metre, and around all of it; of a line of text.
+SCALE, MARGIN, LINE = 110, 24, 18
+WAYS = {
+    "robot": "stroke='#1f5fa8' stroke-width='2.5'",
+    "ball": "stroke='#c0392b' stroke-width='2' stroke-dasharray='5 3'",
+    "person": "stroke='#7d4ca0' stroke-width='2' stroke-dasharray='5 3'",
+}
+
+
+def picture(simulation):
+    """The drawing of a simulation as it is now, as text; the same for the same run."""
+    return "\n".join(_Drawing(simulation).elements()) + "\n"
+
+
+class _Drawing:
+    """Turns metres, y upwards, into pixels, y downwards."""
+
+    def __init__(self, simulation):
+        self.simulation = simulation
+        world = simulation.world
+        xs = [x for x, _ in self._points()]
+        ys = [y for _, y in self._points()]
+        self.left, self.top = min(xs) - 0.25, max(ys) + 0.25
+        self.width = (max(xs) + 0.25 - self.left) * SCALE + 2 * MARGIN
+        self.height = (self.top - min(ys) + 0.25) * SCALE + 2 * MARGIN
+        self.world = world
+
+    def _points(self):
+        world, ways = self.simulation.world, self.simulation.ways
+        for wall in world.walls:
+            yield wall.x1, wall.y1
+            yield wall.x2, wall.y2
+        yield from world.line
+        for way in ways.values():
+            yield from way
+
+    def elements(self):
+        said = [f"{each.time:5.1f} s  {each.words}" for each in self.simulation.happenings]
+        width = max(self.width, 2 * MARGIN + 300)
+        height = self.height + LINE * (len(said) + 2)
+        title = self.simulation.scenario.name.replace("_", " ")
+        yield (
+            f"<svg xmlns='http://www.w3.org/2000/svg' width='{width:.0f}' height='{height:.0f}' "
+            f"viewBox='0 0 {width:.0f} {height:.0f}' font-family='sans-serif' font-size='12'>"
+        )
+        yield f"<title>{escape(title)}</title>"
+        yield f"<rect width='{width:.0f}' height='{height:.0f}' fill='white'/>"
+        yield from self._place()
+        for name, style in WAYS.items():
+            if self.simulation.ways[name]:
+                yield f"<polyline points='{self._way(self.simulation.ways[name])}' fill='none' {style}/>"
+        yield from self._things()
+        yield from self._marks()
+        for number, words in enumerate(said):
+            y = self.height + LINE * (number + 0.5)
+            yield f"<text x='{MARGIN}' y='{y:.1f}' xml:space='preserve'>{number + 1:>2}  {escape(words)}</text>"
+        yield "</svg>"
+
+    def _place(self):
+        world = self.world
+        if world.goal:
+            x1, y1, x2, y2 = world.goal
+            x, y = self._at(x1, y2)
+            yield (
+                f"<rect x='{x:.1f}' y='{y:.1f}' width='{(x2 - x1) * SCALE:.1f}' height='{(y2 - y1) * SCALE:.1f}' "
+                "fill='#cfe8cf'/>"
+            )
+        if world.line:
+            yield f"<polyline points='{self._way(world.line[::5])}' fill='none' stroke='#f2c200' stroke-width='6'/>"
+        for wall in world.walls:
+            (x1, y1), (x2, y2) = self._at(wall.x1, wall.y1), self._at(wall.x2, wall.y2)
+            yield (
+                f"<line x1='{x1:.1f}' y1='{y1:.1f}' x2='{x2:.1f}' y2='{y2:.1f}' "
+                "stroke='#444' stroke-width='4' stroke-linecap='round'/>"
+            )
+        for pillar in self.simulation.pillars:
+            yield self._disc(pillar.x, pillar.y, pillar.radius, "fill='#999'")
+        for sight in world.sights:
+            x, y = self._at(sight.x, sight.y)
+            yield f"<text x='{x:.1f}' y='{y:.1f}' text-anchor='end' fill='#c0392b'>{escape(sight.name)}</text>"
+
+    def _things(self):
+        world = self.world
+        if world.ball:
+            yield self._disc(world.ball.x, world.ball.y, world.ball.radius, "fill='#e05545'")
+        if world.person:
+            yield self._disc(world.person.x, world.person.y, world.person.radius, "fill='#b58fd0'")
+        pose = world.pose
+        yield self._disc(pose.x, pose.y, 0.14, "fill='#9cc3ec' stroke='#1f5fa8'")
+        (x1, y1), (x2, y2) = self._at(pose.x, pose.y), self._at(*pose.ahead(0.14))
+        yield f"<line x1='{x1:.1f}' y1='{y1:.1f}' x2='{x2:.1f}' y2='{y2:.1f}' stroke='#1f5fa8' stroke-width='2'/>"
+
+    def _marks(self):
+        """Numbers where something happened; those of one place stand side by side."""
+        taken = []
+        for number, each in enumerate(self.simulation.happenings):
+            x, y = self._at(each.x, each.y)
+            while any(math.dist((x, y), other) < 17 for other in taken):
+                x += 17
+            taken.append((x, y))
+            yield f"<circle cx='{x:.1f}' cy='{y:.1f}' r='8' fill='white' stroke='#1f5fa8'/>"
+            yield f"<text x='{x:.1f}' y='{y + 3.5:.1f}' font-size='10' text-anchor='middle'>{number + 1}</text>"
+
+    def _disc(self, x, y, radius, style):
+        x, y = self._at(x, y)
+        return f"<circle cx='{x:.1f}' cy='{y:.1f}' r='{radius * SCALE:.1f}' {style}/>"
+
+    def _way(self, points):
+        """Points for a polyline; of those that are drawn at the same place only the first."""
+        shown = [f"{x:.1f},{y:.1f}" for x, y in (self._at(*each) for each in points)]
+        kept = [each for before, each in zip([None, *shown], shown) if each != before]  # noqa: B905  # old Pythons, too
+        return " ".join(kept)
+
+    def _at(self, x, y):
+        return (x - self.left) * SCALE + MARGIN, (self.top - y) * SCALE + MARGIN

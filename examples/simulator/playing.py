@@ -1,0 +1,79 @@
+"""Plays a simulation over a middleware: in real time, or faster with the world's own clock."""
+
+from __future__ import annotations
+
+import sys
+import time
+
+from .world import STEP
+
+#: How long the world runs on without a command that is due, in its own time; how long it waits then, in real time.
+ANSWER_WITHIN, PATIENCE = 0.25, 30.0
+#: As long may the first answer take: a controller hears of the clock late, and counts its period from then.
+FIRST_ANSWER_WITHIN = 2.0
+#: How long the time at the start is told, in real time, before the world goes on.
+INTRODUCTION = 0.5
+
+
+class NoControllerError(Exception):
+    """Nobody listens, or nobody answers any longer."""
+
+
+def play(simulation, connection, speed, until):
+    """Lets the world take place until `until()` holds.
+
+    With another speed than 1 it runs as many times as fast, on `/clock`, and waits for a controller that falls behind.
+    Raises NoControllerError.
+    """
+    said("waiting for the controller on " + ", ".join(connection.waits_for()) + " ...")
+    _wait(connection, lambda: not connection.waits_for(), "no controller listens to {}: is it started?")
+    said("the controller is there: the world starts")
+    if speed != 1:
+        _introduce(connection)
+    told, started = 0, time.monotonic()
+    while not until():
+        for each in simulation.advance():
+            connection.send(each)
+        connection.clock(simulation.time)
+        told = tell(simulation, told)
+        if speed != 1:
+            connection.receive(STEP / speed)
+            _wait(connection, lambda: _in_step(simulation, connection), "the controller sends nothing any longer")
+        else:
+            connection.receive(max(0.0, started + simulation.time - time.monotonic()))
+
+
+def tell(simulation, told):
+    """Prints what has happened since so many happenings; how many that are now."""
+    for each in simulation.happenings[told:]:
+        said(f"{each.time:6.1f} s  {each.words}")
+    return len(simulation.happenings)
+
+
+def said(text, stream=None):
+    """Prints a line at once, also where the output is not a terminal."""
+    print(text, file=stream or sys.stdout, flush=True)
+
+
+def _in_step(simulation, connection):
+    if not simulation.scenario.commands_due(simulation):
+        connection.last_heard = simulation.time
+    return simulation.time - connection.last_heard < (ANSWER_WITHIN if connection.answered else FIRST_ANSWER_WITHIN)
+
+
+def _introduce(connection):
+    """Tells the time at the start until everyone can have heard it."""
+    until = time.monotonic() + INTRODUCTION
+    while time.monotonic() < until:
+        connection.clock(connection.simulation.time)
+        connection.receive(0.02)
+
+
+def _wait(connection, condition, otherwise):
+    """Waits for something to hold; the time, where it was not heard, is told again."""
+    started = time.monotonic()
+    while not condition():
+        if time.monotonic() > started + PATIENCE:
+            raise NoControllerError(otherwise.format(", ".join(connection.waits_for())) + f" ({PATIENCE:.0f} s)")
+        connection.clock(connection.simulation.time)
+        connection.receive(0.02)

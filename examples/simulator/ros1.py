@@ -1,0 +1,120 @@
+"""The simulation on topics of ROS 1."""
+
+from __future__ import annotations
+
+import importlib
+
+import actionlib
+import rospy
+from rosgraph_msgs.msg import Clock
+
+from .connection import EPOCH, Connection, UnknownTypeError
+
+
+class Ros1(Connection):
+    """Topics of ROS 1, received in threads of rospy's own, and actions."""
+
+    def __init__(self, simulation):
+        super().__init__(simulation)
+        rospy.init_node("world", disable_signals=True)
+        self._clock = rospy.Publisher("/clock", Clock, queue_size=100)
+        self._publishers = {}
+        for topic, kind in simulation.says.items():
+            try:
+                self._publishers[topic] = rospy.Publisher(topic, _class(kind), queue_size=100)
+            except UnknownTypeError:
+                if topic not in simulation.scenario.unheard:
+                    raise
+        for topic, kind in simulation.hears.items():
+            rospy.Subscriber(topic, _class(kind), self._hearer(topic), queue_size=100)
+        self._goals = {}
+        self._servers = []
+        self._feedback = {}
+        for action, kind in simulation.serves.items():
+            server = actionlib.ActionServer(
+                action, _class(kind + "Action"), self._starter(action), self._canceller(action), auto_start=False
+            )
+            server.start()
+            self._servers.append(server)
+            self._feedback[action] = _class(kind + "Feedback")
+
+    def listeners(self, topic):
+        """How many listen to a topic."""
+        return self._publishers[topic].get_num_connections() if topic in self._publishers else 0
+
+    def clock(self, seconds):
+        """Tells everyone the time."""
+        self._clock.publish(Clock(clock=rospy.Time.from_sec(EPOCH + seconds)))
+
+    def publish(self, topic, data):
+        """Sends a message."""
+        if topic in self._publishers:
+            publisher = self._publishers[topic]
+            publisher.publish(_filled(publisher.data_class(), data))
+
+    def tell(self, news):
+        """Sends news of a goal."""
+        handle = self._goals[news.goal]
+        if news.what == "feedback":
+            handle.publish_feedback(_filled(self._feedback[news.action](), news.data))
+        elif news.what == "succeeded":
+            handle.set_succeeded()
+        elif news.what == "canceled":
+            handle.set_canceled()
+        else:
+            handle.set_aborted()
+
+    def spin(self, seconds):
+        """Waits; rospy's threads do the work."""
+        rospy.rostime.wallsleep(seconds)
+
+    def close(self):
+        """Ends the connection."""
+        rospy.signal_shutdown("the scenario has ended")
+
+    def _hearer(self, topic):
+        return lambda message: self.heard(topic, _plain(message))
+
+    def _starter(self, action):
+        def start(handle):
+            goal = handle.get_goal_id().id
+            self._goals[goal] = handle
+            if self.simulation.start(action, goal, _plain(handle.get_goal())):
+                handle.set_accepted()
+            else:
+                handle.set_rejected()
+
+        return lambda handle: self.later(lambda: start(handle))
+
+    def _canceller(self, action):
+        return lambda handle: self.later(lambda: self.simulation.cancel(action, handle.get_goal_id().id))
+
+
+def _class(kind):
+    """The Python class of a type."""
+    package, name = kind.split("/")
+    try:
+        return getattr(importlib.import_module(f"{package}.msg"), name)
+    except (ImportError, AttributeError):
+        raise UnknownTypeError(kind) from None
+
+
+def _filled(message, data):
+    """Sets fields of a message."""
+    types = dict(zip(message.__slots__, message._slot_types))  # noqa: B905, SLF001  # as rospy offers them
+    for name, value in data.items():
+        if types[name] == "time":
+            value = rospy.Time.from_sec(EPOCH + value)  # noqa: PLW2901
+        elif isinstance(value, dict):
+            value = _filled(getattr(message, name), value)  # noqa: PLW2901
+        elif isinstance(value, list) and value and isinstance(value[0], dict):
+            value = [_filled(_class(types[name].rstrip("[]"))(), each) for each in value]  # noqa: PLW2901
+        setattr(message, name, value)
+    return message
+
+
+def _plain(message):
+    """A message as nested dicts."""
+    if hasattr(message, "_slot_types"):
+        return {name: _plain(getattr(message, name)) for name in message.__slots__}
+    return message

@@ -1,0 +1,149 @@
+"""The simulation on topics of ROS 2."""
+
+from __future__ import annotations
+
+import importlib
+
+import rclpy
+from builtin_interfaces.msg import Time
+from rclpy.action import ActionServer, CancelResponse, GoalResponse
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.qos import qos_profile_sensor_data
+from rosgraph_msgs.msg import Clock
+
+from .connection import EPOCH, Connection, UnknownTypeError
+
+
+class Ros2(Connection):
+    """Topics and actions of ROS 2, received while we wait; lidars are best effort, as they mostly are."""
+
+    def __init__(self, simulation):
+        super().__init__(simulation)
+        rclpy.init()
+        self._node = rclpy.create_node("world")
+        self._clock = self._node.create_publisher(Clock, "/clock", 100)
+        self._publishers = {}
+        for topic, kind in simulation.says.items():
+            quality = qos_profile_sensor_data if kind.startswith("sensor_msgs/") else 100
+            try:
+                self._publishers[topic] = self._node.create_publisher(_class(kind), topic, quality)
+            except UnknownTypeError:
+                if topic not in simulation.scenario.unheard:
+                    raise
+        for topic, kind in simulation.hears.items():
+            self._node.create_subscription(_class(kind), topic, self._hearer(topic), 100)
+        self._goals = []
+        self._executor = SingleThreadedExecutor()
+        self._executor.add_node(self._node)
+        self._servers = [self._server(action, kind) for action, kind in simulation.serves.items()]
+
+    def listeners(self, topic):
+        """How many listen to a topic."""
+        return self._publishers[topic].get_subscription_count() if topic in self._publishers else 0
+
+    def clock(self, seconds):
+        """Tells everyone the time."""
+        self._clock.publish(Clock(clock=_time(seconds)))
+
+    def publish(self, topic, data):
+        """Sends a message."""
+        if topic in self._publishers:
+            publisher = self._publishers[topic]
+            publisher.publish(_filled(publisher.msg_type(), data))
+
+    def tell(self, news):
+        """Sends news of a goal."""
+        goal = self._goals[news.goal]
+        if news.what == "feedback":
+            goal.handle.publish_feedback(_filled(goal.kind.Feedback(), news.data))
+        else:
+            # Only now, as rclpy would wait for the end of a goal busily, before all else.
+            goal.handle.execute(lambda _: goal.ended(news.what))
+
+    def spin(self, seconds):
+        """Lets rclpy work on one thing."""
+        self._executor.spin_once(timeout_sec=seconds)
+
+    def close(self):
+        """Ends the connection."""
+        for each in self._servers:
+            each.destroy()
+        self._node.destroy_node()
+        rclpy.try_shutdown()
+
+    def _hearer(self, topic):
+        return lambda message: self.heard(topic, _plain(message))
+
+    def _server(self, action, name):
+        kind = _class(name, "action")
+
+        def ask(request):
+            # A goal is asked about before it has a handle.
+            accepted = self.simulation.start(action, len(self._goals), _plain(request))
+            return GoalResponse.ACCEPT if accepted else GoalResponse.REJECT
+
+        def accepted(handle):
+            self._goals.append(_Goal(handle, kind))
+
+        def cancel(handle):
+            number = next(number for number, each in enumerate(self._goals) if each.handle is handle)
+            return CancelResponse.ACCEPT if self.simulation.cancel(action, number) else CancelResponse.REJECT
+
+        return ActionServer(
+            self._node,
+            kind,
+            action,
+            lambda _: kind.Result(),
+            goal_callback=ask,
+            handle_accepted_callback=accepted,
+            cancel_callback=cancel,
+        )
+
+
+class _Goal:
+    """A goal that was accepted."""
+
+    def __init__(self, handle, kind):
+        self.handle = handle
+        self.kind = kind
+
+    def ended(self, how):
+        """Ends it; its result."""
+        {"succeeded": self.handle.succeed, "canceled": self.handle.canceled, "aborted": self.handle.abort}[how]()
+        return self.kind.Result()
+
+
+def _class(kind, folder="msg"):
+    """The Python class of a type."""
+    package, name = kind.split("/")
+    try:
+        return getattr(importlib.import_module(f"{package}.{folder}"), name)
+    except (ImportError, AttributeError):
+        raise UnknownTypeError(kind) from None
+
+
+def _time(seconds):
+    whole, rest = divmod(round((EPOCH + seconds) * 1e9), 10**9)
+    return Time(sec=whole, nanosec=rest)
+
+
+def _filled(message, data):
+    """Sets fields of a message."""
+    types = message.get_fields_and_field_types()
+    for name, value in data.items():
+        if types[name] == "builtin_interfaces/Time":
+            value = _time(value)  # noqa: PLW2901
+        elif isinstance(value, dict):
+            value = _filled(getattr(message, name), value)  # noqa: PLW2901
+        elif isinstance(value, list) and value and isinstance(value[0], dict):
+            kind = _class(types[name].partition("<")[2].rstrip(">"))
+            value = [_filled(kind(), each) for each in value]  # noqa: PLW2901
+        setattr(message, name, value)
+    return message
+
+
+def _plain(message):
+    """A message as nested dicts."""
+    if hasattr(message, "get_fields_and_field_types"):
+        return {name: _plain(getattr(message, name)) for name in message.get_fields_and_field_types()}
+    return message

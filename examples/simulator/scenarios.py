@@ -1,0 +1,460 @@
+"""The eight scenarios of the thesis (section 6.2): where they take place, what happens in them, and what is their goal.
+
+What happens is a script: a generator that yields for how many seconds, or until what, it waits before it goes on.
+"""
+
+from __future__ import annotations
+
+import math
+
+from .camera import BallDetector, GoalDetector, LineDetector, ObjectDetector, PersonDetector
+from .devices import EMPTY, RANGE_MAX, Rotator, Steps, Wheels
+from .geometry import Disc, Pose, Segment, box, path, turned
+from .navigation import Navigation
+from .world import Ball, Person, Sight, World
+
+LINE_PIXELS, VIEW_PIXELS = 1.0, 2.0
+
+
+class Scenario:
+    """A place, its devices, a script and a goal; the base of all eight."""
+
+    #: The example's, too.
+    name = ""
+    #: The model of the controller behind the supervisory layer, where there is one, in the example's folder.
+    controller: str | None = None
+    #: What people send beside pressing buttons: topics and types.
+    people: dict[str, str] = {}  # noqa: RUF012  # a table, never changed
+    #: Topics that a controller need not listen to.
+    unheard: tuple[str, ...] = ("/odom",)
+    #: Seconds after which nobody hopes any longer.
+    patience = 150.0
+
+    def world(self):
+        """The place, as it is at the start."""
+        raise NotImplementedError
+
+    def devices(self, world, noise):
+        """What is there beside the lidar and the encoders."""
+        raise NotImplementedError
+
+    def script(self, simulation):
+        """What people do, and what befalls the robot."""
+        raise NotImplementedError
+
+    def reached(self, simulation):
+        """Whether the goal is reached."""
+        raise NotImplementedError
+
+    def commands_due(self, simulation):
+        """Whether a controller that is alive sends a velocity at each of its ticks."""
+        del simulation
+        return True
+
+    def pose(self, world):
+        """Where the robot is, and what else is of interest about it, for the record."""
+        # JSON knows nothing infinite.
+        gap = min(world.gap, RANGE_MAX)
+        return {"x": world.pose.x, "y": world.pose.y, "heading": world.pose.heading, "gap": gap}
+
+
+def stop_and_continue(simulation, seconds):
+    """Someone presses stop, and after a while continue."""
+    simulation.press("/stop")
+    yield seconds
+    simulation.press("/continue")
+
+
+class LineFollower(Scenario):
+    """A yellow line with bends, followed to its end; an obstacle on it, a stop button, a cloth over it."""
+
+    name = "line_follower"
+    #: How long the line is: straight, round to the left, straight, round to the right, straight.
+    bends = ((1.5, 0), (0.8, 90), (0.4, 0), (0.8, -90), (1.2, 0))
+
+    def world(self):
+        """The robot stands beside the line's start and looks along it."""
+        return World(Pose(0.0, 0.06), line=_line(Pose(-0.1, 0.0), self.bends))
+
+    def devices(self, world, noise):
+        """A platform and a detector."""
+        del world
+        return [Wheels(), LineDetector(noise.up_to(LINE_PIXELS))]
+
+    def script(self, simulation):
+        """As the robot gets along."""
+        world = simulation.world
+        yield lambda: world.travelled > 1.0
+        world.pillars.append(Disc(*self._on_line(world, 1.0), 0.12))
+        simulation.happens("an obstacle is put on the line")
+        yield 6.0
+        world.pillars.clear()
+        simulation.happens("the obstacle is taken away")
+        yield lambda: world.travelled > 2.6
+        yield from stop_and_continue(simulation, 2.0)
+        yield lambda: world.travelled > 3.4
+        world.line_covered = True
+        simulation.happens("the line is covered")
+        yield 1.5
+        world.line_covered = False
+        simulation.happens("the line is uncovered")
+        yield lambda: self._at_end(world)
+        yield 1.0
+
+    def reached(self, simulation):
+        """At the line's end, with the robot at rest."""
+        return self._at_end(simulation.world) and abs(simulation.world.drive.speed[0]) < 0.01
+
+    def pose(self, world):
+        """With the distance from the line."""
+        return {**super().pose(world), "off_line": world.off_line, "travelled": world.travelled}
+
+    @staticmethod
+    def _at_end(world):
+        x, y = world.line[-1]
+        return math.hypot(x - world.pose.x, y - world.pose.y) < 0.3
+
+    @staticmethod
+    def _on_line(world, ahead):
+        """The point of the line so far ahead of the robot."""
+        near = min(range(len(world.line)), key=lambda at: math.dist(world.line[at], (world.pose.x, world.pose.y)))
+        return world.line[near + round(ahead / LINE_STEP)]
+
+
+class SupervisedLineFollower(LineFollower):
+    """The same line for a robot that drives in steps, and for a controller that knows no danger."""
+
+    name = "supervised_line_follower"
+    controller = "controller/line_stepper.rscd"
+
+    def devices(self, world, noise):
+        """A platform that takes steps, and a detector."""
+        del world
+        return [Steps(), LineDetector(noise.up_to(LINE_PIXELS))]
+
+    def commands_due(self, simulation):
+        """A step that is blocked never gets here."""
+        del simulation
+        return False
+
+
+class SimpleNavigation(Scenario):
+    """An empty room with a map; two points to drive to: a stop on the way to one, a change of mind on the other."""
+
+    name = "simple_navigation"
+    people = {  # noqa: RUF012
+        "/initialpose": "geometry_msgs/PoseWithCovarianceStamped",
+        "/clicked_point": "geometry_msgs/PointStamped",
+    }
+    unheard = ("/odom", "/scan")
+    start = Pose(0.6, 0.6, 0.3)
+    room = (0.0, 0.0, 4.0, 3.0)
+    first, second, third = (2.6, 0.8), (0.8, 2.4), (3.2, 2.3)
+
+    def world(self):
+        """The robot stands in a corner."""
+        return World(self.start, walls=self.walls())
+
+    def walls(self):
+        """What is on the map."""
+        return box(*self.room)
+
+    def devices(self, world, noise):
+        """Nav2."""
+        del world, noise
+        return [Navigation(self.walls())]
+
+    def commands_due(self, simulation):
+        """Nav2 drives."""
+        del simulation
+        return False
+
+    def script(self, simulation):
+        """Clicks on a map, as in RViz."""
+        nav = simulation.device(Navigation)
+        yield 0.6
+        self.click(simulation, *self.first)
+        yield 0.6
+        self.locate(simulation)
+        yield 0.6
+        self.click(simulation, *self.first)
+        yield lambda: simulation.world.travelled > 0.7
+        yield from stop_and_continue(simulation, 2.0)
+        yield 1.5
+        self.click(simulation, *self.first)
+        yield lambda: nav.arrived == 1
+        yield 1.0
+        self.click(simulation, *self.second)
+        yield lambda: simulation.world.travelled > 2.8
+        self.click(simulation, *self.third)
+        yield lambda: nav.arrived == 2
+        yield 1.0
+
+    def reached(self, simulation):
+        """At both points at which the journeys were not cancelled, and now at the last."""
+        return simulation.device(Navigation).arrived == 2 and self._at(simulation.world, self.third)
+
+    def locate(self, simulation):
+        """Someone tells where the robot is."""
+        pose = simulation.world.pose
+        orientation = {"x": 0.0, "y": 0.0, "z": math.sin(pose.heading / 2), "w": math.cos(pose.heading / 2)}
+        position = {"x": pose.x, "y": pose.y, "z": 0.0}
+        stamped = {"stamp": simulation.time, "frame_id": "map"}
+        simulation.happens("the initial pose is set")
+        data = {"header": stamped, "pose": {"pose": {"position": position, "orientation": orientation}}}
+        simulation.say("/initialpose", data)
+
+    def click(self, simulation, x, y):
+        """Someone clicks a point."""
+        simulation.happens("a point is clicked")
+        header = {"stamp": simulation.time, "frame_id": "map"}
+        simulation.say("/clicked_point", {"header": header, "point": {"x": x, "y": y, "z": 0.0}})
+
+    @staticmethod
+    def _at(world, point):
+        return math.dist(point, (world.pose.x, world.pose.y)) < 0.15
+
+
+class ObstacleNavigation(SimpleNavigation):
+    """A room with pillars that are on no map; somebody puts one right before the robot."""
+
+    name = "obstacle_navigation"
+    room = (0.0, 0.0, 4.4, 3.0)
+    start = Pose(0.5, 1.5)
+    first, second = (3.9, 1.5), (0.6, 0.6)
+
+    def world(self):
+        """The robot stands at one side, pillars are on its way to the other."""
+        pillars = [Disc(x, y, 0.15) for x, y in ((1.5, 1.5), (2.6, 1.0), (2.6, 2.0), (1.5, 0.5), (1.5, 2.5))]
+        return World(self.start, walls=self.walls(), pillars=pillars)
+
+    def script(self, simulation):
+        """Clicks on a map, and a chair that is moved."""
+        world, nav = simulation.world, simulation.device(Navigation)
+        yield 0.6
+        self.locate(simulation)
+        yield 0.6
+        self.click(simulation, *self.first)
+        yield lambda: world.travelled > 2.0
+        world.pillars.append(Disc(*world.pose.ahead(0.37), 0.12))
+        simulation.happens("a chair is moved before the robot")
+        yield lambda: nav.arrived == 1
+        yield 1.0
+        self.click(simulation, *self.second)
+        yield 3.0
+        yield from stop_and_continue(simulation, 2.0)
+        yield 1.0
+
+    def reached(self, simulation):
+        """At the point, after it got stuck on the way."""
+        nav = simulation.device(Navigation)
+        return nav.arrived == 1 and nav.recoveries > 0 and self._at(simulation.world, self.first)
+
+
+class ObjectFinder(Scenario):
+    """Corridors with a dead end, and a stop sign around two corners."""
+
+    name = "object_finder"
+
+    def world(self):
+        """The robot looks into a dead end."""
+        walls = path((0, 0), (4, 0), (4, 3), (6.5, 3), (6.5, 4), (3, 4), (3, 1), (0, 1), (0, 0))
+        sights = [
+            Sight("stop sign", 6.45, 3.5, 0.3, 0.8),
+            Sight("chair", 3.5, 3.9, 0.4, 0.9),
+            Sight("fire hydrant", 5.6, 3.9, 0.3, 0.95),
+        ]
+        return World(Pose(1.2, 0.5, math.pi), walls=walls, sights=sights)
+
+    def devices(self, world, noise):
+        """A platform, a rotator and Darknet."""
+        del world, noise
+        return [Wheels(), Rotator(EMPTY), ObjectDetector()]
+
+    def commands_due(self, simulation):
+        """Between two turns."""
+        return not simulation.device(Rotator).turning
+
+    def script(self, simulation):
+        """Stop is pressed once while the robot drives."""
+        yield lambda: simulation.world.pose.x > 2.0
+        yield from stop_and_continue(simulation, 1.5)
+        yield lambda: self.reached(simulation)
+        yield 1.0
+
+    def reached(self, simulation):
+        """At rest, with the sign in sight."""
+        world = simulation.world
+        near = math.hypot(world.pose.x - 6.45, world.pose.y - 3.5) < ObjectDetector.reach + 0.1
+        return near and max(map(abs, world.drive.speed)) < 0.01
+
+
+class MazeSolver(Scenario):
+    """A maze of squares, one metre each."""
+
+    name = "maze_solver"
+    #: Each square has its own walls: `_` below it, `|` to its right. The way out is in the last row.
+    plan = (
+        " _ _ _ _ ",
+        "|  _    |",
+        "| |_ _| |",
+        "|_ _|_  |",
+    )
+
+    def world(self):
+        """The robot stands in the middle and looks at a wall."""
+        return World(Pose(1.6, 1.5, math.pi), walls=walls_of(self.plan))
+
+    def devices(self, world, noise):
+        """A platform and a rotator."""
+        del world, noise
+        return [Wheels(), Rotator("std_msgs/Int16")]
+
+    def commands_due(self, simulation):
+        """Between two turns."""
+        return not simulation.device(Rotator).turning
+
+    def script(self, simulation):
+        """Stop is pressed once while the robot drives."""
+        yield lambda: simulation.world.travelled > 1.0
+        yield from stop_and_continue(simulation, 1.5)
+        yield lambda: self.reached(simulation)
+
+    def reached(self, simulation):
+        """Outside."""
+        pose = simulation.world.pose
+        return not (-0.2 < pose.x < (len(self.plan[0]) - 1) / 2 + 0.2 and -0.2 < pose.y < len(self.plan) - 0.8)
+
+
+class PushBall(Scenario):
+    """A room with a ball and a goal."""
+
+    name = "push_ball"
+
+    def world(self):
+        """The robot looks away from the ball."""
+        goal = (3.6, -0.5, 4.1, 0.5)
+        walls = [*box(-1.5, -2.0, 4.6, 2.0), *path((3.6, -0.5), (4.1, -0.5), (4.1, 0.5), (3.6, 0.5))]
+        return World(Pose(0.0, 0.0, 2.2), walls=walls, ball=Ball(1.3, 0.18, 0.1), goal=goal)
+
+    def devices(self, world, noise):
+        """A platform and two detectors."""
+        del world
+        pixels = noise.up_to(VIEW_PIXELS)
+        return [Wheels(), BallDetector(pixels), GoalDetector(pixels)]
+
+    def script(self, simulation):
+        """Stop is pressed once while the robot pushes."""
+        yield lambda: simulation.world.ball.x > 1.6
+        yield from stop_and_continue(simulation, 1.5)
+        yield lambda: self.reached(simulation)
+        yield 1.0
+
+    def reached(self, simulation):
+        """The ball is in the goal, the robot at rest."""
+        world = simulation.world
+        return world.ball_in_goal and max(map(abs, world.drive.speed)) < 0.01
+
+    def pose(self, world):
+        """With the ball's place."""
+        return {**super().pose(world), "ball": [world.ball.x, world.ball.y]}
+
+
+class PersonFollower(Scenario):
+    """A person who walks about, and disappears for a while."""
+
+    name = "person_follower"
+    last = (3.2, 2.6)
+
+    def world(self):
+        """The person stands a little aside."""
+        return World(Pose(0.0, 0.0), person=Person(1.9, 0.6, 0.15), walls=box(-1.5, -2.0, 6.0, 4.5))
+
+    def devices(self, world, noise):
+        """A platform and a detector."""
+        del world, noise
+        return [Wheels(), PersonDetector()]
+
+    def script(self, simulation):
+        """The person walks; stop is pressed; a curtain hides the person."""
+        person, world = simulation.world.person, simulation.world
+        yield 3.0
+        person.walk(0.18, (2.6, 0.4), (3.6, 0.6), (4.0, 1.4))
+        yield 9.0
+        yield from stop_and_continue(simulation, 2.0)
+        yield lambda: not person.way
+        yield 4.0
+        x, y = world.pose.towards(person.x, person.y)
+        curtain = Segment(*world.pose.ahead(x - 0.35, y - 0.6), *world.pose.ahead(x - 0.35, y + 0.6))
+        world.walls.append(curtain)
+        simulation.happens("a curtain hides the person")
+        yield 2.0
+        world.walls.remove(curtain)
+        simulation.happens("the curtain is drawn back")
+        person.walk(0.2, self.last)
+        yield lambda: self.reached(simulation)
+        yield 1.0
+
+    def reached(self, simulation):
+        """The person stands at the last place, the robot near by and turned to it."""
+        world = simulation.world
+        ahead, left = world.pose.towards(*self.last)
+        there = math.dist(self.last, (world.person.x, world.person.y)) < 0.01
+        near = 0.8 < math.hypot(ahead, left) < 1.4 and abs(turned(math.atan2(left, ahead))) < 0.1
+        return there and near and abs(world.drive.speed[0]) < 0.01
+
+    def pose(self, world):
+        """With the distance from the person."""
+        away = math.dist((world.person.x, world.person.y), (world.pose.x, world.pose.y))
+        return {**super().pose(world), "person": away}
+
+
+LINE_STEP = 0.01
+
+#: All scenarios, by name.
+SCENARIOS = {
+    each.name: each
+    for each in (
+        LineFollower(),
+        SimpleNavigation(),
+        ObstacleNavigation(),
+        ObjectFinder(),
+        MazeSolver(),
+        PushBall(),
+        PersonFollower(),
+        SupervisedLineFollower(),
+    )
+}
+
+
+def _line(pose, bends):
+    """Points on a line that begins at a pose: for (length, 0) straight on, for (radius, degrees) around a bend."""
+    points = []
+    for size, degrees in bends:
+        length = abs(math.radians(degrees)) * size if degrees else size
+        start, turn = pose, math.radians(degrees)
+        for step in range(round(length / LINE_STEP)):
+            points.append((pose.x, pose.y))
+            share = (step + 1) / round(length / LINE_STEP)
+            if degrees:
+                side = math.copysign(size, degrees)
+                angle = turn * share
+                x, y = start.ahead(side * math.sin(angle), side * (1 - math.cos(angle)))
+                pose = Pose(x, y, start.heading + angle)
+            else:
+                pose = Pose(*start.ahead(length * share), start.heading)
+    return points
+
+
+def walls_of(plan):
+    """The walls of a maze: `_` is the lower edge of a square, `|` stands between two squares."""
+    rows = len(plan) - 1
+    walls = []
+    for row, text in enumerate(plan):
+        for column, sign in enumerate(text):
+            y = rows - row
+            if sign == "_" and column % 2:
+                walls.append(Segment((column - 1) / 2, y, (column + 1) / 2, y))
+            elif sign == "|":
+                walls.append(Segment(column / 2, y, column / 2, y + 1))
+    return walls

@@ -1,0 +1,215 @@
+"""A scenario that takes place: time passes, devices act and sense, people press buttons, and all of it is recorded."""
+
+from __future__ import annotations
+
+import math
+import random
+from dataclasses import dataclass
+
+from .devices import EMPTY, Lidar, Odometry
+from .world import STEP
+
+BUTTONS = ("/stop", "/continue")
+POSE_PERIOD = 0.1
+
+
+@dataclass(frozen=True)
+class Message:
+    """What is sent to a topic, as a mapping from fields to values."""
+
+    topic: str
+    data: dict
+
+
+@dataclass(frozen=True)
+class GoalNews:
+    """What an action server says to whoever set a goal: feedback, succeeded, canceled, aborted."""
+
+    action: str
+    goal: object
+    what: str
+    data: dict
+
+
+@dataclass(frozen=True)
+class Happening:
+    """Something that a picture shows: when, where the robot was, and what."""
+
+    time: float
+    x: float
+    y: float
+    words: str
+
+
+class Noise:
+    """Errors of sensors, from a seed: the same on every machine, up to so much, small ones more often."""
+
+    def __init__(self, seed, name):
+        self._random = random.Random(f"{seed}/{name}")  # noqa: S311  # no secret
+
+    def up_to(self, most):
+        """A source of errors."""
+        return lambda: (self._random.random() + self._random.random() - 1) * most
+
+
+class Simulation:
+    """A scenario from its start.
+
+    `advance` lets one step of time pass and gives what is sent; `receive`, `start` and `cancel` take what comes in
+    meanwhile. `ended` says that the script is over, `reached` that the scenario's goal has been.
+    """
+
+    def __init__(self, scenario, seed=0):
+        self.scenario = scenario
+        self.world = scenario.world()
+        noise = Noise(seed, scenario.name)
+        self.devices = [Lidar(noise.up_to(0.005)), Odometry(), *scenario.devices(self.world, noise)]
+        #: Topics that anything is sent to, and that anything is heard on, with their types; actions likewise.
+        self.says = {topic: kind for each in self.devices for topic, kind in each.says.items()}
+        self.says.update(dict.fromkeys(BUTTONS, EMPTY))
+        self.says.update(scenario.people)
+        self.hears = {topic: kind for each in self.devices for topic, kind in each.hears.items()}
+        self.serves = {action: kind for each in self.devices for action, kind in each.serves.items()}
+        self.stopped = False
+        self.ended = False
+        self.reached_at = None
+        self.happenings = []
+        #: What crossed the topics, and where the robot was, for whoever judges the run.
+        self.record = []
+        #: The ways of the robot, the ball and the person.
+        self.ways = {"robot": [], "ball": [], "person": []}
+        #: Every pillar that stood somewhere, also for a while.
+        self.pillars = []
+        self._said = []
+        self._script = scenario.script(self)
+        self._waiting = None
+        self._wait_until(next(self._script))
+        self._trace()
+
+    @property
+    def time(self):
+        """Seconds since the start."""
+        return self.world.time
+
+    @property
+    def reached(self):
+        """Whether the goal has been reached."""
+        return self.reached_at is not None
+
+    def device(self, kind):
+        """The device of that class."""
+        return next(each for each in self.devices if isinstance(each, kind))
+
+    def advance(self):
+        """One step of time; the messages and the news of goals that are sent after it."""
+        for each in self.devices:
+            each.act(self.world)
+        self.world.step()
+        for each in self.devices:
+            for words in each.news():
+                self.happens(words)
+        self._play()
+        news = self._sense()
+        if self._due(POSE_PERIOD):
+            self._trace()
+        if not self.reached and self.scenario.reached(self):
+            self.reached_at = self.time
+            self.happens("the goal is reached")
+        return [*_taken(self._said), *news]
+
+    def _sense(self):
+        """Lets the devices speak whose turn it is; the news of goals."""
+        for each in self.devices:
+            if self._due(each.period):
+                for topic, data in each.say(self.world):
+                    self.say(topic, data)
+        news = [
+            GoalNews(action, *event) for each in self.devices for action in each.serves for event in _taken(each.events)
+        ]
+        for each in news:
+            if each.what != "feedback":
+                self._note(each.action, each.what)
+        return news
+
+    def receive(self, topic, data):
+        """Takes a command from a controller, or a button that somebody else presses."""
+        self._note(topic, data)
+        self._deliver(topic, data)
+
+    def start(self, action, goal, data):
+        """Takes a goal, known by `goal` from now on; whether it is accepted."""
+        self._note(action, data)
+        return self._server(action).accept(self.world, goal, data)
+
+    def cancel(self, action, goal):
+        """Asks to end a goal; whether it will."""
+        self._note(action, "cancel")
+        return self._server(action).cancel(self.world, goal)
+
+    def say(self, topic, data):
+        """Sends a message, which the world's own devices hear, too."""
+        self._said.append(Message(topic, data))
+        self._note(topic, data)
+        if topic in self.hears:
+            self._deliver(topic, data)
+
+    def press(self, button):
+        """Someone presses a button."""
+        self.stopped = button == "/stop"
+        self.happens("stop is pressed" if self.stopped else "continue is pressed")
+        self.say(button, {})
+
+    def happens(self, words):
+        """Keeps for the picture what happens now."""
+        self.happenings.append(Happening(self.time, self.world.pose.x, self.world.pose.y, words))
+        self._note("happening", words)
+
+    def _deliver(self, topic, data):
+        for each in self.devices:
+            if topic in each.hears:
+                each.hear(self.world, topic, data)
+
+    def _server(self, action):
+        return next(each for each in self.devices if action in each.serves)
+
+    def _due(self, period):
+        return self.world.steps % round(period / STEP) == 0
+
+    def _play(self):
+        """Goes on with the script where what it waits for has come."""
+        while not self.ended and self._waiting():
+            try:
+                self._wait_until(next(self._script))
+            except StopIteration:
+                self.ended = True
+
+    def _wait_until(self, wanted):
+        """A script waits for so many seconds, or until something holds."""
+        if callable(wanted):
+            self._waiting = wanted
+        else:
+            until = self.time + wanted - STEP / 2
+            self._waiting = lambda: self.time >= until
+
+    def _trace(self):
+        world = self.world
+        self.pillars += [each for each in world.pillars if each not in self.pillars]
+        self.ways["robot"].append((world.pose.x, world.pose.y))
+        for name, thing in (("ball", world.ball), ("person", world.person)):
+            if thing:
+                self.ways[name].append((thing.x, thing.y))
+        self._note("pose", self.scenario.pose(world))
+
+    def _note(self, topic, data):
+        if topic == "/scan":
+            # How near the nearest thing ahead is, which is what controllers ask for; None where there is nothing.
+            nearest = min(data["ranges"][:21] + data["ranges"][-20:])
+            data = nearest if nearest < math.inf else None
+        if topic != "/odom":
+            self.record.append({"time": round(self.time, 3), "topic": topic, "data": data})
+
+
+def _taken(items):
+    """What is in a list, which is empty then."""
+    taken, items[:] = list(items), []
+    return taken

@@ -1,0 +1,70 @@
+"""A laser scan that feeds several enums is seen whole: the maze solver never turns on half of it."""
+
+from __future__ import annotations
+
+import json
+import math
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from examples.simulator.engine import connected, load, model_of
+from examples.simulator.scenarios import SCENARIOS
+from examples.simulator.simulation import Message, Simulation
+from robosc.runtime.controller import Controller
+from tests.scenarios.rules.books import BOOKS
+from tests.scenarios.runs import played, run_of
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from robosc.metamodel import rosgraph
+
+
+class HalfSeeing(Controller):
+    """A controller in which each event of a message is a batch of its own: what a node must not be."""
+
+    def receive(self, subscription: rosgraph.Subscription, message: Any) -> None:
+        for reception in subscription.receptions:
+            self._batch(reception.event, subscription.topic, reception.inputs, message)
+
+
+def on_half(log: list[dict[str, Any]]) -> list[str]:
+    """The violations that say that something was sent while only a part of a scan had been heard."""
+    return [each for each in BOOKS["maze_solver"]().violations(log) if "half of a scan" in each]
+
+
+def test_nothing_is_sent_between_the_events_of_a_scan() -> None:
+    assert on_half(run_of("maze_solver").log) == []
+
+
+def test_a_controller_that_breaks_scans_up_is_noticed() -> None:
+    assert on_half(played("maze_solver", kind=HalfSeeing).log) != []
+
+
+@pytest.mark.parametrize(
+    ("kind", "turn"), [pytest.param(Controller, "right", id="whole"), pytest.param(HalfSeeing, "left", id="half")]
+)
+def test_a_corner_that_comes_up_together_with_a_wall_ahead(kind: type[Controller], turn: str, tmp_path: Path) -> None:
+    """Whole, the second scan says: round the corner to the right. Its first part, with the old rest, says: left."""
+    simulation = Simulation(SCENARIOS["maze_solver"])
+    log = tmp_path / "events.jsonl"
+    node = connected(simulation, load(model_of(simulation.scenario)), log, kind)
+    along, corner = [5.0] * 360, [5.0] * 360
+    # Nothing can be said of the way ahead: the robot stands.
+    along[0] = math.nan
+    for ray in (270, 240, 225):
+        along[ray] = 0.5
+    corner[0] = 0.3
+    corner[225] = 0.5
+    simulation.world.steps = 10
+    node.work()  # the first tick
+    for ranges in (along, corner):
+        node.take(Message("/scan", {"ranges": ranges}))
+        node.work()
+    simulation.world.steps = 20
+    node.work()
+    events = [json.loads(line)["event"] for line in log.read_text().splitlines()]
+    assert [each for each in events if "rotate" in each and each.startswith("message_")] == [
+        f"message_rotate_{turn}.c_trigger"
+    ]

@@ -1,0 +1,31 @@
+"""The pictures in the docs are those of the runs, and are shown."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+
+from examples.simulator.picture import picture
+from examples.simulator.scenarios import SCENARIOS
+from tests.scenarios.runs import run_of
+
+ROOT = Path(__file__).parents[2]
+EACH = pytest.mark.parametrize("name", SCENARIOS)
+
+
+@EACH
+def test_pictures_are_up_to_date(name: str, golden) -> None:
+    golden(ROOT / "docs" / "simulator" / f"{name}.svg", picture(run_of(name).simulation))
+    assert f"](simulator/{name}.svg)" in (ROOT / "docs" / "simulator.md").read_text()
+    assert f"](../../docs/simulator/{name}.svg)" in (ROOT / "examples" / name / "README.md").read_text()
+
+
+@EACH
+def test_a_picture_shows_all_that_happened(name: str) -> None:
+    run = run_of(name)
+    drawing = ElementTree.fromstring(picture(run.simulation))  # noqa: S314  # our own
+    texts = [each.text or "" for each in drawing.iter("{http://www.w3.org/2000/svg}text")]
+    assert [each.words for each in run.simulation.happenings if not any(each.words in text for text in texts)] == []
+    assert len(list(drawing.iter("{http://www.w3.org/2000/svg}line"))) == len(run.simulation.world.walls) + 1

@@ -1,0 +1,24 @@
+"""The world has what a scenario's controller is connected to (thesis tables 6.1 to 6.7), with the same types."""
+
+from __future__ import annotations
+
+import pytest
+
+from examples.simulator.engine import load, model_of
+from examples.simulator.scenarios import SCENARIOS
+from examples.simulator.simulation import Simulation
+
+
+@pytest.mark.parametrize("name", SCENARIOS)
+def test_every_topic_is_there(name: str) -> None:
+    simulation = Simulation(SCENARIOS[name])
+    graph = load(model_of(SCENARIOS[name])).rosgraph
+    wanted = [
+        (simulation.says, [(each.topic, each.interface) for each in graph.subscriptions]),
+        (simulation.hears, [(each.topic, each.interface) for each in graph.publishers]),
+        (simulation.serves, [(each.identifier, each.interface) for each in graph.actionClients]),
+    ]
+    assert sum(len(connections) for _, connections in wanted) >= 5
+    for offered, connections in wanted:
+        for topic, interface in connections:
+            assert offered[topic] == f"{interface.package}/{interface.type}"
