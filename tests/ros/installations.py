@@ -28,7 +28,7 @@ class Ros:
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             text=True,
-            timeout=600,
+            timeout=3600,
             check=False,
         )
         assert done.returncode == 0, done.stdout[-4000:]
@@ -56,7 +56,17 @@ def find_ros1() -> Found:
             return found
         environment, prefix = sourced
         python = shutil.which("python3", path=environment["PATH"]) or "python3"
-    needed = ["geometry_msgs", "roslaunch", "rospy", "sensor_msgs", "std_msgs"]
+    needed = [
+        "actionlib",
+        "geometry_msgs",
+        "message_generation",
+        "roslaunch",
+        "rospy",
+        "rostest",
+        "sensor_msgs",
+        "std_msgs",
+        "std_srvs",
+    ]
     found.missing += [f"no {each}" for each in needed if not (prefix / "share" / each / "package.xml").exists()]
     found.missing += [f"no {each}" for each in ("catkin_make", "cmake", "g++") if not _has(each, environment)]
     if not found.missing:

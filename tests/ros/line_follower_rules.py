@@ -78,7 +78,8 @@ def late_moves(record: Sequence[Entry], allowance: float, front: float) -> list[
     for entry in record:
         topic, data, time = entry["topic"].removeprefix("/"), entry["data"], entry["time"]
         if topic == "cmd_vel":
-            if data != [0.0, 0.0] and forbidden_since is not None and time - forbidden_since > allowance:
+            moves = data["linear"]["x"] or data["angular"]["z"]
+            if moves and forbidden_since is not None and time - forbidden_since > allowance:
                 found.append(f"at {time}: {data}, forbidden since {forbidden_since}")
             continue
         inputs.hear(topic, (data is None or data > front) if topic == "scan" else data)

@@ -21,21 +21,23 @@ class Processes:
     """Starts programs, each with a log file and as a process group of its own; at the end all are stopped."""
 
     def __init__(self, environment: dict[str, str], logs: Path) -> None:
-        self._environment = environment
+        self.environment = environment
         self._logs = logs
         self._started: list[tuple[str, subprocess.Popen[bytes]]] = []
 
-    def start(self, name: str, command: Sequence[str | Path]) -> subprocess.Popen[bytes]:
-        """Starts a program; `name` names its log."""
+    def start(self, name: str, command: Sequence[str | Path], *, steered: bool = False) -> subprocess.Popen[bytes]:
+        """Starts a program; `name` names its log. One that is steered has pipes as standard input and output."""
         with (self._logs / f"{name}.log").open("wb") as log:
             process = subprocess.Popen(
                 [str(each) for each in command],
-                env=self._environment,
+                env=self.environment,
                 cwd=self._logs,
-                stdin=subprocess.DEVNULL,
-                stdout=log,
-                stderr=subprocess.STDOUT,
+                stdin=subprocess.PIPE if steered else subprocess.DEVNULL,
+                stdout=subprocess.PIPE if steered else log,
+                stderr=log if steered else subprocess.STDOUT,
                 start_new_session=True,
+                # Whoever runs the tests may ignore it (nohup); a program in a terminal does not.
+                preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_DFL),  # noqa: PLW1509
             )
         self._started.append((name, process))
         return process

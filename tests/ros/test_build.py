@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from tests.ros.conftest import Workspace
+    from tests.ros.workspaces import Workspace
 
 
 def test_builds_without_warnings(workspace: Workspace) -> None:

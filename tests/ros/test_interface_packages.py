@@ -60,8 +60,8 @@ def test_examples_fit(model: Path) -> None:
         # A pose estimate holds the pose one level deeper; nobody reads it.
         ("obstacle-navigation", [("interface-unused", 20), ("interface-unused", 21)]),
         ("simple-navigation", [("interface-unused", 20), ("interface-unused", 21)]),
-        # The detector counts pixels.
-        ("person-follower", [("interface-type", 10), ("interface-type", 11), ("interface-type", 12)]),
+        # The detector counts pixels, the model has doubles: what comes in may be converted.
+        ("person-follower", []),
     ],
 )
 def test_what_the_printed_listings_say_of_ros_types(name: str, expected: list[tuple[str, int]]) -> None:

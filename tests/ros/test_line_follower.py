@@ -1,7 +1,7 @@
 """The line follower drives: a generated package, built by the platform's own tool, on real topics.
 
-Times and happenings are those of the example's demonstration. How fast the machine is does not matter: simulated time
-waits for the controller.
+Happenings are those of the simulator's scenario. How fast the machine is does not matter: simulated time waits for the
+controller.
 """
 
 from __future__ import annotations
@@ -20,39 +20,44 @@ if TYPE_CHECKING:
 
 #: Seconds for a message on its way and for the ticks that answer it.
 TRANSPORT = 0.5
-OBSTACLE, CLEAR, STOP, CONTINUE, COVER, UNCOVER, END = 30.0, 36.0, 39.0, 42.0, 45.0, 47.0, 50.0
+OBSTACLE, CLEAR = "an obstacle is put on the line", "the obstacle is taken away"
+STOP, CONTINUE = "stop is pressed", "continue is pressed"
+COVER, UNCOVER = "the line is covered", "the line is uncovered"
+END = "the goal is reached"
 
 
-def test_follows_the_line_for_thirty_seconds(drive: Drive) -> None:
-    poses = drive.poses(end=OBSTACLE)
-    assert len(poses) > 290
-    assert max(each["offset"] for each in poses) < 0.1
-    assert max(each["offset"] for each in poses[50:]) < 0.05
-    assert poses[-1]["travelled"] > 0.2 * OBSTACLE * 0.95
-    assert all(linear == 0.2 for _, linear, _ in drive.commands(1.0, OBSTACLE))
+def test_follows_the_line(drive: Drive) -> None:
+    until = drive.when(OBSTACLE)
+    poses = drive.poses(end=until)
+    assert len(poses) > 45
+    assert max(each["off_line"] for each in drive.poses()) < 0.1
+    assert max(each["off_line"] for each in drive.poses(4.0)) < 0.06
+    assert poses[-1]["travelled"] > 0.2 * until * 0.9
+    assert all(linear == 0.2 for _, linear, _ in drive.commands(1.0, until))
 
 
 def test_halts_for_the_obstacle_and_goes_on_when_it_is_gone(drive: Drive) -> None:
-    waiting = drive.commands(OBSTACLE + 4.0, CLEAR)
+    start, end = drive.when(OBSTACLE), drive.when(CLEAR)
+    waiting = drive.commands(start + 4.0, end)
     assert waiting
     assert all(command[1:] == (0.0, 0.0) for command in waiting)
-    gaps = [each["gap"] for each in drive.poses(OBSTACLE + 0.1, CLEAR)]
-    assert 0.2 < min(gaps) < 0.4
-    assert moves(drive, CLEAR + TRANSPORT, STOP)
+    gaps = [each["gap"] for each in drive.poses(start + 0.1, end)]
+    assert 0.15 < min(gaps) < 0.4
+    assert moves(drive, end + TRANSPORT, drive.when(STOP))
 
 
 def test_halts_for_the_stop_button_until_continue(drive: Drive) -> None:
-    stopped = drive.commands(STOP + TRANSPORT, CONTINUE)
+    stopped = drive.commands(drive.when(STOP) + TRANSPORT, drive.when(CONTINUE))
     assert stopped
     assert all(command[1:] == (0.0, 0.0) for command in stopped)
-    assert moves(drive, CONTINUE + TRANSPORT, COVER)
+    assert moves(drive, drive.when(CONTINUE) + TRANSPORT, drive.when(COVER))
 
 
 def test_halts_without_a_line(drive: Drive) -> None:
-    blind = drive.commands(COVER + TRANSPORT, UNCOVER)
+    blind = drive.commands(drive.when(COVER) + TRANSPORT, drive.when(UNCOVER))
     assert blind
     assert all(command[1:] == (0.0, 0.0) for command in blind)
-    assert moves(drive, UNCOVER + TRANSPORT, END)
+    assert moves(drive, drive.when(UNCOVER) + TRANSPORT, drive.when(END) - 2.0)
 
 
 def test_moves_only_in_states_that_allow_it(drive: Drive) -> None:
@@ -84,7 +89,8 @@ def test_reports_state_and_definition(drive: Drive) -> None:
     assert sum(event == "message_stop.u_response" for each in states for event in each["transitions"]) == 1
     assert all(each["transitions"] for each in states[1:])
     # At most once a tick, and nearly always: in every tick something is sent.
-    assert END * 10 * 0.9 < len(states) <= END * 10 + 2
+    ticks = drive.record[-1]["time"] * 10
+    assert ticks * 0.9 < len(states) <= ticks + 2
 
 
 def test_what_it_tells_fits_the_schemas(drive: Drive) -> None:

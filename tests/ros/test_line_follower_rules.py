@@ -15,8 +15,11 @@ def told(topic: str, value: Any = None) -> dict[str, Any]:
 
 
 def sent(event: str, linear: float, angular: float) -> dict[str, Any]:
-    value = {"linear": {"x": linear}, "angular": {"z": angular}}
-    return {"time": 1.0, "direction": "out", "event": event, "data": {"value": value}}
+    return {"time": 1.0, "direction": "out", "event": event, "data": {"value": velocity(linear, angular)}}
+
+
+def velocity(linear: float, angular: float) -> dict[str, Any]:
+    return {"linear": {"x": linear}, "angular": {"z": angular}}
 
 
 READY = [told("correction", 25.0), told("scan", "clear")]
@@ -51,11 +54,11 @@ def test_objects_to_moves_long_after_they_were_forbidden() -> None:
     record = [
         {"time": 1.0, "topic": "/correction", "data": 3.0},
         {"time": 1.0, "topic": "/scan", "data": None},
-        {"time": 2.0, "topic": "/cmd_vel", "data": [0.2, 0.1]},
+        {"time": 2.0, "topic": "/cmd_vel", "data": velocity(0.2, 0.1)},
         {"time": 3.0, "topic": "/scan", "data": 0.4},
-        {"time": 3.2, "topic": "/cmd_vel", "data": [0.2, 0.1]},
-        {"time": 4.0, "topic": "/cmd_vel", "data": [0.0, 0.0]},
+        {"time": 3.2, "topic": "/cmd_vel", "data": velocity(0.2, 0.1)},
+        {"time": 4.0, "topic": "/cmd_vel", "data": velocity(0.0, 0.0)},
     ]
     assert late_moves(record, 0.5, front=0.5) == []
-    record[-1]["data"] = [0.2, 0.1]
+    record[-1]["data"] = velocity(0.2, 0.1)
     assert len(late_moves(record, 0.5, front=0.5)) == 1

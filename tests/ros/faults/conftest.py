@@ -1,0 +1,122 @@
+"""Nodes of `scout.rscd`, compiled or run from the model, over ROS 1 or 2; the world and the server that they meet."""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from tests.ros import running, workspaces
+from tests.ros.faults.partners import Peer, Scout
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+HERE = Path(__file__).parent
+MODEL = HERE / "scout.rscd"
+PACKAGE = "scout_controller"
+
+
+@dataclass(frozen=True)
+class Compiled:
+    """A node that was generated and built."""
+
+    place: workspaces.Workspace
+
+    def command(self, *parameters: str) -> list[str | Path]:
+        """Starts the node, as one process, with parameters (`name:=value`)."""
+        if self.place.ros.version == 2:
+            return self.place.node(PACKAGE, *parameters)
+        executable = self.place.folder / f"devel/lib/{PACKAGE}/{PACKAGE}"
+        # What it prints is to be seen at once, in a file, too.
+        by_line = ["env", "ROSCONSOLE_STDOUT_LINE_BUFFERED=1"]
+        return [*by_line, executable, f"__name:={PACKAGE}", *(f"_{each}" for each in parameters)]
+
+
+@dataclass(frozen=True)
+class Running:
+    """A node straight from the model."""
+
+    place: running.Runner
+
+    def command(self, *parameters: str) -> list[str | Path]:
+        """Starts the node, as one process, with parameters (`name:=value`)."""
+        return [*self.place.command(MODEL, *parameters)]
+
+
+Controller = Compiled | Running
+
+
+@pytest.fixture(scope="session", params=["ros1", "run-ros1", "run-ros2", "ros2"])
+def controller(request: pytest.FixtureRequest) -> Controller:
+    match request.param:
+        case "ros1":
+            return Compiled(request.getfixturevalue("ros1_workspace"))
+        case "ros2":
+            return Compiled(request.getfixturevalue("ros2_workspace"))
+        case _:
+            return Running(request.getfixturevalue(request.param.replace("-", "_")))
+
+
+@contextmanager
+def scouting(controller: Controller, folder: Path, *parameters: str, simulated: bool = False) -> Iterator[Scout]:
+    """A node under way, among its peers."""
+    ros = controller.place.ros
+    peers: list[Peer] = []
+    with workspaces.middleware(controller.place, folder, simulated=simulated) as processes:
+
+        def meet(name: str) -> Peer:
+            peers.append(Peer(processes, ros.python, ros.version, name))
+            return peers[-1]
+
+        events = folder / "events.jsonl"
+        yield Scout(
+            ros.version,
+            processes,
+            lambda name: processes.start(name, controller.command(f"event_log:={events}", *parameters)),
+            meet,
+            folder,
+            events,
+        )
+        for each in peers:
+            # Nobody waits for their farewell.
+            each.process.kill()
+
+
+@pytest.fixture(scope="session")
+def under_way(controller: Controller, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Scout]:
+    """One node for all faults that it outlives: it reports a silent sensor, and drives on."""
+    with scouting(controller, tmp_path_factory.mktemp("faults") / "run") as scout:
+        yield scout.ready()
+
+
+@pytest.fixture
+def scout(under_way: Scout, request: pytest.FixtureRequest) -> Iterator[Scout]:
+    """The node, at rest, driving."""
+    under_way.rest()
+    failed = request.session.testsfailed
+    yield under_way
+    if request.session.testsfailed > failed:
+        # What this test has left on the server is nothing for the next.
+        under_way.kill_server()
+        under_way.serve()
+        under_way.nothing(1.0)
+
+
+@pytest.fixture(scope="session")
+def with_guard(controller: Controller, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Scout]:
+    """A node that stops when its sensor is silent, and for tests that end it."""
+    with scouting(controller, tmp_path_factory.mktemp("guarded") / "run", "watchdog_stops:=true") as scout:
+        yield scout.ready()
+
+
+@pytest.fixture
+def guarded(with_guard: Scout) -> Scout:
+    """That node; another one where a test has ended it."""
+    if with_guard.process.poll() is not None:
+        with_guard.restart()
+        with_guard.ready()
+    return with_guard

@@ -1,0 +1,187 @@
+"""The robot's side of a node under test: publishes, listens, serves, well or badly, as it is told.
+
+python3 peer.py 1|2 NAME
+
+Reads commands from its standard input, a line of JSON each, such as `{"do": "silence", "topic": "/scan"}`; the values
+of `do` are the public methods of `Peer`. Each is answered with a line `{"did": ..., "result": ...}`. All else that
+happens is a line, too: `{"heard": topic, "at": seconds, "data": ...}`, `{"called": number}`, `{"goal": number}`,
+`{"cancel": number}`, `{"sent": topic, "count": ...}`. Ends with its input.
+"""
+
+import importlib
+import json
+import os
+import sys
+import threading
+import time
+import traceback
+from pathlib import Path
+from queue import Queue
+
+sys.path.append(str(Path(__file__).parents[1]))
+from topics import fill, plain, type_of
+
+PATIENCE = 60.0
+
+
+class Peer:
+    """One robot-side node. Numbers count the calls and the goals that came in, from 0."""
+
+    def __init__(self, version, name, say):
+        self.say = say
+        self.ros = importlib.import_module(f"ros{version}_peer").Ros(name)
+        self.publishers = {}
+        self.repeating = {}
+        self.calls = []
+        self.goals = []
+        self.at_once = {}
+        self.simulated = None
+
+    def listen(self, topic, kind, latched=False):
+        def tell(message):
+            self.say(heard=topic, at=time.monotonic(), data=plain(message))
+
+        self.ros.listen(topic, type_of(kind), tell, latched)
+
+    def advertise(self, topic, kind, **qos):
+        self.publishers[topic] = (type_of(kind), self.ros.publisher(topic, type_of(kind), qos))
+
+    def withdraw(self, topic):
+        self.ros.withdraw(self.publishers.pop(topic)[1])
+
+    def listeners(self, topic):
+        return self.ros.listeners(self.publishers[topic][1])
+
+    def publish(self, topic, fields):
+        kind, publisher = self.publishers[topic]
+        publisher.publish(fill(kind(), fields))
+
+    def repeat(self, topic, fields, hz):
+        """Publishes a message again and again, in the place of the one before."""
+        started = topic in self.repeating
+        self.repeating[topic] = (fields, 1 / hz)
+        if not started:
+            threading.Thread(target=self._repeat, args=[topic], daemon=True).start()
+
+    def _repeat(self, topic):
+        while topic in self.repeating:
+            fields, period = self.repeating[topic]
+            self.publish(topic, fields)
+            time.sleep(period)
+
+    def silence(self, topic):
+        del self.repeating[topic]
+        time.sleep(0.2)
+
+    def flood(self, topic, hz, seconds):
+        """Publishes numbers that count from 1; says when it is done how many they were."""
+        threading.Thread(target=self._flood, args=[topic, hz, seconds], daemon=True).start()
+
+    def _flood(self, topic, hz, seconds):
+        start = time.monotonic()
+        sent = 0
+        while sent < hz * seconds:
+            due = min(hz * seconds, int((time.monotonic() - start) * hz))
+            for number in range(sent + 1, due + 1):
+                self.publish(topic, {"data": number})
+            sent = due
+            time.sleep(0.002)
+        self.say(sent=topic, count=sent, seconds=time.monotonic() - start)
+
+    def clock(self, seconds):
+        """Publishes simulated time, from now on from a certain time; None: time stands still."""
+        if "/clock" not in self.publishers:
+            self.advertise("/clock", "rosgraph_msgs/Clock")
+            threading.Thread(target=self._clock, daemon=True).start()
+        self.simulated = None if seconds is None else (seconds, time.monotonic())
+
+    def _clock(self):
+        kind, publisher = self.publishers["/clock"]
+        now = 0.0
+        while True:
+            if self.simulated:
+                now = self.simulated[0] + time.monotonic() - self.simulated[1]
+            publisher.publish(kind(clock=self.ros.time(now)))
+            time.sleep(0.005)
+
+    def serve(self, name, kind):
+        """Offers a service. What comes of a call says `answer`, or beforehand `answer_at_once`."""
+        self.ros.serve(name, kind, self._called)
+
+    def _called(self, request):
+        number, answers = len(self.calls), Queue()
+        self.calls.append(answers)
+        self.say(called=number, at=time.monotonic(), data=plain(request))
+        return self.at_once.get("answer") or answers.get(timeout=PATIENCE)
+
+    def answer_at_once(self, fields):
+        """The answer to all calls from now on; None: they wait."""
+        self.at_once["answer"] = fields
+
+    def answer(self, number, fields):
+        """Answers a call; without fields it fails."""
+        self.calls[number].put(fields)
+
+    def act(self, name, kind):
+        """Offers an action. What comes of a goal say `accept`, `reject`, `progress`, `end`."""
+        self.ros.act(name, kind, self._asked, self._cancelled)
+
+    def _asked(self, goal, request):
+        goal.number = len(self.goals)
+        self.goals.append(goal)
+        goal.decision = Queue()
+        self.say(goal=goal.number, at=time.monotonic(), data=plain(request))
+        if self.at_once.get("accept"):
+            goal.decision.put(True)
+            threading.Thread(target=goal.end, args=["succeeded"], daemon=True).start()
+
+    def _cancelled(self, goal):
+        self.say(cancel=goal.number, at=time.monotonic())
+        return self.at_once.get("cancel", "grant")
+
+    def succeed_at_once(self, succeed):
+        """Whether all goals from now on are accepted and reached at once; else they wait."""
+        self.at_once["accept"] = succeed
+
+    def on_cancel(self, answer):
+        """What becomes of requests to cancel: `grant`, `ignore` (taken, but the goal goes on), `refuse`."""
+        self.at_once["cancel"] = answer
+
+    def decide(self, number, accept):
+        """Accepts or rejects a goal."""
+        self.goals[number].decision.put(accept)
+
+    def progress(self, number, fields):
+        """Sends feedback on a goal."""
+        self.goals[number].progress(fields)
+
+    def end(self, number, how):
+        """Ends a goal that was accepted: `succeeded`, `aborted`, `cancelled`."""
+        self.goals[number].end(how)
+
+
+def main(version, name):
+    lock = threading.Lock()
+
+    def say(**what):
+        line = json.dumps(what) + "\n"
+        with lock:
+            sys.stdout.write(line)
+            sys.stdout.flush()
+
+    peer = Peer(version, name, say)
+    say(did="start", result=None)
+    for line in sys.stdin:
+        command = json.loads(line)
+        do = command.pop("do")
+        try:
+            say(did=do, result=getattr(peer, do)(**command))
+        except Exception:  # the test says what it was
+            say(did=do, failed=traceback.format_exc())
+    peer.ros.stop()
+    # Threads that still publish are not waited for.
+    os._exit(0)
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -1,0 +1,108 @@
+"""What a peer does over ROS 1. The tests import it only by its name, in ROS 1's own Python."""
+
+import importlib
+import threading
+
+import actionlib
+import rospy
+from actionlib_msgs.msg import GoalStatus
+from topics import fill
+
+
+def _find(kind, folder):
+    package, name = kind.split("/")
+    return getattr(importlib.import_module(f"{package}.{folder}"), name)
+
+
+class Ros:
+    def __init__(self, name):
+        rospy.init_node(name, disable_signals=True)
+
+    def stop(self):
+        rospy.signal_shutdown("the test has ended")
+
+    def listen(self, topic, kind, callback, latched):  # noqa: ARG002
+        rospy.Subscriber(topic, kind, callback, queue_size=10000, tcp_nodelay=True)
+
+    def publisher(self, topic, kind, qos):  # noqa: ARG002
+        return rospy.Publisher(topic, kind, queue_size=50000, tcp_nodelay=True)
+
+    def withdraw(self, publisher):
+        publisher.unregister()
+
+    def listeners(self, publisher):
+        return publisher.get_num_connections()
+
+    def time(self, seconds):
+        return rospy.Time.from_sec(seconds)
+
+    def serve(self, name, kind, called):
+        service = _find(kind, "srv")
+
+        def handle(request):
+            answer = called(request)
+            return None if answer is None else fill(service._response_class(), answer)
+
+        rospy.Service(name, service, handle)
+
+    def act(self, name, kind, asked, cancelled):
+        goals = {}
+        types = [_find(kind + part, "msg") for part in ("Result", "Feedback")]
+
+        def begin(handle):
+            goal = goals[handle.get_goal_id().id] = _Goal(handle, *types)
+            goal.cancelled = cancelled
+            asked(goal, handle.get_goal())
+            threading.Thread(target=goal.decide, daemon=True).start()
+
+        server = actionlib.ActionServer(
+            name,
+            _find(kind + "Action", "msg"),
+            begin,
+            lambda handle: goals[handle.get_goal_id().id].cancel(),
+            auto_start=False,
+        )
+        server.start()
+
+
+class _Goal:
+    def __init__(self, handle, result, feedback):
+        self.handle = handle
+        self.result = result
+        self.feedback = feedback
+        self.accepted = threading.Event()
+
+    def decide(self):
+        if self.decision.get():
+            self.handle.set_accepted()
+            self.accepted.set()
+            if self.cancel_requested():
+                self.grant()
+        else:
+            self.handle.set_rejected(text="not now")
+
+    def cancel(self):
+        self.do = self.cancelled(self)
+        if self.cancel_requested():
+            self.grant()
+
+    def cancel_requested(self):
+        """Whether the goal was accepted and shall be cancelled."""
+        return self.handle.get_goal_status().status == GoalStatus.PREEMPTING
+
+    def grant(self):
+        if self.do == "grant":
+            self.handle.set_canceled()
+
+    def progress(self, fields):
+        self.accepted.wait()
+        self.handle.publish_feedback(fill(self.feedback(), fields))
+
+    def end(self, how):
+        self.accepted.wait()
+        set_end = {
+            "succeeded": self.handle.set_succeeded,
+            "aborted": self.handle.set_aborted,
+            "cancelled": self.handle.set_canceled,
+        }
+        set_end[how](self.result())

@@ -1,0 +1,148 @@
+"""What a peer does over ROS 2. The tests import it only by its name, in ROS 2's own Python."""
+
+import importlib
+import threading
+import time
+from queue import Queue
+
+import rclpy
+from action_msgs.srv import CancelGoal
+from rclpy.action import ActionServer, CancelResponse, GoalResponse
+from rclpy.callback_groups import ReentrantCallbackGroup
+from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.time import Time
+from topics import fill
+
+
+def _find(kind, folder):
+    package, name = kind.split("/")
+    return getattr(importlib.import_module(f"{package}.{folder}"), name)
+
+
+class Ros:
+    def __init__(self, name):
+        rclpy.init()
+        self.node = rclpy.create_node(name)
+        self.group = ReentrantCallbackGroup()
+        self.executor = MultiThreadedExecutor(num_threads=8)
+        self.executor.add_node(self.node)
+        self.actions = None
+        self.spinning = threading.Thread(target=self._spin, daemon=True)
+        self.spinning.start()
+
+    def _spin(self):
+        try:
+            self.executor.spin()
+        except ExternalShutdownException:
+            return
+
+    def stop(self):
+        self.executor.shutdown(timeout_sec=2)
+        self.spinning.join(2)
+        # Without this the others would see its servers for another 20 s.
+        if self.actions is not None:
+            self.actions.destroy()
+        self.node.destroy_node()
+        rclpy.shutdown()
+
+    def listen(self, topic, kind, callback, latched):
+        durability = DurabilityPolicy.TRANSIENT_LOCAL if latched else DurabilityPolicy.VOLATILE
+        self.node.create_subscription(kind, topic, callback, QoSProfile(depth=10000, durability=durability))
+        self.executor.wake()
+
+    def publisher(self, topic, kind, qos):
+        profile = QoSProfile(depth=qos.get("depth", 10))
+        if qos.get("best_effort"):
+            profile.reliability = ReliabilityPolicy.BEST_EFFORT
+        return self.node.create_publisher(kind, topic, profile)
+
+    def withdraw(self, publisher):
+        self.node.destroy_publisher(publisher)
+
+    def listeners(self, publisher):
+        return publisher.get_subscription_count()
+
+    def time(self, seconds):
+        return Time(nanoseconds=int(seconds * 1e9)).to_msg()
+
+    def serve(self, name, kind, called):
+        def handle(request, response):
+            return fill(response, called(request))
+
+        self.node.create_service(_find(kind, "srv"), name, handle, callback_group=self.group)
+        self.executor.wake()
+
+    def act(self, name, kind, asked, cancelled):
+        action = _find(kind, "action")
+        waiting = Queue()
+        goals = {}
+        cancel_all = self.node.create_client(CancelGoal, f"{name}/_action/cancel_goal", callback_group=self.group)
+
+        def decide(request):
+            goal = _Goal(action, cancel_all)
+            asked(goal, request)
+            if not goal.decision.get():
+                return GoalResponse.REJECT
+            waiting.put(goal)
+            return GoalResponse.ACCEPT
+
+        def accept(handle):
+            goal = goals[bytes(handle.goal_id.uuid)] = waiting.get()
+            goal.handle = handle
+            goal.accepted.set()
+            handle.execute()
+
+        def cancel(handle):
+            goal = goals[bytes(handle.goal_id.uuid)]
+            if goal.foreign:
+                return CancelResponse.ACCEPT
+            do = cancelled(goal)
+            if do == "grant":
+                goal.ends.put("cancelled")
+            return CancelResponse.REJECT if do == "refuse" else CancelResponse.ACCEPT
+
+        self.actions = ActionServer(
+            self.node,
+            action,
+            name,
+            execute_callback=lambda handle: goals[bytes(handle.goal_id.uuid)].run(),
+            goal_callback=decide,
+            handle_accepted_callback=accept,
+            cancel_callback=cancel,
+            callback_group=self.group,
+        )
+        self.executor.wake()
+
+
+class _Goal:
+    def __init__(self, action, cancel_all):
+        self.action = action
+        self.cancel_all = cancel_all
+        self.accepted = threading.Event()
+        self.ends = Queue()
+        self.foreign = False
+
+    def run(self):
+        how = self.ends.get()
+        if how == "cancelled":
+            while not self.handle.is_cancel_requested:
+                time.sleep(0.001)
+            self.handle.canceled()
+        elif how == "aborted":
+            self.handle.abort()
+        else:
+            self.handle.succeed()
+        return self.action.Result()
+
+    def progress(self, fields):
+        self.accepted.wait()
+        self.handle.publish_feedback(fill(self.action.Feedback(), fields))
+
+    def end(self, how):
+        self.accepted.wait()
+        if how == "cancelled" and not self.handle.is_cancel_requested:
+            # Only a client can have a goal cancelled: another one cancels all that there are.
+            self.foreign = True
+            self.cancel_all.call(CancelGoal.Request())
+        self.ends.put(how)

@@ -1,0 +1,95 @@
+"""Data that is short, no number, too large: what the node stores, and what it sends."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import pytest
+
+from tests.ros.faults.partners import PACE
+
+if TYPE_CHECKING:
+    from tests.ros.faults.partners import Moment, Scout
+
+
+def scan(scout: Scout, *ranges: float) -> Moment:
+    """Lets the lidar publish this alone; the time from which on the node knows nothing else."""
+    scout.world.do("repeat", topic="/scan", fields={"ranges": ranges}, hz=20)
+    scout.nothing(0.1)
+    seen = scout.variable("Lidar", "scans")
+    scout.until(lambda: scout.variable("Lidar", "scans") > seen + 4, "the scans arrive")
+    return scout.now()
+
+
+def test_array_too_short(scout: Scout) -> None:
+    before = scout.now()
+    since = scan(scout, 1.0)
+    scout.until_says(before, "/scan: there is no element 1 in an array of 1")
+    scout.until(lambda: len(scout.speeds(since)) > 5, "the robot drives on")
+    assert set(scout.speeds(since)) == {PACE}
+    assert scout.variable("Lidar", "pace") == PACE
+    # At most one report in five seconds.
+    assert scout.says(before, "/scan: there is no element 1 in an array of 1") == 1
+
+
+def test_array_empty(scout: Scout) -> None:
+    since = scan(scout)
+    scout.until(lambda: len(scout.speeds(since)) > 5, "the robot is told to halt")
+    assert set(scout.speeds(since)) == {0.0}
+    assert scout.variable("Lidar", "front") == "nothing"
+    assert scout.variable("Lidar", "pace") == PACE
+
+
+@pytest.mark.parametrize(
+    ("distance", "front", "speed"),
+    [(math.nan, "nothing", 0.0), (math.inf, "clear", PACE), (-math.inf, "obstructed", 0.0)],
+)
+def test_no_number_decides(scout: Scout, distance: float, front: str, speed: float) -> None:
+    since = scan(scout, distance, PACE)
+    scout.until(lambda: len(scout.speeds(since)) > 5, "the robot is told something")
+    assert scout.variable("Lidar", "front") == front
+    assert set(scout.speeds(since)) == {speed}
+
+
+def test_no_number_is_sent(scout: Scout) -> None:
+    before = scout.now()
+    for pace in (math.nan, math.inf, -math.inf):
+        since = scan(scout, 1.0, pace)
+        scout.nothing(0.4)
+        assert scout.speeds(since) == []
+        assert scout.events(since, "message_move.c_trigger") == []
+        assert len(scout.events(since, "message_view.u_response")) > 3
+    scout.until_says(before, "move is withheld: its linear.x would not be finite")
+
+
+@pytest.mark.parametrize(("sent", "stored"), [(30000, 100), (-32768, 0), (101, 100), (-1, 0), (100, 100), (42, 42)])
+def test_out_of_range(scout: Scout, sent: int, stored: int) -> None:
+    since = scout.now()
+    scout.send("/charge", data=sent)
+    scout.until_event(since, "message_charge.u_response")
+    reported = scout.now()
+    scout.until(lambda: scout.states(reported), "the state is reported")
+    assert scout.variable("Battery", "level") == stored
+
+
+@pytest.mark.parametrize(("sent", "stored", "cancelled"), [(-7, 0, False), (2, 2, False), (30000, 0, True)])
+def test_feedback_out_of_range(scout: Scout, sent: int, stored: int, cancelled: bool) -> None:
+    server = scout.serve()
+    since, heard = scout.now(), len(server.said)
+    scout.send("/travel_order", data=True)
+    number = server.wait("goal", heard)["goal"]
+    server.do("decide", number=number, accept=True)
+    server.do("progress", number=number, fields={"distance_remaining": math.nan, "number_of_recoveries": sent})
+    scout.until_event(since, "action_travel.u_feedback")
+    if cancelled:
+        # It counts as 3: the requirement on the action falls, and `on cancel` forgets the number.
+        server.wait("cancel", heard, value=number)
+        scout.until_event(since, "action_travel.c_cancel")
+    else:
+        server.do("end", number=number, how="succeeded")
+        scout.until_state("Navigator", "arrived")
+    reported = scout.now()
+    scout.until(lambda: scout.states(reported), "the state is reported")
+    assert scout.variable("Navigator", "recoveries") == stored
+    assert bool(scout.events(since, "action_travel.c_cancel")) is cancelled

@@ -1,0 +1,17 @@
+"""What the page on faults quotes, the tests look for; what they look for, `Scout.says` finds on the page."""
+
+from __future__ import annotations
+
+import re
+
+from tests.ros.faults.partners import DOCUMENTATION, HERE
+
+#: A quoted message: it begins with a topic, a service or an action, or says what is withheld.
+MESSAGE = re.compile(r"`((?:/\w+: |\w+ is withheld: )[^`]+)`")
+
+
+def test_all_quoted_messages_are_looked_for() -> None:
+    tests = "".join(each.read_text() for each in sorted(HERE.glob("test_*.py")))
+    quoted = MESSAGE.findall(DOCUMENTATION.read_text())
+    assert len(quoted) > 15
+    assert [each for each in quoted if f'"{each}"' not in tests] == []

@@ -1,0 +1,61 @@
+"""A node that ends while the robot drives, and one that comes back."""
+
+from __future__ import annotations
+
+import os
+import signal
+from typing import TYPE_CHECKING
+
+import pytest
+
+from tests.ros.faults.partners import PACE
+
+if TYPE_CHECKING:
+    from tests.ros.faults.partners import Peer, Scout
+
+
+def under_way(scout: Scout) -> tuple[Peer, int]:
+    """Sets off: the robot drives, and a goal is under way; the server and the number of the goal."""
+    scout.rest()
+    server = scout.serve()
+    heard = len(server.said)
+    scout.send("/travel_order", data=True)
+    number = server.wait("goal", heard)["goal"]
+    server.do("decide", number=number, accept=True)
+    scout.until_state("Navigator", "travelling")
+    return server, number
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_shutdown_while_driving(guarded: Scout, number: signal.Signals) -> None:
+    server, goal = under_way(guarded)
+    since = guarded.now()
+    guarded.until(lambda: PACE in guarded.speeds(since), "it drives")
+    os.kill(guarded.process.pid, number)
+    assert guarded.process.wait(10) == 0
+    server.wait("cancel", value=goal)
+    guarded.until(lambda: guarded.speeds(since)[-1] == 0.0, "the last command is to halt")
+    last = [each for each in guarded.log(since) if each["direction"] in ("out", "outside")][-1]
+    assert (last["event"], last["direction"]) == ("message_halt.c_trigger", "outside")
+    assert last["data"] == {"value": {"linear": {"x": 0.0}}}
+    assert "Traceback" not in guarded.output()
+
+
+def test_killed_and_restarted(guarded: Scout) -> None:
+    server, _ = under_way(guarded)
+    guarded.process.kill()
+    assert guarded.process.wait(10) == -signal.SIGKILL
+    guarded.nothing(0.5)
+    dead = guarded.now()
+    guarded.nothing(0.5)
+    assert guarded.commands(dead) == []
+    guarded.restart()
+    guarded.until(lambda: guarded.states(dead), "the new node reports")
+    # What it was told before is forgotten.
+    first = guarded.states(dead)[0]["components"]
+    assert first["Navigator"]["state"] == "home"
+    assert first["Operator"]["variables"] == {"wants_light": False, "wants_travel": False}
+    guarded.ready()
+    server.do("answer_at_once", fields={"success": True, "message": "again"})
+    guarded.send("/light", data=True)
+    guarded.until_state("Lamp", "lit")

@@ -1,0 +1,52 @@
+"""2,000 messages a second. `ROBOSC_FLOOD_SECONDS` says how long; see `benchmarks/flood.py`."""
+
+from __future__ import annotations
+
+import logging
+import os
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from tests.ros.faults.partners import Scout
+
+RATE = 2000
+SECONDS = int(os.environ.get("ROBOSC_FLOOD_SECONDS", "10"))
+#: On a busy machine a node may be late with what it must not lose.
+PATIENCE = SECONDS + 60
+
+
+def test_flood(scout: Scout) -> None:
+    server = scout.serve()
+    since, number = scout.now(), RATE * SECONDS
+    scout.world.do("flood", topic="/pulse", hz=RATE, seconds=SECONDS)
+    scout.nothing(2.0)
+    memory = scout.memory()
+    # What matters comes through in the middle of it: an answer, a result, and each message of the topics beside.
+    server.do("answer_at_once", fields={"success": True, "message": "seen"})
+    server.do("succeed_at_once", succeed=True)
+    scout.send("/light", data=True)
+    scout.send("/travel_order", data=True)
+    # Before the first stop, which would cancel it.
+    scout.until_state("Navigator", "arrived", PATIENCE)
+    for count in range(1, 6):
+        scout.send("/stop")
+        scout.until_event(since, "message_stop.u_response", count, PATIENCE)
+        scout.send("/continue")
+        scout.until_event(since, "message_continue.u_response", count, PATIENCE)
+    scout.until_state("Lamp", "lit", PATIENCE)
+    assert scout.world.wait("sent", since.world, seconds=PATIENCE)["count"] == number
+    scout.until(lambda: scout.variable("Encoder", "last") == number, "the last one arrives", seconds=PATIENCE)
+    grown = scout.memory() - memory
+    received = [each["data"]["value"] for each in scout.events(since, "message_pulse.u_response")]
+    assert all(earlier < later for earlier, later in pairwise(received))
+    assert scout.variable("Encoder", "pulses") == len(received)
+    assert scout.variable("Encoder", "total") == sum(received)
+    if scout.version == 2:
+        assert received == list(range(1, number + 1))
+    else:
+        # ROS 1 drops the oldest of a topic whose queue of ten is full.
+        assert len(received) > number / 2
+    assert len(scout.events(since, "message_stop.u_response")) == 5
+    assert grown < 10
+    logging.info("%d of %d received; %.0f MB, then %+.1f MB", len(received), number, memory, grown)

@@ -1,0 +1,62 @@
+"""A sensor that falls silent."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from tests.ros.faults.partners import PACE
+
+if TYPE_CHECKING:
+    from tests.ros.faults.partners import Scout
+
+
+def test_silent_without_watchdog(scout: Scout) -> None:
+    since = scout.now()
+    scout.send("/charge", data=50)
+    scout.nothing(1.0)
+    assert "silent" not in scout.output(since)
+    assert len(scout.speeds(since)) > 10
+
+
+def test_silent_with_watchdog(scout: Scout) -> None:
+    since = scout.now()
+    scout.world.do("silence", topic="/scan")
+    scout.until_says(since, "/scan: silent for 500 ms")
+    still = scout.now()
+    scout.nothing(0.7)
+    assert set(scout.speeds(still)) == {PACE}
+    scout.world.do("repeat", topic="/scan", fields={"ranges": [1.0, PACE]}, hz=20)
+    scout.until_says(since, "/scan: speaks again")
+    assert scout.says(since, "/scan: silent for 500 ms") == 1
+    assert "outside" not in {each["direction"] for each in scout.log(since)}
+
+
+def test_silent_with_watchdog_that_stops(guarded: Scout) -> None:
+    scout, server = guarded, guarded.serve()
+    scout.rest()
+    since, heard = scout.now(), len(server.said)
+    scout.send("/travel_order", data=True)
+    number = server.wait("goal", heard)["goal"]
+    server.do("decide", number=number, accept=True)
+    scout.until_state("Navigator", "travelling")
+    scout.world.do("silence", topic="/scan")
+    scout.until_says(since, "/scan: silent for 500 ms")
+    server.wait("cancel", heard, value=number)
+    # The server may hear of the cancel before the node has got to its last message.
+    scout.until(lambda: [each for each in scout.log(since) if each["direction"] == "outside"], "it sends onShutdown")
+    outside = [each for each in scout.log(since) if each["direction"] == "outside"]
+    assert [each["event"] for each in outside] == ["message_halt.c_trigger"]
+    tripped = scout.now()
+    # No requirement allows to halt here: it is sent all the same, and then nothing until the sensor speaks.
+    scout.until(lambda: scout.speeds(since)[-1] == 0.0, "the robot is told to halt")
+    halted = scout.now()  # what was sent before has arrived now
+    scout.send("/light", data=True)
+    scout.nothing(0.7)
+    assert [each["event"] for each in scout.log(tripped) if each["direction"] == "out"] == []
+    assert scout.speeds(halted) == []
+    scout.send("/light", data=False)
+    scout.send("/travel_order", data=False)
+    again = scout.now()
+    scout.world.do("repeat", topic="/scan", fields={"ranges": [1.0, PACE]}, hz=20)
+    scout.until_says(since, "/scan: speaks again")
+    scout.until(lambda: PACE in scout.speeds(again), "the robot drives again")

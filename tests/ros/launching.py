@@ -1,0 +1,76 @@
+"""Reads a launch file of ROS 2 without its launch system: a stand-in for what the generated files use of it."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass, field
+from types import ModuleType
+from typing import Any
+from unittest.mock import patch
+
+
+@dataclass(frozen=True)
+class Made:
+    """An action or a substitution: what it is, and what it was made of."""
+
+    kind: str
+    positional: tuple[Any, ...] = ()
+    named: dict[str, Any] = field(default_factory=dict)
+
+    def perform(self, context: dict[str, str]) -> str:
+        """The value of a launch configuration."""
+        return context[self.positional[0]]
+
+
+@dataclass(frozen=True)
+class Launched:
+    """What a launch file starts: the arguments with their values, and its actions, one after the other."""
+
+    arguments: dict[str, str]
+    actions: list[Made]
+
+    def of(self, kind: str) -> list[Made]:
+        """The actions of a kind, such as `Node`."""
+        return [each for each in self.actions if each.kind == kind]
+
+
+_MODULES = {
+    "launch": ["LaunchDescription"],
+    "launch.actions": ["DeclareLaunchArgument", "GroupAction", "IncludeLaunchDescription", "OpaqueFunction"],
+    "launch.launch_description_sources": ["AnyLaunchDescriptionSource"],
+    "launch.substitutions": ["LaunchConfiguration", "PathJoinSubstitution"],
+    "launch_ros": [],
+    "launch_ros.actions": ["Node", "SetRemap"],
+    "launch_ros.parameter_descriptions": ["ParameterValue"],
+    "launch_ros.substitutions": ["FindPackageShare"],
+}
+
+
+def launched(text: str, **arguments: str) -> Launched:
+    """What the launch file of this text starts when it is given these arguments."""
+    modules = {name: ModuleType(name) for name in _MODULES}
+    for name, members in _MODULES.items():
+        for member in members:
+            setattr(modules[name], member, _maker(member))
+    file: dict[str, Any] = {}
+    with patch.dict(sys.modules, modules):
+        exec(compile(text, "launch", "exec"), file)  # noqa: S102  # our own text
+        entities = file["generate_launch_description"]().positional[0]
+    declared = [each for each in entities if each.kind == "DeclareLaunchArgument"]
+    values = {each.positional[0]: each.named["default_value"] for each in declared} | arguments
+    return Launched(values, [each for entity in entities for each in _unfolded(entity, values)])
+
+
+def _maker(kind: str) -> Any:
+    return lambda *positional, **named: Made(kind, positional, named)
+
+
+def _unfolded(entity: Made, values: dict[str, str]) -> list[Made]:
+    match entity.kind:
+        case "OpaqueFunction":
+            inner = entity.named["function"](values)
+        case "GroupAction":
+            inner = entity.positional[0]
+        case _:
+            return [entity]
+    return [each for part in inner for each in _unfolded(part, values)]

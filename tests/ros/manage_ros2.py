@@ -1,0 +1,67 @@
+"""What an operator does with nodes of ROS 2: loads components, changes the state of managed nodes, reads parameters.
+
+python3 manage_ros2.py load PACKAGE NAMESPACE EVENT_LOG | unload NUMBER | change NODE TRANSITION | describe NODE NAME...
+
+Prints what came of it as JSON. The container is `/ComponentManager`; transitions are numbered as in lifecycle_msgs.
+"""
+
+import json
+import sys
+
+import rclpy
+from composition_interfaces.srv import LoadNode, UnloadNode
+from lifecycle_msgs.srv import ChangeState
+from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
+from rcl_interfaces.srv import DescribeParameters
+
+PATIENCE = 30.0
+
+
+def call(kind, service, request):
+    node = rclpy.create_node("operator")
+    client = node.create_client(kind, service)
+    if not client.wait_for_service(PATIENCE):
+        raise TimeoutError(f"nobody offers {service}")
+    answer = client.call_async(request)
+    rclpy.spin_until_future_complete(node, answer, timeout_sec=PATIENCE)
+    if not answer.done():
+        raise TimeoutError(f"{service} does not answer")
+    return answer.result()
+
+
+def load(package, namespace, event_log):
+    """The number of the component in its container, its name, and what is wrong with it."""
+    text = ParameterValue(type=ParameterType.PARAMETER_STRING, string_value=event_log)
+    request = LoadNode.Request(
+        package_name=package,
+        plugin_name=f"{package}::Controller",
+        node_namespace=namespace,
+        parameters=[Parameter(name="event_log", value=text)],
+    )
+    loaded = call(LoadNode, "/ComponentManager/_container/load_node", request)
+    return {"number": loaded.unique_id, "name": loaded.full_node_name, "error": loaded.error_message}
+
+
+def unload(number):
+    request = UnloadNode.Request(unique_id=int(number))
+    return call(UnloadNode, "/ComponentManager/_container/unload_node", request).success
+
+
+def change(node, transition):
+    request = ChangeState.Request()
+    request.transition.id = int(transition)
+    return call(ChangeState, f"{node}/change_state", request).success
+
+
+def describe(node, *names):
+    """Each parameter's description, and its range."""
+    found = call(DescribeParameters, f"{node}/describe_parameters", DescribeParameters.Request(names=names))
+    return {
+        each.name: [each.description, [[bounds.from_value, bounds.to_value] for bounds in each.integer_range]]
+        for each in found.descriptors
+    }
+
+
+if __name__ == "__main__":
+    rclpy.init()
+    sys.stdout.write(json.dumps(globals()[sys.argv[1]](*sys.argv[2:])))

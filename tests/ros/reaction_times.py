@@ -1,0 +1,157 @@
+"""Measures how soon a line follower stops: writes the seconds from what it was told to its first zero on /cmd_vel.
+
+python3 reaction_times.py 1|2 FILE --reason stop|obstacle [--times N] [--seed S] [--frozen SECONDS]
+
+A `stop` is a message on /stop, while somebody else sends the sensors' messages; an `obstacle` is a scan, in a stream
+of scans that is this program's. The robot drives each time, and the moment is random.
+
+In between it is measured what `echo.py` takes to answer. `--frozen` is for a node in simulated time whose period is
+so many seconds: after one tick the clock stands still, and what comes has not waited for a tick.
+"""
+
+import argparse
+import json
+import random
+import sys
+import time
+from pathlib import Path
+
+from topics import connect
+
+HZ = 30
+PATIENCE = 20.0
+#: Most seconds that the robot drives, a period of the control loop, and that it stands, before it is told again.
+DRIVES, STANDS = 0.1, 0.02
+CLEAR, BLOCKED = {"ranges": [2.0] * 360}, {"ranges": [0.3] * 360}
+
+
+class World:
+    """The line follower's surroundings: what it hears, and when it commands what."""
+
+    def __init__(self, version, scans):
+        self.version = version
+        self.topics = connect(version, "world")
+        self.commands = []
+        self.answers = []
+        self.topics.listen("/cmd_vel", "geometry_msgs/Twist", self._commanded)
+        self.topics.listen("/answer", "std_msgs/Int32", self._answered)
+        self.stop, self.go = (self.topics.publisher(each, "std_msgs/Empty") for each in ("/stop", "/continue"))
+        self.scan = self.topics.publisher("/scan", "sensor_msgs/LaserScan") if scans else None
+        self.correct = self.topics.publisher("/correction", "std_msgs/Float32") if scans else None
+        self.ask = self.topics.publisher("/question", "std_msgs/Int32")
+        self.seen = CLEAR
+        self._due = time.monotonic()
+
+    def _commanded(self, message):
+        self.commands.append((time.perf_counter(), message.linear.x))
+
+    def _answered(self, message):
+        self.answers.append((time.perf_counter(), message.data))
+
+    def live(self, seconds):
+        """Time passes; scans are sent when they are due."""
+        until = time.monotonic() + seconds
+        while True:
+            now = time.monotonic()
+            if self.scan and now >= self._due:
+                self.sense()
+            left = until - now
+            if left <= 0:
+                return
+            self.topics.receive(min(left, self._due - now) if self.scan and self._due > now else left)
+
+    def sense(self):
+        """What the sensors say now, and again a period later."""
+        self.scan(**self.seen)
+        self.correct(data=10.0)
+        self._due = time.monotonic() + 1 / HZ
+
+    def wait(self, condition, what):
+        """Lives until a condition holds."""
+        until = time.monotonic() + PATIENCE
+        while not condition():
+            if time.monotonic() > until:
+                sys.exit(f"{what}: not within {PATIENCE} s")
+            self.live(0.002)
+
+    def reaction(self, speed, act):
+        """Seconds from an act to the first command of a speed that is zero or not."""
+        since = len(self.commands)
+        began = time.perf_counter()
+        act()
+
+        def found():
+            return next((at for at, sent in self.commands[since:] if bool(sent) == speed), None)
+
+        self.wait(found, "the robot drives" if speed else "the robot stands")
+        return found() - began
+
+    def start(self):
+        """Waits until the robot drives."""
+        self.wait(self.topics.heard, "the node listens")
+        self.reaction(True, lambda: None)
+
+    def start_frozen(self, period):
+        """As `start`, with a clock that allows one tick and no more."""
+        send = self.topics.publisher("/clock", "rosgraph_msgs/Clock")
+
+        def clock(seconds):
+            send(clock={"secs": seconds} if self.version == "1" else {"sec": seconds})
+            self.live(0.1)
+
+        def ticked():
+            clock(1000 + 2 * period)
+            return self.commands
+
+        self.wait(lambda: clock(1000) or self.topics.heard(), "the node listens")
+        for _ in range(10):
+            clock(1000)
+        self.seen = BLOCKED
+        self.wait(ticked, "the node's first tick")
+        self.live(0.5)
+
+    def round_trip(self, number):
+        """Seconds until the echo answers."""
+        began = time.perf_counter()
+        self.ask(data=number)
+        self.wait(lambda: number in [each for _, each in self.answers[-3:]], "the echo answers")
+        return next(at for at, each in reversed(self.answers) if each == number) - began
+
+
+def measure(world, options):
+    """The reactions, and the round trips of the echo."""
+    chance = random.Random(options.seed)  # noqa: S311  # no secret
+    reactions, echoes = [], []
+    for number in range(options.times):
+        if options.reason == "obstacle":
+            world.seen = CLEAR
+            world.reaction(True, world.sense)
+        else:
+            world.reaction(True, world.go)
+        world.live(chance.uniform(0, DRIVES))
+        echoes.append(world.round_trip(number))
+        world.seen = BLOCKED if options.reason == "obstacle" else CLEAR
+        reactions.append(world.reaction(False, world.sense if options.reason == "obstacle" else world.stop))
+        world.live(chance.uniform(0, STANDS))
+    return {"reactions": reactions, "echoes": echoes}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("version", choices=["1", "2"])
+    parser.add_argument("file", type=Path)
+    parser.add_argument("--reason", choices=["stop", "obstacle"], required=True)
+    parser.add_argument("--times", type=int, default=20)
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--frozen", type=int)
+    options = parser.parse_args()
+    world = World(options.version, scans=options.reason == "obstacle")
+    if options.frozen:
+        world.start_frozen(options.frozen)
+    else:
+        world.start()
+    options.file.write_text(json.dumps(measure(world, options)))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,28 @@
+"""Sends what a line follower's sensors say where the line is in view and the way is clear, until interrupted.
+
+python3 sensors.py 1|2 HZ
+"""
+
+import sys
+
+from reaction_times import CLEAR
+from topics import connect
+
+
+def main(version, hz):
+    topics = connect(version, "sensors")
+    scan, correct = (
+        topics.publisher(topic, kind)
+        for topic, kind in (("/scan", "sensor_msgs/LaserScan"), ("/correction", "std_msgs/Float32"))
+    )
+    while True:
+        scan(**CLEAR)
+        correct(data=10.0)
+        topics.receive(1 / float(hz))
+
+
+if __name__ == "__main__":
+    try:
+        main(*sys.argv[1:])
+    except KeyboardInterrupt:
+        sys.exit(0)

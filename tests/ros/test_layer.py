@@ -1,0 +1,197 @@
+"""The supervisory layer between an unmodified controller and a robot, on a live graph.
+
+The model is `tests/m2t/layer/usher.rscd`, the controller `usher_driver/driver.py`, started by the generated launch file
+or with its remappings; the robot and the steps are those of `usher_trial.py`.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+from xml.etree import ElementTree
+
+import pytest
+from jsonschema import Draft202012Validator
+
+from robosc.resources import locate
+from tests.ros.launching import launched
+from tests.ros.running import Runner
+from tests.ros.workspaces import DRIVER, HERE, USHER, Workspace, middleware
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+FAILED = {"ros1": "failed", "ros2": False}
+
+
+@dataclass(frozen=True)
+class Trial:
+    """What reached whom in each step, what was blocked, and in which states the layer was; its event log."""
+
+    ros: str
+    steps: dict[str, Any]
+    log: list[dict[str, Any]]
+    output: str
+
+    def robot(self, step: str) -> list[Any]:
+        """What the robot received."""
+        received: list[Any] = self.steps[step]["robot"]
+        return received
+
+    def controller(self, step: str) -> list[Any]:
+        """What the controller was told."""
+        told: list[Any] = self.steps[step]["controller"]
+        return told
+
+    def blocked(self, step: str) -> list[tuple[str, str, list[str]]]:
+        """What was blocked, and why."""
+        return [(each["name"], each["reason"], each["because"]) for each in self.steps[step]["blocked"]]
+
+
+@pytest.fixture(scope="module", params=["ros1", "ros2", "run-ros1", "run-ros2"])
+def trial(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Trial:
+    """The trial, once, of the compiled layer and of the one run straight from its model."""
+    kind: str = request.param
+    nodes: Workspace | Runner
+    nodes = request.getfixturevalue(kind.replace("-", "_") if kind.startswith("run") else f"{kind}_workspace")
+    folder = tmp_path_factory.mktemp("layer") / "run"
+    results, log = folder / "results.json", folder / "events.jsonl"
+    version, python = nodes.ros.version, nodes.ros.python
+    with middleware(nodes, folder) as processes:
+        layer = processes.start("layer", command(nodes, f"event_log:={log}"))
+        if kind != "ros1":  # whose launch file has started it
+            processes.start("driver", [python, DRIVER / "driver.py", *remapped(version)])
+        script = processes.start("trial", [python, HERE / "usher_trial.py", str(version), results])
+        processes.wait_until(lambda: script.poll() is not None, "all steps are done", seconds=300)
+        assert script.returncode == 0, processes.logs()
+        assert processes.stop(layer) == 0
+    lines = [json.loads(line) for line in log.read_text(encoding="utf-8").splitlines()]
+    return Trial(f"ros{version}", json.loads(results.read_text()), lines, (folder / "layer.log").read_text())
+
+
+def command(nodes: Workspace | Runner, *parameters: str) -> Sequence[str | Path]:
+    """What starts the layer."""
+    if isinstance(nodes, Runner):
+        settings = USHER / "controller-config.json"
+        return nodes.command(USHER / "usher.rscd", *parameters, layer=True, configuration=settings)
+    return nodes.node("usher_layer", *parameters)
+
+
+def remapped(version: int) -> list[str]:
+    """The arguments with which the launch file starts the controller."""
+    if version == 1:
+        launch = ElementTree.parse(USHER / "ros1-layer" / "launch" / "usher_layer.launch")  # noqa: S314  # our own text
+        given = {"/$(arg namespace)": "", "$(arg name)": "usher_layer"}
+        remaps = [(str(each.get("from")), str(each.get("to"))) for each in launch.iter("remap")]
+        for argument, value in given.items():
+            remaps = [(name, other.replace(argument, value)) for name, other in remaps]
+        return [f"{name}:={other}" for name, other in remaps]
+    text = (USHER / "ros2-layer" / "launch" / "usher_layer.launch.py").read_text()
+    remaps = launched(text).of("Node")[1].named["remappings"]
+    return ["--ros-args", *(word for name, other in remaps for word in ("-r", f"{name}:={other}"))]
+
+
+def test_messages_pass_in_both_directions(trial: Trial) -> None:
+    assert trial.robot("allowed") == [["speed", 0.5]]
+    assert trial.controller("allowed") == [["battery", 80]]
+    assert trial.blocked("allowed") == []
+
+
+def test_what_a_requirement_forbids_is_blocked_and_told(trial: Trial) -> None:
+    assert trial.robot("low") == []
+    assert trial.blocked("low") == [("Drive.speed", "requirement", ["requirement speed needs Guard.charge > 20"])]
+    assert trial.steps["low"]["blocked"][0]["components"]["Guard"] == {"state": "clear", "variables": {"charge": 10}}
+    assert "Drive.speed is blocked: requirement" in trial.output
+
+
+def test_the_supervisor_hears_before_the_controller(trial: Trial) -> None:
+    # The controller sends a speed as soon as it hears of the stop: twenty times.
+    assert trial.robot("stops") == []
+    assert trial.blocked("stops") == 20 * [("Drive.speed", "requirement", ["requirement speed needs Guard.clear"])]
+    told = [(each["direction"], each["event"]) for each in trial.log]
+    first = told.index(("in", "message_stop.u_response"))
+    assert told[first + 1] == ("blocked", "message_speed.c_trigger")
+
+
+def test_a_service_is_called_and_answers(trial: Trial) -> None:
+    assert (trial.robot("light"), trial.controller("light")) == ([["light", True]], [["light", True]])
+    assert trial.controller("no light") == [["light", False]]
+    assert trial.steps["light"]["states"][-1]["components"]["Lamp"]["variables"] == {"lit": True}
+    assert trial.steps["no light"]["states"][-1]["components"]["Lamp"]["variables"] == {"lit": False}
+
+
+def test_a_second_call_is_busy(trial: Trial) -> None:
+    assert trial.robot("two calls") == [["light", True]]
+    assert trial.blocked("two calls") == [("Lamp.light", "busy", [])]
+    assert trial.controller("two calls") == [["light", FAILED[trial.ros]], ["light", True]]
+
+
+def test_a_blocked_call_fails_and_a_blocked_goal_is_rejected(trial: Trial) -> None:
+    assert trial.robot("forbidden") == []
+    assert trial.blocked("forbidden")[1:] == [
+        ("Lamp.light", "requirement", ["requirement light needs Guard.clear"]),
+        ("Navigation.go_to", "requirement", ["requirement go_to needs Guard.clear"]),
+    ]
+    assert trial.controller("forbidden")[1:3] == [["light", FAILED[trial.ros]], ["go_to", "REJECTED"]]
+
+
+def test_a_goal_runs_to_its_end(trial: Trial) -> None:
+    assert trial.robot("succeeded") == [["go_to", 1.0]]
+    assert trial.controller("succeeded") == [["feedback", 0.5], ["go_to", "REJECTED"], ["go_to", "SUCCEEDED"]]
+    assert trial.blocked("succeeded") == [("Navigation.go_to", "busy", [])]
+    assert (trial.robot("aborted"), trial.controller("aborted")) == ([["go_to", 3.0]], [["go_to", "ABORTED"]])
+    assert (trial.robot("rejected"), trial.controller("rejected")) == ([["go_to", 4.0]], [["go_to", "REJECTED"]])
+
+
+def test_the_controller_may_always_cancel(trial: Trial) -> None:
+    assert trial.robot("cancelled by the controller") == [["go_to", 5.0], ["cancel", True]]
+    assert trial.controller("cancelled by the controller") == [["go_to", "CANCELED"]]
+    assert events(trial, "cancelled by the controller")[:3] == [
+        "action_go_to.c_trigger",
+        "action_go_to.u_error",
+        "action_go_to.c_reset",
+    ]
+
+
+def test_the_layer_cancels_a_goal_whose_requirement_has_fallen(trial: Trial) -> None:
+    assert trial.robot("cancelled by the layer") == [["go_to", 6.0], ["cancel", True]]
+    assert trial.controller("cancelled by the layer")[:2] == [["stop", True], ["go_to", "CANCELED"]]
+    assert events(trial, "cancelled by the layer") == [
+        "action_go_to.c_trigger",
+        "message_stop.u_response",
+        "action_go_to.c_cancel",
+        "message_resume.u_response",
+    ]
+    assert trial.controller("the next goal") == [["go_to", "SUCCEEDED"]]
+
+
+def test_a_late_answer_is_none(trial: Trial) -> None:
+    assert trial.controller("late") == [["light", FAILED[trial.ros]]]
+    assert "/lamp/light: no answer within 2000 ms" in trial.output
+    assert (trial.robot("the next call"), trial.controller("the next call")) == ([["light", False]], [["light", True]])
+
+
+def test_what_lasts_still_lasts(trial: Trial) -> None:
+    assert trial.steps["labels"] == ["here I am"]
+
+
+def test_everything_fits_its_schema(trial: Trial) -> None:
+    steps = [each for name, each in trial.steps.items() if name != "labels"]
+    told = {
+        "blocked": [each for step in steps for each in step["blocked"]],
+        "state": [each for step in steps for each in step["states"]],
+        "event-log": trial.log,
+    }
+    for name, lines in told.items():
+        validator = Draft202012Validator(json.loads(locate(f"schemas/{name}.schema.json").read_text()))
+        assert lines
+        assert not [error for each in lines for error in validator.iter_errors(each)]
+    # Provided data is none of the layer's business.
+    assert not [each for each in trial.log if each["event"].startswith("data_")]
+
+
+def events(trial: Trial, step: str) -> list[str]:
+    """The events of a step, as `~/state` tells them."""
+    return [event for state in trial.steps[step]["states"] for event in state["transitions"]]

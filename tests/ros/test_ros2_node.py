@@ -1,0 +1,177 @@
+"""What only a ROS 2 node has: it is a component, may be a managed node, and describes its parameters."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from tests.ros.faults.partners import Peer
+from tests.ros.workspaces import Workspace, middleware
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from tests.ros.processes import Processes
+
+HERE = Path(__file__).parent
+#: Transitions of managed nodes, as lifecycle_msgs numbers them.
+CONFIGURE, CLEAN_UP, ACTIVATE, DEACTIVATE = 1, 2, 3, 4
+HALT = ("outside", "message_halt.c_trigger")
+
+
+@dataclass(frozen=True)
+class Graph:
+    """A workspace, a peer `world` that hears commands, and someone who manages nodes."""
+
+    workspace: Workspace
+    processes: Processes
+    folder: Path
+    world: Peer
+    nodes: list[subprocess.Popen[bytes]] = field(default_factory=list)
+
+    def manage(self, *command: str | Path | int) -> Any:
+        """What `manage_ros2.py` answers."""
+        done = subprocess.run(
+            [self.workspace.ros.python, HERE / "manage_ros2.py", *map(str, command)],
+            env=self.processes.environment,
+            capture_output=True,
+            text=True,
+            timeout=90,
+            check=False,
+        )
+        assert done.returncode == 0, done.stderr + self.processes.logs()
+        return json.loads(done.stdout)
+
+    def start(self, package: str, name: str, *parameters: str) -> tuple[subprocess.Popen[bytes], Path]:
+        """A node by itself, and its event log."""
+        log = self.folder / f"{name}.jsonl"
+        command = self.workspace.node(package, f"event_log:={log}", *parameters)
+        self.nodes.append(self.processes.start(name, [*command, "-r", f"__node:={name}"]))
+        return self.nodes[-1], log
+
+    def commands(self, topic: str) -> int:
+        """How many commands the world has heard."""
+        return sum(each["heard"] == topic for each in self.world.all("heard"))
+
+    def until_commanded(self, topic: str) -> None:
+        heard = self.commands(topic)
+        self.processes.wait_until(lambda: self.commands(topic) > heard + 2, f"there are commands on {topic}", 60)
+
+
+@pytest.fixture(scope="module")
+def world(ros2_workspace: Workspace, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Graph]:
+    folder = tmp_path_factory.mktemp("ros2-node") / "run"
+    with middleware(ros2_workspace, folder) as processes:
+        peer = Peer(processes, ros2_workspace.ros.python, 2, "world")
+        for topic in ("/cmd_vel", "/left/cmd_vel", "/right/cmd_vel"):
+            peer.do("listen", topic=topic, kind="geometry_msgs/Twist")
+        yield Graph(ros2_workspace, processes, folder, peer)
+
+
+@pytest.fixture
+def graph(world: Graph) -> Iterator[Graph]:
+    """The world; nodes that a test has started end with it."""
+    yield world
+    while world.nodes:
+        node = world.nodes.pop()
+        if node.poll() is None:
+            world.processes.stop(node)
+
+
+def last(log: Path) -> tuple[str, str]:
+    """Direction and event of the last line of an event log."""
+    entry = json.loads(log.read_text().splitlines()[-1])
+    return entry["direction"], entry["event"]
+
+
+def test_two_components_in_one_container(graph: Graph) -> None:
+    prefixes = map(Path, graph.processes.environment["AMENT_PREFIX_PATH"].split(":"))
+    containers = [each / "lib/rclcpp_components/component_container" for each in prefixes]
+    container = graph.processes.start("container", [next(each for each in containers if each.exists())])
+    logs = {side: graph.folder / f"{side}.jsonl" for side in ("left", "right")}
+    loaded = {side: graph.manage("load", "scout_controller", f"/{side}", log) for side, log in logs.items()}
+    assert [each["error"] for each in loaded.values()] == ["", ""]
+    assert loaded["left"]["name"] == "/left/scout_controller"
+    for log in logs.values():
+        graph.processes.wait_until(lambda log=log: log.exists() and log.stat().st_size > 0, "events happen")
+    assert graph.manage("unload", loaded["left"]["number"])
+    # It stops its robot while the other one goes on.
+    assert last(logs["left"]) == HALT
+    size = logs["right"].stat().st_size
+    graph.processes.wait_until(lambda: logs["right"].stat().st_size > size, "the other component goes on")
+    assert graph.processes.stop(container) == 0
+    assert last(logs["right"]) == HALT
+
+
+def test_a_managed_node_acts_while_it_is_active(graph: Graph) -> None:
+    before = graph.commands("/cmd_vel")
+    node, log = graph.start("managed_porter", "porter")
+    change = lambda *transitions: [graph.manage("change", "/porter", each) for each in transitions]  # noqa: E731
+    assert change(CONFIGURE) == [True]
+    silent = graph.commands("/cmd_vel") - before
+    assert change(ACTIVATE) == [True]
+    graph.until_commanded("/cmd_vel")
+    assert silent == 0
+    assert change(DEACTIVATE) == [True]
+    assert last(log) == HALT
+    heard = graph.commands("/cmd_vel")
+    # It takes a while to ask it, and there would be ten commands a second.
+    assert change(CLEAN_UP, CONFIGURE) == [True, True]
+    assert graph.commands("/cmd_vel") <= heard + 1
+    assert change(ACTIVATE) == [True]
+    graph.until_commanded("/cmd_vel")
+    assert graph.processes.stop(node) == 0
+    assert last(log) == HALT
+
+
+def test_a_managed_node_that_is_not_active_ends_without_a_word(graph: Graph) -> None:
+    node, log = graph.start("managed_porter", "porter_at_rest")
+    assert graph.manage("change", "/porter_at_rest", CONFIGURE)
+    heard = graph.commands("/cmd_vel")
+    assert graph.processes.stop(node) == 0
+    assert graph.commands("/cmd_vel") == heard
+    assert "outside" not in log.read_text()
+
+
+def test_parameters_say_what_they_mean(graph: Graph) -> None:
+    node, _ = graph.start("porter_controller", "described", "qos_overrides./stop.subscription.depth:=3")
+    names = ["period_ms", "service_timeout_ms", "watchdog_ms.stop", "watchdog_stops"]
+    overrides = ["qos_overrides./cmd_vel.publisher.reliability", "qos_overrides./stop.subscription.depth"]
+    described = graph.manage("describe", "/described", *names, *overrides)
+    assert set(described) == {*names, *overrides}
+    assert described["period_ms"] == ["Time from one tick to the next.", [[1, 86400000]]]
+    assert described["watchdog_ms.stop"] == ["Longest silence of the topic; 0: any.", [[0, 86400000]]]
+    assert all(meaning for meaning, _ in described.values())
+    assert graph.processes.stop(node) == 0
+
+
+@pytest.mark.parametrize(
+    "parameter", ["period_ms:=0", "retry_ms:=quick", "watchdog_ms.stop:=-1", "event_log:=/no/dir/log"]
+)
+def test_a_wrong_parameter_keeps_the_node_from_starting(graph: Graph, parameter: str) -> None:
+    name = parameter.partition(":=")[0]
+    node = graph.processes.start("refused", graph.workspace.node("porter_controller", parameter))
+    assert node.wait(30) != 0
+    assert name.replace("_", " ") in (graph.folder / "refused.log").read_text().replace("_", " ")
+
+
+def test_a_watchdog_stops_the_robot_until_its_topic_speaks(graph: Graph) -> None:
+    node, log = graph.start("porter_controller", "watched")
+    output = graph.folder / "watched.log"
+    graph.processes.wait_until(lambda: "/stop: silent for 400 ms" in output.read_text(), "the topic is silent")
+    graph.processes.wait_until(lambda: last(log) == HALT, "the robot is stopped")
+    size = log.stat().st_size
+    graph.world.do("advertise", topic="/stop", kind="std_msgs/Empty")
+    graph.processes.wait_until(lambda: graph.world.do("listeners", topic="/stop"), "the node listens")
+    assert log.stat().st_size == size
+    graph.world.do("repeat", topic="/stop", fields={}, hz=10)
+    graph.until_commanded("/cmd_vel")
+    assert "/stop: speaks again" in output.read_text()
+    graph.world.do("silence", topic="/stop")
+    assert graph.processes.stop(node) == 0
+    assert last(log) == HALT

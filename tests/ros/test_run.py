@@ -1,0 +1,65 @@
+"""Nodes run straight from their models: the same as the compiled ones, and what keeps them from starting."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from tests.ros.workspaces import middleware
+
+if TYPE_CHECKING:
+    from tests.ros.running import Runner
+    from tests.ros.workspaces import Workspace
+
+HERE = Path(__file__).parent
+PACKAGE = "courier_controller"
+NAVIGATION = HERE.parents[1] / "examples" / "simple_navigation" / "simple_navigation.rscd"
+
+
+def delivered(nodes: Workspace | Runner, folder: Path) -> tuple[dict[str, Any], set[str]]:
+    """What the courier reports and sends after each of the same inputs, and its log's different lines without time."""
+    steps, log = folder / "steps.json", folder / "events.jsonl"
+    with middleware(nodes, folder) as processes:
+        processes.start("node", nodes.node(PACKAGE, f"event_log:={log}"))
+        command = [nodes.ros.python, HERE / "send_to_courier.py", str(nodes.ros.version), steps]
+        client = processes.start("client", command)
+        processes.wait_until(lambda: client.poll() is not None, "all steps are done", seconds=120)
+        assert client.returncode == 0, processes.logs()
+    results = json.loads(steps.read_text())
+    for step in results.values():
+        header = step["sent"].get("target", {}).get("header", {})
+        for counted in ("seq", "stamp"):  # what depends on how many ticks there were, and when
+            header.pop(counted, None)
+    return results, {line.partition(",")[2] for line in log.read_text(encoding="utf-8").splitlines()}
+
+
+@pytest.mark.parametrize("ros", ["ros1", "ros2"])
+def test_it_does_what_the_compiled_node_does(ros: str, request: pytest.FixtureRequest, tmp_path: Path) -> None:
+    compiled = delivered(request.getfixturevalue(f"{ros}_workspace"), tmp_path / "compiled")
+    run = delivered(request.getfixturevalue(f"run_{ros}"), tmp_path / "run")
+    assert run[0] == compiled[0]
+    assert run[1] == compiled[1], "the same bytes, but for the time"
+
+
+def test_a_package_that_is_not_built_is_named(runner: Runner) -> None:
+    environment = {**runner.environment(), "PYTHONPATH": ""}
+    done = subprocess.run(runner.command(NAVIGATION), env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert "the ROS package nav2_msgs is not built for Python here" in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+@pytest.mark.parametrize("parameter", ["period_ms:=0", "period_ms:=often"])
+def test_a_parameter_out_of_range_is_named(runner: Runner, parameter: str, tmp_path: Path) -> None:
+    model = HERE.parents[1] / "examples" / "line_follower" / "line_follower.rscd"
+    with middleware(runner, tmp_path / "run") as processes:
+        node = processes.start("node", runner.command(model, parameter))
+        processes.wait_until(lambda: node.poll() is not None, "the node gives up")
+        assert node.returncode == 2
+        text = processes.logs()
+        assert "period_ms" in text
+        assert "Traceback" not in text

@@ -1,0 +1,135 @@
+"""The eight scenarios over a real ROS: each goal is reached, and nothing forbidden was ever sent.
+
+In simulated time, as fast as the controllers answer: how busy the machine is does not matter much. What the controller
+did is read from its own event log by the second opinions of `tests/scenarios/rules`.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from examples.simulator.scenarios import SCENARIOS
+from tests.ros.running import Runner
+from tests.ros.workspaces import EXAMPLES, Workspace, middleware
+from tests.scenarios.rules.books import BOOKS
+from tests.scenarios.runs import moved_while_stopped, poses
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+#: How many times as fast as real time the world runs, where the controllers keep up.
+SPEED = 4
+#: Seconds of the world for a command on its way, and for the robot to come to rest.
+ALLOWANCE = 1.0
+#: `ros2` only where there is an rclcpp to build with.
+KINDS = ["ros1", "run-ros2", "ros2"]
+#: The scenario with a supervisory layer: its package, that of the controller behind it, and that one's model.
+LAYERS = {
+    "supervised_line_follower": (
+        "supervised_line_follower_layer",
+        "line_stepper_controller",
+        "controller/line_stepper.rscd",
+    )
+}
+
+
+@dataclass(frozen=True)
+class LiveRun:
+    """What the world saw of a scenario, and what the node did."""
+
+    status: int
+    said: str
+    record: Sequence[dict[str, Any]]
+    log: Sequence[dict[str, Any]]
+    node_status: int
+    node_output: str
+
+
+@pytest.fixture(scope="session", params=KINDS)
+def kind(request: pytest.FixtureRequest) -> Workspace | Runner:
+    """Nodes of one kind: compiled, or run straight from their models."""
+    fixtures = {"ros1": "ros1_workspace", "run-ros2": "run_ros2", "ros2": "ros2_workspace"}
+    made: Workspace | Runner = request.getfixturevalue(fixtures[request.param])
+    return made
+
+
+@pytest.fixture(scope="session", params=SCENARIOS)
+def name(request: pytest.FixtureRequest) -> str:
+    scenario: str = request.param
+    return scenario
+
+
+@pytest.fixture(scope="session")
+def run(kind: Workspace | Runner, name: str, tmp_path_factory: pytest.TempPathFactory) -> LiveRun:
+    """A scenario from start to end."""
+    folder = tmp_path_factory.mktemp(name) / "run"
+    events, record = folder / "events.jsonl", folder / "record.jsonl"
+    with middleware(kind, folder, simulated=True) as processes:
+        nodes = [
+            processes.start(f"node{number}", command)
+            for number, command in enumerate(node_commands(kind, name, f"event_log:={events}"))
+        ]
+        command = [kind.ros.python, EXAMPLES / "simulator", "--scenario", name, "--ros", str(kind.ros.version)]
+        world = processes.start("world", [*command, "--speed", str(SPEED), "--record", record])
+        processes.wait_until(lambda: world.poll() is not None, "the scenario has ended", seconds=240)
+        statuses = [processes.stop(each) for each in nodes]
+    said = (folder / "world.log").read_text()
+    output = "\n".join((folder / f"node{number}.log").read_text() for number in range(len(nodes)))
+    return LiveRun(world.returncode, said, lines(record), lines(events), max(map(abs, statuses)), output)
+
+
+def node_commands(kind: Workspace | Runner, name: str, log: str) -> list[list[str | Path]]:
+    """What starts the controller of a scenario, or the layer and the controller behind it."""
+    clock = ["use_sim_time:=true"] if kind.ros.version == 2 else []
+    model = EXAMPLES / name / f"{name}.rscd"
+    if name not in LAYERS:
+        if isinstance(kind, Runner):
+            return [[*kind.command(model, log, *clock)]]
+        return [kind.node(f"{name}_controller", log, *clock)]
+    layer, controller, behind = LAYERS[name]
+    remappings = [f"{each}:=/{layer}/controller{each}" for each in ("/correction", "/no_line", "/simple_movement")]
+    if isinstance(kind, Runner):
+        return [
+            kind.command(model, log, *clock, layer=True),
+            kind.command(EXAMPLES / name / behind, *clock, remappings=remappings),
+        ]
+    if kind.ros.version == 1:
+        # The layer's launch file starts the controller, too.
+        return [kind.node(layer, log)]
+    remapped = [word for each in remappings for word in ("-r", each)]
+    return [kind.node(layer, log, *clock), [*kind.node(controller, *clock), *remapped]]
+
+
+def lines(path: Path) -> list[dict[str, Any]]:
+    """The objects in a file of JSON lines."""
+    return [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines()]
+
+
+def test_reaches_its_goal(run: LiveRun) -> None:
+    assert run.status == 0, run.said + run.node_output
+
+
+def test_sends_nothing_forbidden(run: LiveRun, name: str) -> None:
+    log = [*run.log]
+    while log[-1]["direction"] == "outside":
+        # At the very end, when it is shut down, the node halts the robot whatever the requirements say.
+        log.pop()
+    assert sum(each["direction"] == "out" for each in log) >= 3
+    assert BOOKS[name]().violations(log) == []
+
+
+def test_stands_while_stop_is_pressed(run: LiveRun) -> None:
+    assert moved_while_stopped(run.record, ALLOWANCE) < 0.02
+
+
+def test_touches_nothing(run: LiveRun) -> None:
+    assert min(each["gap"] for each in poses(run.record)) >= 0
+
+
+def test_the_node_ends_cleanly(run: LiveRun) -> None:
+    assert run.node_status == 0, run.node_output

@@ -1,0 +1,117 @@
+"""Packages with tests: `rostest` plays traces against compiled nodes; over ROS 2 the player does it by itself."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from typing import TYPE_CHECKING
+from xml.etree import ElementTree
+
+import pytest
+
+from tests.ros.workspaces import CPP, EXAMPLES, Workspace, middleware
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from tests.ros.running import Runner
+
+MODELS = {
+    "line_follower_controller": (EXAMPLES / "line_follower" / "line_follower.rscd", None),
+    "porter_controller": (CPP / "porter.rscd", CPP / "porter-config.json"),
+}
+
+
+def rostest(workspace: Workspace, package: str, folder: Path, trace: str = "random_walk") -> tuple[int, str]:
+    """The exit status of `rostest`, and what the tests that failed say."""
+    results = folder / "results"
+    command = ["rostest", "--results-base-dir", results, package, "play_trace.test", f"trace:={trace}"]
+    environment = workspace.environment() | {
+        "ROS_HOME": str(folder),
+        "ROS_LOG_DIR": str(folder / "log"),
+        "ROS_IP": "127.0.0.1",
+        "ROS_HOSTNAME": "127.0.0.1",
+        "TMPDIR": str(folder),
+    }
+    done = subprocess.run(
+        command, env=environment, capture_output=True, text=True, timeout=600, check=False, cwd=folder
+    )
+    (result,) = results.rglob(f"rosunit-{trace}.xml")
+    suite = ElementTree.parse(result).getroot()  # noqa: S314  # rosunit's own
+    assert suite.get("tests") == "1", done.stdout + done.stderr
+    return done.returncode, "\n".join(each.text or "" for each in suite.iter("failure"))
+
+
+@pytest.mark.parametrize("package", MODELS)
+def test_the_compiled_node_follows_its_trace(ros1_workspace: Workspace, package: str, tmp_path: Path) -> None:
+    assert rostest(ros1_workspace, package, tmp_path) == (0, "")
+
+
+def test_a_node_that_dropped_a_requirement_does_not(ros1_workspace: Workspace, tmp_path: Path) -> None:
+    status, failure = rostest(ros1_workspace, "careless_controller", tmp_path)
+    assert status != 0
+    assert "the trace says out message_halt.c_trigger" in failure
+    assert "but the node did out message_move.c_trigger" in failure
+
+
+def test_the_log_of_a_drive_is_a_trace(ros1_workspace: Workspace, tmp_path: Path) -> None:
+    """Up to where the robot halts for an obstacle; another kind of controller has written it."""
+    package = "line_follower_controller"
+    log = ros1_workspace.folder / "src" / package / "test" / "traces" / "drive.jsonl"
+    log.unlink(missing_ok=True)
+    command = [sys.executable, EXAMPLES / "simulator", "--scenario", "line_follower", "--until", "7.3", "--log", log]
+    subprocess.run(command, check=False, capture_output=True)  # it does not get to its goal
+    events = [json.loads(line)["event"] for line in log.read_text(encoding="utf-8").splitlines()]
+    assert {"message_halt.c_trigger", "message_move.c_trigger"} <= set(events)
+    assert rostest(ros1_workspace, package, tmp_path, "drive") == (0, "")
+
+
+def test_catkin_knows_the_tests(ros1_workspace: Workspace) -> None:
+    targets = subprocess.run(
+        ["make", "-C", ros1_workspace.folder / "build", "help"],
+        env=ros1_workspace.environment(),
+        capture_output=True,
+        text=True,
+        check=True,
+    ).stdout
+    for package in MODELS:
+        assert f"run_tests_{package}_rostest_play_trace__trace_random_walk.test\n" in targets
+
+
+@pytest.mark.parametrize("package", MODELS)
+def test_the_node_run_over_ros_2_follows_its_trace(run_ros2: Runner, package: str, tmp_path: Path) -> None:
+    model, configuration = MODELS[package]
+    settings = ["--config", str(configuration)] if configuration else []
+    robosc = [run_ros2.robosc, "-m", "robosc", "transform", str(model), "--to", "ros2", "--with-tests", *settings]
+    subprocess.run([*robosc, "-o", tmp_path], check=True, capture_output=True, env=run_ros2.environment())
+    test = tmp_path / "ros2" / package / "test"
+    play(run_ros2, run_ros2.command(model, *parameters(test, tmp_path), configuration=configuration), test, tmp_path)
+
+
+@pytest.mark.parametrize("package", MODELS)
+def test_the_compiled_node_of_ros_2_follows_its_trace(ros2_workspace: Workspace, package: str, tmp_path: Path) -> None:
+    test = ros2_workspace.folder / "src" / package / "test"
+    play(ros2_workspace, ros2_workspace.node(package, *parameters(test, tmp_path)), test, tmp_path)
+
+
+def parameters(test: Path, folder: Path) -> list[str]:
+    """What the launch file would give the node."""
+    known = json.loads((test / "connections.json").read_text(encoding="utf-8"))
+    found = {"use_sim_time": "true", "watchdog_stops": "false", "event_log": str(folder / "events.jsonl")}
+    for kind in ("services", "actions"):
+        for each in known[kind]:
+            found["retry_ms"] = str(round(each["retry"] * 1000))
+            if "timeout" in each:
+                found["service_timeout_ms"] = str(round(each["timeout"] * 1000))
+    return [f"{name}:={value}" for name, value in found.items()]
+
+
+def play(nodes: Workspace | Runner, node: list[str] | list[str | Path], test: Path, folder: Path) -> None:
+    with middleware(nodes, folder / "run") as processes:
+        processes.start("node", node)
+        trace = test / "traces" / "random_walk.jsonl"
+        command = [nodes.ros.python, test / "play_trace.py", trace, folder / "events.jsonl"]
+        player = processes.start("player", command)
+        processes.wait_until(lambda: player.poll() is not None, "the trace has been played", seconds=240)
+        assert player.returncode == 0, processes.logs()

@@ -1,0 +1,309 @@
+"""The robot behind the supervisory layer of `tests/m2t/layer/usher.rscd`, and what it asks of the controller.
+
+Run as `usher_trial.py VERSION RESULTS`, beside the layer and its controller. After each step it writes down what
+reached the robot, what reached the controller, what was blocked and in which states the layer was.
+"""
+# ruff: noqa: PLC0415  # which ROS is there is known when it runs
+
+import json
+import sys
+import threading
+import time
+from pathlib import Path
+
+from topics import connect
+
+LAYER = "/usher_layer"
+
+
+class Robot:
+    """Its service and its action, which do what they are told; what it received."""
+
+    def __init__(self):
+        self.received = []
+        self.answers = True
+        self.answering = threading.Event()
+        self.answering.set()
+        self.accepts = True
+        self.ending = None  # how the goal at hand ends; None: not yet
+        self.lock = threading.Lock()
+
+    def note(self, what, value):
+        with self.lock:
+            self.received.append([what, value])
+
+    def light(self, value):
+        self.note("light", value)
+        self.answering.wait(20)
+        return self.answers
+
+
+class Ros1Robot(Robot):
+    def __init__(self):
+        super().__init__()
+        import actionlib
+        import rospy
+        from nav2_msgs.msg import NavigateToPoseAction, NavigateToPoseFeedback
+        from std_srvs.srv import SetBool, SetBoolResponse
+
+        self.feedback_type = NavigateToPoseFeedback
+        self.service = rospy.Service("/lamp/light", SetBool, lambda call: SetBoolResponse(self.light(call.data), ""))
+        self.goal = None
+        self.action = actionlib.ActionServer("/go_to", NavigateToPoseAction, self.on_goal, self.on_cancel, False)
+        self.action.start()
+
+    def on_goal(self, goal):
+        self.note("go_to", goal.get_goal().pose.pose.position.x)
+        if not self.accepts:
+            goal.set_rejected()
+            return
+        goal.set_accepted()
+        self.goal = goal
+
+    def on_cancel(self, goal):
+        self.note("cancel", True)
+        goal.set_canceled()
+
+    def say(self, distance):
+        feedback = self.feedback_type()
+        feedback.distance_remaining = distance
+        self.goal.publish_feedback(feedback)
+
+    def end(self, how):
+        {"SUCCEEDED": self.goal.set_succeeded, "ABORTED": self.goal.set_aborted}[how]()
+
+
+class Ros2Robot(Robot):
+    def __init__(self):
+        super().__init__()
+        import rclpy
+        from nav2_msgs.action import NavigateToPose
+        from rclpy.action import ActionServer, CancelResponse, GoalResponse
+        from rclpy.callback_groups import ReentrantCallbackGroup
+        from rclpy.executors import MultiThreadedExecutor
+        from std_srvs.srv import SetBool
+
+        self.type, self.accept, self.reject = NavigateToPose, GoalResponse.ACCEPT, GoalResponse.REJECT
+        self.cancel = CancelResponse.ACCEPT
+        node = rclpy.create_node("robot")
+        group = ReentrantCallbackGroup()
+        node.create_service(SetBool, "/lamp/light", self.on_call, callback_group=group)
+        self.goal = None
+        self.action = ActionServer(
+            node,
+            NavigateToPose,
+            "/go_to",
+            self.execute,
+            callback_group=group,
+            goal_callback=self.on_goal,
+            cancel_callback=self.on_cancel,
+        )
+        executor = MultiThreadedExecutor(8)
+        executor.add_node(node)
+        threading.Thread(target=executor.spin, daemon=True).start()
+
+    def on_call(self, request, response):
+        response.success = self.light(request.data)
+        return response
+
+    def on_goal(self, goal):
+        self.note("go_to", goal.pose.pose.position.x)
+        return self.accept if self.accepts else self.reject
+
+    def on_cancel(self, goal):  # noqa: ARG002
+        self.note("cancel", True)
+        return self.cancel
+
+    def execute(self, goal):
+        self.ending, self.goal = None, goal
+        while self.ending is None and not goal.is_cancel_requested:
+            time.sleep(0.01)
+        if goal.is_cancel_requested:
+            goal.canceled()
+        elif self.ending == "SUCCEEDED":
+            goal.succeed()
+        else:
+            goal.abort()
+        return self.type.Result()
+
+    def say(self, distance):
+        self.goal.publish_feedback(self.type.Feedback(distance_remaining=distance))
+
+    def end(self, how):
+        self.ending = how
+
+
+class Trial:
+    def __init__(self, version, results):
+        self.ros = connect(version, "trial")
+        self.robot = Ros1Robot() if version == "1" else Ros2Robot()
+        self.results, self.steps = results, {}
+        self.told, self.blocked, self.states = [], [], []
+        self.labels = []
+        self.do = self.ros.publisher("/do", "std_msgs/String")
+        self.stop = self.ros.publisher("/stop", "std_msgs/Empty")
+        self.resume = self.ros.publisher("/resume", "std_msgs/Empty")
+        self.battery = self.ros.publisher("/battery", "std_msgs/Int16")
+        self.ros.listen("/told", "std_msgs/String", lambda message: self.told.append(json.loads(message.data)))
+        self.ros.listen("/speed", "std_msgs/Float32", lambda message: self.robot.note("speed", round(message.data, 3)))
+        self.ros.listen(
+            f"{LAYER}/blocked", "std_msgs/String", lambda message: self.blocked.append(json.loads(message.data))
+        )
+        self.ros.listen(
+            f"{LAYER}/state", "std_msgs/String", lambda message: self.states.append(json.loads(message.data))
+        )
+
+    def wait(self, condition, what, seconds=10):
+        until = time.monotonic() + seconds
+        while not condition():
+            if time.monotonic() > until:
+                raise TimeoutError(f"{what}; {self.seen()}")
+            self.ros.receive(0.02)
+
+    def heard(self, *expected):
+        """Waits until the controller has told so."""
+        self.wait(lambda: list(expected) in self.told, f"the controller tells {expected}")
+
+    def got(self, *expected):
+        """Waits until the robot has received it."""
+        self.wait(lambda: list(expected) in self.robot.received, f"the robot receives {expected}")
+
+    def was_blocked(self, name, count=1):
+        """Waits until something of that name was blocked so often."""
+        self.wait(lambda: sum(each["name"] == name for each in self.blocked) >= count, f"{name} is blocked")
+
+    def ask(self, what, value=True):
+        self.do(data=json.dumps([what, value]))
+
+    def seen(self):
+        return {"robot": list(self.robot.received), "controller": list(self.told), "blocked": list(self.blocked)}
+
+    def step(self, name):
+        """Ends a step, once all has come to rest."""
+        self.ros.receive(0.3)
+        self.steps[name] = {**self.seen(), "states": list(self.states)}
+        for each in (self.robot.received, self.told, self.blocked, self.states):
+            del each[:]
+
+    def run(self):
+        self.wait(self.ros.heard, "everyone is there", 60)
+        self.ask("server")
+        self.heard("server", True)
+        self.ros.receive(1.0)
+        self.ros.listen("label", "std_msgs/String", lambda message: self.labels.append(message.data), latched=True)
+        self.step("start")
+        for step in (self.messages, self.services, self.goals, self.cancels, self.failures):
+            step()
+        self.wait(lambda: self.labels, "what was sent before anyone listened")
+        self.steps["labels"] = self.labels
+        Path(self.results).write_text(json.dumps(self.steps))
+
+    def messages(self):
+        self.ask("speed", 0.5)
+        self.got("speed", 0.5)
+        self.battery(data=80)
+        self.heard("battery", 80)
+        self.step("allowed")
+        self.battery(data=10)
+        self.heard("battery", 10)
+        self.ask("speed", 0.75)
+        self.was_blocked("Drive.speed")
+        self.step("low")
+        self.battery(data=80)
+        self.heard("battery", 80)
+        for count in range(20):
+            self.stop()
+            self.was_blocked("Drive.speed", count + 1)
+            self.resume()
+            self.heard("resume", True)
+            del self.told[:]
+        self.step("stops")
+
+    def services(self):
+        self.ask("light")
+        self.heard("light", True)
+        self.step("light")
+        self.robot.answers = False
+        self.ask("light")
+        self.heard("light", False)
+        self.step("no light")
+        self.robot.answering.clear()
+        self.ask("light")
+        self.got("light", True)
+        self.ask("light", False)
+        self.was_blocked("Lamp.light")
+        self.robot.answers = True
+        self.robot.answering.set()
+        self.heard("light", True)
+        self.step("two calls")
+        self.stop()
+        self.heard("stop", True)
+        self.was_blocked("Drive.speed")
+        self.ask("light")
+        self.was_blocked("Lamp.light")
+        self.ask("go_to", 1.0)
+        self.was_blocked("Navigation.go_to")
+        self.heard("go_to", "REJECTED")
+        self.resume()
+        self.heard("resume", True)
+        self.step("forbidden")
+
+    def goals(self):
+        self.start(1.0)
+        self.robot.say(0.5)
+        self.heard("feedback", 0.5)
+        self.ask("go_to", 2.0)
+        self.was_blocked("Navigation.go_to")
+        self.heard("go_to", "REJECTED")
+        self.robot.end("SUCCEEDED")
+        self.heard("go_to", "SUCCEEDED")
+        self.step("succeeded")
+        self.start(3.0)
+        self.robot.end("ABORTED")
+        self.heard("go_to", "ABORTED")
+        self.step("aborted")
+        self.robot.accepts = False
+        self.ask("go_to", 4.0)
+        self.heard("go_to", "REJECTED")
+        self.robot.accepts = True
+        self.step("rejected")
+
+    def cancels(self):
+        self.start(5.0)
+        self.ask("cancel")
+        self.got("cancel", True)
+        self.heard("go_to", "CANCELED")
+        self.step("cancelled by the controller")
+        self.start(6.0)
+        self.stop()
+        self.got("cancel", True)
+        self.heard("go_to", "CANCELED")
+        self.was_blocked("Drive.speed")
+        self.resume()
+        self.heard("resume", True)
+        self.step("cancelled by the layer")
+        self.start(7.0)
+        self.robot.end("SUCCEEDED")
+        self.heard("go_to", "SUCCEEDED")
+        self.step("the next goal")
+
+    def failures(self):
+        self.robot.answering.clear()
+        self.ask("light")
+        self.got("light", True)
+        self.wait(lambda: ["light", False] in self.told or ["light", "failed"] in self.told, "the call fails")
+        self.step("late")
+        self.robot.answering.set()
+        self.ask("light", False)
+        self.heard("light", True)
+        self.step("the next call")
+
+    def start(self, place):
+        self.robot.goal = None
+        self.ask("go_to", place)
+        self.wait(lambda: self.robot.goal is not None, "the goal is accepted")
+        self.ros.receive(0.3)
+
+
+if __name__ == "__main__":
+    Trial(*sys.argv[1:]).run()

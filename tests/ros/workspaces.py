@@ -1,0 +1,224 @@
+"""Workspaces of generated packages, built by the platform's own tool, and what it takes to run what is in them."""
+
+from __future__ import annotations
+
+import os
+import random
+import subprocess
+import sys
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from tests.ros.installations import Ros, find_ros1, find_ros2, free_port
+from tests.ros.processes import Processes
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+HERE = Path(__file__).parent
+EXAMPLES = HERE.parents[1] / "examples"
+#: A robot behind a supervisory layer, and the package of its controller.
+USHER, DRIVER = HERE.parent / "m2t" / "layer", HERE / "usher_driver"
+#: Two generated controllers in one process.
+TWO_IN_ONE = HERE / "faults" / "two_in_one"
+CPP = HERE.parent / "m2t" / "cpp"
+
+
+@dataclass(frozen=True)
+class Package:
+    """A package to generate: its name in ROS, its model, the target that writes it; else the model's own settings."""
+
+    name: str
+    model: Path
+    target: str
+    configuration: Path | None = None
+    with_tests: bool = False
+    #: A fault to put into it: a file of the package, what stands there, what shall.
+    fault: tuple[str, str, str] | None = None
+
+
+def _packages(target: str) -> list[Package]:
+    """The controllers of the eight examples and of the models of the tests, and a layer, for one ROS."""
+    examples = (
+        "line_follower",
+        "maze_solver",
+        "object_finder",
+        "obstacle_navigation",
+        "person_follower",
+        "push_ball",
+        "simple_navigation",
+        "supervised_line_follower",
+    )
+    supervised = EXAMPLES / "supervised_line_follower"
+    return [
+        *(
+            Package(f"{name}_controller", EXAMPLES / name / f"{name}.rscd", target, with_tests=name == "line_follower")
+            for name in examples
+        ),
+        Package("supervised_line_follower_layer", supervised / "supervised_line_follower.rscd", f"{target}-layer"),
+        Package("line_stepper_controller", supervised / "controller" / "line_stepper.rscd", target),
+        Package("courier_controller", CPP / "courier.rscd", target),
+        Package("porter_controller", CPP / "porter.rscd", target, CPP / "porter-config.json", with_tests=True),
+        Package("scout_controller", HERE / "faults" / "scout.rscd", target),
+        Package("usher_layer", USHER / "usher.rscd", f"{target}-layer", USHER / "controller-config.json"),
+    ]
+
+
+#: The packages of the one workspace of each ROS, beside those of `interfaces`.
+ROS1_PACKAGES = [
+    *_packages("ros1"),
+    # It has forgotten that it must not move while its stop button is pressed.
+    Package(
+        "careless_controller",
+        EXAMPLES / "line_follower" / "line_follower.rscd",
+        "ros1",
+        HERE / "careless-config.json",
+        with_tests=True,
+        fault=(
+            "src/line_follower_supervisor.c",
+            "_free\n            && state->component_EmergencyStop == line_follower_component_EmergencyStop_in_service;",
+            "_free;",
+        ),
+    ),
+]
+ROS2_PACKAGES = [
+    *_packages("ros2"),
+    Package("managed_porter", CPP / "porter.rscd", "ros2", CPP / "managed-porter-config.json"),
+]
+
+
+@dataclass(frozen=True)
+class Workspace:
+    """A folder in which packages were built, and what the build said."""
+
+    ros: Ros
+    folder: Path
+    build: str
+
+    def node(self, package: str, *parameters: str) -> list[str | Path]:
+        """The command that starts a node with parameters (`name:=value`): for ROS 1 by its launch file."""
+        if self.ros.version == 1:
+            return ["roslaunch", "--wait", package, f"{package}.launch", *parameters]
+        options = [each for parameter in parameters for each in ("-p", parameter)]
+        return [self.folder / f"install/{package}/lib/{package}/{package}", "--ros-args", *options]
+
+    def environment(self) -> dict[str, str]:
+        """What programs need to find the packages and the Python modules of their interfaces."""
+        environment = {**self.ros.environment, "PYTHONDONTWRITEBYTECODE": "1"}
+        if self.ros.version == 1:
+            return environment | {
+                "ROS_PACKAGE_PATH": f"{self.folder / 'src'}:{environment['ROS_PACKAGE_PATH']}",
+                "CMAKE_PREFIX_PATH": f"{self.folder / 'devel'}:{environment.get('CMAKE_PREFIX_PATH', '')}",
+                "PYTHONPATH": f"{self.folder / 'devel/lib/python3/dist-packages'}:{environment.get('PYTHONPATH', '')}",
+            }
+        installed = sorted(each for each in (self.folder / "install").iterdir() if each.is_dir())
+        found = {
+            "AMENT_PREFIX_PATH": installed,
+            "LD_LIBRARY_PATH": [each / "lib" for each in installed],
+            "PYTHONPATH": [path for each in installed for path in each.glob("lib/python3*/site-packages")],
+        }
+        return environment | {
+            name: ":".join([*map(str, paths), environment.get(name, "")]) for name, paths in found.items()
+        }
+
+
+@pytest.fixture(scope="session")
+def ros1_workspace(tmp_path_factory: pytest.TempPathFactory) -> Workspace:
+    """The packages of `ROS1_PACKAGES` and `interfaces/ros1`.
+
+    `ROBOSC_ROS1_WORKSPACE` names a folder that is kept: what has not changed is not built again.
+    """
+    ros = found_or_skipped(1)
+    kept = os.environ.get("ROBOSC_ROS1_WORKSPACE")
+    folder = Path(kept) if kept else tmp_path_factory.mktemp("ros1")
+    return build(ros, folder, ROS1_PACKAGES, [*sorted((HERE / "interfaces" / "ros1").iterdir()), DRIVER, TWO_IN_ONE])
+
+
+@pytest.fixture(scope="session")
+def ros2_workspace(tmp_path_factory: pytest.TempPathFactory) -> Workspace:
+    """The packages of `ROS2_PACKAGES` and `interfaces/ros2`; `ROBOSC_ROS2_WORKSPACE` likewise."""
+    ros = found_or_skipped(2)
+    kept = os.environ.get("ROBOSC_ROS2_WORKSPACE")
+    folder = Path(kept) if kept else tmp_path_factory.mktemp("ros2")
+    return build(ros, folder, ROS2_PACKAGES, sorted((HERE / "interfaces" / "ros2").iterdir()))
+
+
+def found_or_skipped(version: int) -> Ros:
+    """The installation; without one the test is skipped, or fails where `ROBOSC_REQUIRE` asks for it."""
+    found = find_ros1() if version == 1 else find_ros2()
+    if found.ros is None:
+        reason = f"ros{version}: {', '.join(found.missing)}"
+        if f"ros{version}" in os.environ.get("ROBOSC_REQUIRE", "").split(","):
+            pytest.fail(reason)
+        pytest.skip(reason)
+    return found.ros
+
+
+def build(ros: Ros, folder: Path, packages: Sequence[Package], others: Sequence[Path] = ()) -> Workspace:
+    """Generates packages into a workspace, puts others beside them, and builds all."""
+    source = folder / "src"
+    source.mkdir(parents=True, exist_ok=True)
+    for package in packages:
+        out = folder / "generated" / package.name
+        command: list[str | Path] = [sys.executable, "-m", "robosc", "transform", package.model, "-o", out]
+        settings = ["--config", package.configuration] if package.configuration else []
+        settings += ["--with-tests"] if package.with_tests else []
+        done = subprocess.run(
+            [*command, "--to", package.target, *settings], capture_output=True, text=True, check=False
+        )
+        assert done.returncode == 0, done.stdout + done.stderr
+        made = out / package.target.removesuffix("-layer") / package.name
+        if package.fault:
+            _spoil(made, *package.fault)
+        _link(source / package.name, made)
+    for other in others:
+        _link(source / other.name, other)
+    return Workspace(ros, folder, ros.built(folder))
+
+
+@contextmanager
+def middleware(workspace: Workspace, folder: Path, *, simulated: bool = False) -> Iterator[Processes]:
+    """Programs in the workspace's environment, on loopback and away from all others; for ROS 1 with a master.
+
+    Their logs and ROS's own (`log/`) are in `folder`, which must not exist. `simulated`: time comes from `/clock`.
+    """
+    folder.mkdir()
+    environment = workspace.environment() | {"ROS_LOG_DIR": str(folder / "log")}
+    if workspace.ros.version == 2:
+        domain = random.randrange(1, 100)  # noqa: S311  # so that runs side by side don't meet
+        with Processes(environment | {"ROS_DOMAIN_ID": str(domain)}, folder) as processes:
+            yield processes
+        return
+    port = free_port()
+    environment |= {
+        "ROS_MASTER_URI": f"http://127.0.0.1:{port}",
+        "ROS_IP": "127.0.0.1",
+        "ROS_HOSTNAME": "127.0.0.1",
+        "ROS_HOME": str(folder),
+    }
+    with Processes(environment, folder) as processes:
+        processes.start("roscore", ["roscore", "-p", str(port)])
+        # Fails until the master is there.
+        parameter = f"import rosgraph; rosgraph.Master('/test').setParam('/use_sim_time', {simulated})"
+        command = [workspace.ros.python, "-c", parameter]
+        processes.wait_until(
+            lambda: subprocess.run(command, env=environment, check=False, capture_output=True).returncode == 0,
+            "roscore is online",
+        )
+        yield processes
+
+
+def _spoil(package: Path, name: str, right: str, wrong: str) -> None:
+    file = package / name
+    text = file.read_text(encoding="utf-8")
+    assert text.count(right) == 1
+    file.write_text(text.replace(right, wrong), encoding="utf-8")
+
+
+def _link(place: Path, package: Path) -> None:
+    if not place.is_symlink():
+        place.symlink_to(package, target_is_directory=True)
