@@ -1,0 +1,21 @@
+"""A minute of 2,000 messages a second against nodes of each kind that can run here: what arrives, and what it costs.
+
+python benchmarks/flood.py [seconds]
+"""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+PROJECT = Path(__file__).parents[1]
+
+
+def main(seconds: str = "60") -> int:
+    command = [sys.executable, "-m", "pytest", "tests/ros/faults/test_flood.py", "--log-cli-level=INFO"]
+    environment = {**os.environ, "ROBOSC_FLOOD_SECONDS": seconds}
+    return subprocess.run(command, cwd=PROJECT, env=environment, check=False).returncode
+
+
+if __name__ == "__main__":
+    sys.exit(main(*sys.argv[1:]))

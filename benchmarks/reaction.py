@@ -1,0 +1,143 @@
+"""How soon nodes react, and what they cost, over the ROS that is there; writes `docs/performance.md`.
+
+    python benchmarks/reaction.py [--ros 1] [--nodes compiled] [--parts stop obstacle costs] [--stops 1000]
+                                  [--obstacles 200] [--seconds 300] [--keep FOLDER]
+
+Without options: compiled nodes and `robosc run`, ROS 1 and ROS 2, as far as they are there. Each of the four takes
+eight minutes, six of them for the costs, and what is compiled is built before. What was measured is kept in
+`benchmarks/performance.json`: what is left out this time stays on the page. `--keep` names a folder for what is built,
+so that the next call need not build it again.
+
+Compiled ROS 2 nodes need an rclcpp in AMENT_PREFIX_PATH, `run` of ROS 2 the environment that `./run-tests` makes.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import tempfile
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+ROOT = Path(__file__).parent.parent
+sys.path.insert(0, str(ROOT))
+
+from benchmarks.node_costs import costs, summary  # noqa: E402
+from benchmarks.performance_page import KINDS, page, percentiles  # noqa: E402
+from benchmarks.timed_packages import timed_packages  # noqa: E402
+from tests.ros.installations import find_ros1, find_ros2  # noqa: E402
+from tests.ros.reactions import reactions  # noqa: E402
+from tests.ros.running import Runner, find_rclpy, ros1_runner, ros2_runner  # noqa: E402
+from tests.ros.workspaces import Workspace, build  # noqa: E402
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+KEPT = ROOT / "benchmarks" / "performance.json"
+PAGE = ROOT / "docs" / "performance.md"
+INTERFACES = ROOT / "tests" / "ros" / "interfaces"
+
+
+def main() -> None:
+    options = _options()
+    with tempfile.TemporaryDirectory() as name:
+        scratch = Path(name)
+        folder = options.keep.resolve() if options.keep else scratch / "built"
+        for kind in KINDS:
+            if kind.ros not in options.ros or kind.nodes not in options.nodes:
+                continue
+            nodes = _prepared(kind.ros, kind.nodes, folder)
+            if isinstance(nodes, str):
+                _say(f"{kind.title} is left out: {nodes}")
+                continue
+            for part in options.parts:
+                began = time.monotonic()
+                _say(f"{kind.title}: {part} ...")
+                place = scratch / f"{kind.key}-{part}"
+                measured = PARTS[part](nodes, place, options)
+                kept = _kept() | {"machine": options.machine}
+                kept.setdefault(part, {})[kind.key] = measured
+                KEPT.write_text(json.dumps(kept, indent=1) + "\n")
+                PAGE.write_text(page(kept))
+                _say(f"{kind.title}: {part} took {time.monotonic() - began:.0f} s")
+    print(page(_kept()))
+
+
+def _kept() -> dict[str, Any]:
+    kept: dict[str, Any] = json.loads(KEPT.read_text()) if KEPT.exists() else {"machine": ""}
+    return kept
+
+
+def _options() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--ros", type=int, nargs="+", choices=[1, 2], default=[1, 2])
+    parser.add_argument("--nodes", nargs="+", choices=["compiled", "run"], default=["compiled", "run"])
+    parser.add_argument("--parts", nargs="+", choices=list(PARTS), default=list(PARTS))
+    parser.add_argument("--stops", type=int, default=1000)
+    parser.add_argument("--obstacles", type=int, default=200)
+    parser.add_argument("--seconds", type=float, default=300, help="how long the costs are measured")
+    parser.add_argument("--keep", type=Path, help="a folder for what is built")
+    parser.add_argument("--machine", default="two shared cores", help="what the page says of the machine")
+    return parser.parse_args()
+
+
+def _prepared(version: int, kind: str, folder: Path) -> Workspace | Runner | str:
+    """What nodes of a kind are started with, or why there are none."""
+    found = find_rclpy() if (version, kind) == (2, "run") else {1: find_ros1, 2: find_ros2}[version]()
+    if found.ros is None:
+        return ", ".join(found.missing)
+    place = folder / f"{kind}-ros{version}"
+    if kind == "run":
+        if version == 2:
+            return ros2_runner(found.ros, place)
+        place.mkdir(parents=True, exist_ok=True)
+        return ros1_runner(found.ros, Path(tempfile.mkdtemp(dir=place)))
+    _say(f"building the nodes for ROS {version} ...")
+    packages = timed_packages(version, place / "packages")
+    return build(found.ros, place, [], [*packages, *sorted((INTERFACES / f"ros{version}").iterdir())])
+
+
+def _stops(nodes: Workspace | Runner, folder: Path, options: argparse.Namespace) -> dict[str, Any]:
+    return _reaction(nodes, folder, "stop", options.stops)
+
+
+def _obstacles(nodes: Workspace | Runner, folder: Path, options: argparse.Namespace) -> dict[str, Any]:
+    return _reaction(nodes, folder, "obstacle", options.obstacles)
+
+
+def _reaction(nodes: Workspace | Runner, folder: Path, reason: str, times: int) -> dict[str, Any]:
+    found, echoes = reactions(nodes, folder, reason, times)
+    return {"times": times, "reaction": percentiles(found), "echo": percentiles(echoes)}
+
+
+def _costs(nodes: Workspace | Runner, folder: Path, options: argparse.Namespace) -> dict[str, Any]:
+    found = {
+        title: {
+            "processor": each.processor,
+            "resident": each.resident,
+            "virtual": each.virtual,
+            "ticks": len(each.node),
+            "played": each.played,
+            "reached": each.reached,
+            **{name: summary(times) for name, times in (("node", each.node), ("engine", each.engine)) if times},
+        }
+        for title, each in costs(nodes, folder, options.seconds).items()
+    }
+    return {"seconds": options.seconds, "nodes": found}
+
+
+PARTS: dict[str, Callable[[Any, Path, argparse.Namespace], dict[str, Any]]] = {
+    "stop": _stops,
+    "obstacle": _obstacles,
+    "costs": _costs,
+}
+
+
+def _say(text: str) -> None:
+    print(text, file=sys.stderr, flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,97 @@
+"""Generated packages of the eight scenarios whose nodes note the times of their ticks."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+HERE = Path(__file__).parent
+EXAMPLES = HERE.parent / "examples"
+TICK = re.compile(r"  void tick\(\) \{\n(    (\w+)_tick\(&supervisor_\);\n(?:.*\n)*?)  \}\n")
+TIMED = r"""  void tick() {
+    auto alone = supervisor_;
+    const auto began = TickTimes::Clock::now();
+\1    const auto ended = TickTimes::Clock::now();
+    alone.hooks = \2_hooks{};
+    \2_tick(&alone);
+    tick_times.note(ended - began, TickTimes::Clock::now() - ended);
+  }
+"""
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """A node that is measured: its title, its package, its model; whether it is a layer, and has no ticks."""
+
+    title: str
+    package: str
+    model: Path
+    layer: bool = False
+
+    @property
+    def name(self) -> str:
+        """As the simulator knows it."""
+        return self.model.stem
+
+
+def _controller(title: str) -> Scenario:
+    name = title.lower().replace(" ", "_")
+    return Scenario(title, f"{name}_controller", EXAMPLES / name / f"{name}.rscd")
+
+
+SUPERVISED = EXAMPLES / "supervised_line_follower"
+#: As table 6.8 of the thesis has them, and the layer.
+SCENARIOS = [
+    *map(
+        _controller,
+        (
+            "Line follower",
+            "Simple navigation",
+            "Obstacle navigation",
+            "Object finder",
+            "Maze solver",
+            "Push ball",
+            "Person follower",
+        ),
+    ),
+    Scenario(
+        "Supervised line follower",
+        "supervised_line_follower_layer",
+        SUPERVISED / "supervised_line_follower.rscd",
+        layer=True,
+    ),
+]
+#: The controller behind the layer; it is not measured.
+STEPPER = Scenario("Line stepper", "line_stepper_controller", SUPERVISED / "controller" / "line_stepper.rscd")
+
+
+def timed_packages(version: int, folder: Path) -> list[Path]:
+    """Generates the packages for a ROS into a folder; where they are. What has not changed is not written again."""
+    with tempfile.TemporaryDirectory() as generated:
+        return [_timed(each, version, Path(generated), folder / each.package) for each in [*SCENARIOS, STEPPER]]
+
+
+def _timed(scenario: Scenario, version: int, generated: Path, folder: Path) -> Path:
+    ros = f"ros{version}"
+    target, package = f"{ros}-layer" if scenario.layer else ros, folder / ros / scenario.package
+    command = [sys.executable, "-m", "robosc", "transform", scenario.model, "--to", target, "-o", generated]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    plain = generated / ros / scenario.package
+    texts = {each.relative_to(plain): each.read_text() for each in plain.rglob("*") if each.is_file()}
+    if not scenario.layer:
+        node = Path("src") / f"{scenario.package}_node.cpp"
+        timed, found = TICK.subn(TIMED, texts[node])
+        assert found == 1, f"{node} has no tick as expected"
+        texts[node] = '#include "tick_times.hpp"\n' + timed
+        texts[Path("include") / "tick_times.hpp"] = (HERE / "tick_times.hpp").read_text()
+    for path, text in texts.items():
+        place = package / path
+        if not place.exists() or place.read_text() != text:
+            place.parent.mkdir(parents=True, exist_ok=True)
+            place.write_text(text)
+    return package
