@@ -158,10 +158,13 @@ def synthesize(model: SupervisoryControlModel) -> Supervisor:
     return supervisor
 
 
-def generate(target: str, models: Models, configuration: Configuration | None = None) -> dict[str, str]:
+def generate(
+    target: str, models: Models, configuration: Configuration | None = None, *, with_tests: bool = False
+) -> dict[str, str]:
     """The files of a target (`cif`, `supervisor`, `ros1`, `ros2`, `xmi`): POSIX path in the target's folder to text.
 
-    Without a configuration all settings have their defaults. Raises ModelError where the models or the configuration
+    Without a configuration all settings have their defaults. `with_tests` adds a test and a Dockerfile to the packages
+    of `ros1` and `ros2`. Raises ModelError where the models or the configuration
     don't meet the target's preconditions, ValueError where the target is unknown or a model that it reads is missing.
     """
     from robosc.config import Configuration
@@ -178,4 +181,4 @@ def generate(target: str, models: Models, configuration: Configuration | None = 
     findings = TARGETS[target].findings(models, configuration)
     if has_errors(findings):
         raise ModelError(findings)
-    return TARGETS[target].generator().generate(models, configuration)
+    return TARGETS[target].files(models, configuration, with_tests=with_tests)

@@ -18,10 +18,13 @@ ROOMS = {
     "m2m",
     "synthesis",
     "engine",
+    "runtime",
+    "simulation",
     "diagrams",
     "m2t",
     "supervision",
     "targets",
+    "traces",
     "cli",
     "__main__",
     "",
@@ -31,21 +34,34 @@ ALLOWED = {
     "": ROOMS - {"cli", "__main__"},
     "__main__": {"cli"},
     "supervision": {"synthesis"},
+    "runtime": {"engine"},
+    "traces": {"engine", "runtime"},
+    "simulation": {"engine", "runtime"},
     "cli": ROOMS - {"__main__"},
 }
 #: Pieces that generators share, each with what it may use of the others.
-SHARED = {"templates": set(), "c": {"templates"}, "cpp": {"c", "templates"}}
+SHARED = {"templates": set(), "c": {"templates"}, "cpp": {"c", "templates"}, "layer": {"c", "cpp", "templates"}}
 
 LIBRARIES = {
+    "action_msgs": {"runtime"},
+    "actionlib": {"runtime"},
+    "actionlib_msgs": {"runtime"},
     "arpeggio": {"language"},
     "click": {"cli"},
+    "genpy": {"runtime"},
     "jinja2": {"diagrams", "m2t"},
     "networkx": {"diagrams"},
     "oxidd": {"synthesis"},
     "pydantic": {"config"},
     "pyecore": {"metamodel"},
+    "rcl_interfaces": {"runtime"},
+    "rclpy": {"runtime"},
     "rich": {"cli", "diagnostics"},
     "rosbags": {"interfaces"},
+    "rosgraph": {"runtime"},
+    "rosgraph_msgs": {"runtime"},
+    "rospy": {"runtime"},
+    "std_msgs": {"runtime"},
     "textx": {"language"},
 }
 
@@ -118,6 +134,10 @@ def test_every_other_library_is_the_standard_one() -> None:
         ("typing", "checks"),
         ("metamodel.sct", "cli"),
         ("m2t.cif", "cli"),
+        ("engine", "runtime"),
+        ("runtime", "m2t.cpp"),
+        ("m2t.ros1", "traces"),
+        ("runtime", "traces"),
         ("checks.rule", "__version__"),
     ],
 )

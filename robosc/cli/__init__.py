@@ -24,6 +24,8 @@ _COMMANDS = {
     "check": "Say what is wrong with models.",
     "transform": "Generate code and models.",
     "synthesize": "Show the supervisor.",
+    "simulate": "Try the supervised robot.",
+    "run": "Be a robot's controller on ROS, without a build.",
     "format": "Lay out models in the one canonical way.",
     "rule": "Say what a rule means.",
     "diagram": "Draw a metamodel.",
@@ -91,6 +93,7 @@ def main(**_: Any) -> None:
       robosc check line_follower.rscd
       robosc transform line_follower.rscd --to ros2,cif
       robosc synthesize line_follower.rscd
+      robosc run line_follower.rscd --ros2
       robosc rule marked-state
 
     Exit status: 0 fine, 1 errors in the model, 2 a wrong call, 3 an empty supervisor.

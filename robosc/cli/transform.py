@@ -18,7 +18,7 @@ from robosc.supervision import supervise
 from robosc.targets import TARGETS, Target
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from robosc.models import Models
 
@@ -41,6 +41,9 @@ _EPILOG = "\n".join(["\b", "Targets:", *(f"  {each.name:<11} {each.description}"
 @click.option(
     "--config", "chosen", type=FILE, help="The configuration, if not the controller-config.json near the model."
 )
+@click.option(
+    "--with-tests", is_flag=True, help="Add a test that plays event traces against the node, and a Dockerfile."
+)
 @findings_format
 @library_path
 @interface_path
@@ -49,6 +52,7 @@ def command(
     targets: Sequence[Target],
     output: str | None,
     chosen: str | None,
+    with_tests: bool,
     form: str,
     library_paths: Sequence[str],
     interface_paths: Sequence[str],
@@ -60,11 +64,15 @@ def command(
     \b
     Examples:
       robosc transform line_follower.rscd --to ros2
+      robosc transform line_follower.rscd --to ros1 --with-tests
       robosc transform line_follower.rscd --to cif,supervisor,xmi -o out
       robosc transform out/LineFollower.sct.xmi --to cif
 
     Exit status: 0 done, 1 errors in the model, 2 a wrong call, 3 no supervisor exists.
     """
+    if with_tests and not any(each.tested_ros for each in targets):
+        tested = [each.name for each in TARGETS.values() if each.tested_ros]
+        raise CallError(f"--with-tests is for {' and '.join(tested)}: the other targets have none")
     with Report(form) as report:
         models = read_models(model, library_paths, report, interface_paths)
         for target in targets:
@@ -80,7 +88,13 @@ def command(
             report.add(target.findings(models, configuration))
         report.stop_on_errors()
         folder = Path(output or f"build/{models.sct.name}")
-        trees = _trees(folder, Path(model).parent, targets, models, configuration)
+        files = {}
+        for target in targets:
+            with progress(f"generating {target.name}"):
+                files[target] = target.files(
+                    models, configuration, with_tests=with_tests, interface_paths=interface_paths
+                )
+        trees = _trees(folder, Path(model).parent, files, models, configuration)
         try:
             changed = write(trees)
         except OutputError as error:
@@ -94,13 +108,20 @@ def _configuration(model: Path, chosen: str | None) -> config.Configuration:
 
 
 def _trees(
-    folder: Path, home: Path, targets: Sequence[Target], models: Models, configuration: config.Configuration
+    folder: Path,
+    home: Path,
+    generated: Mapping[Target, dict[str, str]],
+    models: Models,
+    configuration: config.Configuration,
 ) -> dict[Path, dict[str, str]]:
     """What goes where: all targets below the output folder, and the copies that the configuration asks for."""
     trees: dict[Path, dict[str, str]] = {folder: {}}
-    for target in targets:
-        files = target.generator().generate(models, configuration)
+    packages: dict[PurePosixPath, Target] = {}
+    for target, files in generated.items():
         below = PurePosixPath(target.folder(models, configuration))
+        if target.package and packages.setdefault(below, target) is not target:
+            names = f"{packages[below].name} and {target.name}"
+            raise CallError(f'{names} would both be {below}: "package.name" names both, generate one at a time')
         trees[folder] |= {(below / path).as_posix(): text for path, text in files.items()}
         copy = getattr(configuration.output, target.location) if target.location else None
         if copy:

@@ -33,7 +33,9 @@ def test_all_targets_have_their_place(run: Run, door: Path) -> None:
         "Door.rosgraph.xmi",
         "Door.sct.xmi",
         "ros1/door_controller",
+        "ros1/door_layer",
         "ros2/door_controller",
+        "ros2/door_layer",
         "supervisor/CMakeLists.txt",
         "supervisor/door_supervisor.c",
         "supervisor/door_supervisor.h",
@@ -106,7 +108,7 @@ def test_nothing_is_written_where_something_is_wrong(
 def test_unknown_targets(run: Run, door: Path, targets: str) -> None:
     answer = run("transform", door, "--to", targets)
     assert answer.exit_code == 2
-    assert "is none of cif, supervisor, ros1, ros2, xmi" in answer.stderr
+    assert "is none of cif, supervisor, ros1, ros2, ros1-layer, ros2-layer, xmi" in answer.stderr
 
 
 def test_targets_one_by_one(run: Run, door: Path) -> None:
@@ -114,6 +116,14 @@ def test_targets_one_by_one(run: Run, door: Path) -> None:
     run("transform", door, "--to", "xmi", "--to", "cif", "-o", "two")
     assert len(tree(Path("one"))) == 5
     assert tree(Path("one")) == tree(Path("two"))
+
+
+def test_a_name_for_a_controller_and_its_layer(run: Run, door: Path) -> None:
+    Path("named.json").write_text('{"package": {"name": "gate"}}')
+    answer = run("transform", door, "--to", "ros1,ros1-layer", "--config", "named.json")
+    assert answer.exit_code == 2
+    assert 'ros1 and ros1-layer would both be ros1/gate: "package.name" names both' in answer.stderr
+    assert run("transform", door, "--to", "ros1,ros2-layer", "--config", "named.json").exit_code == 0
 
 
 def test_a_folder_that_can_not_be_written(run: Run, door: Path) -> None:
@@ -191,3 +201,33 @@ def test_nothing_is_generated_for_an_action_that_cancels_itself(run: Run, self_c
     assert "[self-cancelling]" in answer.stdout
     assert "[shared-topic-conflict]" in answer.stdout
     assert not Path("out").exists()
+
+
+def test_with_tests(run: Run, door: Path) -> None:
+    assert run("transform", door, "--to", ALL, "-o", "out").exit_code == 0
+    answer = run("transform", door, "--to", ALL, "-o", "tested", "--with-tests")
+    assert answer.exit_code == 0, answer.output
+    plain, tested = tree(Path("out")), tree(Path("tested"))
+    differ = {path for path in tested if plain.get(path) != tested[path]}
+    assert set(plain) < set(tested)
+    assert all(path.startswith(("ros1/door_controller/", "ros2/door_controller/")) for path in differ)
+    for ros in ("ros1", "ros2"):
+        folder = Path("tested") / ros / "door_controller" / "test"
+        assert os.access(folder / "play_trace.py", os.X_OK)
+        assert not os.access(folder / "trace_player.py", os.X_OK)
+        assert (folder / "traces" / "random_walk.jsonl").read_text().count("\n") > 60
+
+
+def test_tests_for_what_has_none(run: Run, door: Path) -> None:
+    answer = run("transform", door, "--to", "cif,ros2-layer", "--with-tests")
+    assert answer.exit_code == 2
+    assert "--with-tests is for ros1 and ros2" in answer.output
+    assert not Path("build").exists()
+
+
+@pytest.mark.parametrize("start", ["rosgraph", "robosc"])
+def test_saved_models_give_the_same_tests(run: Run, door: Path, start: str) -> None:
+    assert run("transform", door, "--to", "xmi,ros1", "-o", "out", "--with-tests").exit_code == 0
+    answer = run("transform", f"out/Door.{start}.xmi", "--to", "ros1", "-o", "again", "--with-tests")
+    assert answer.exit_code == 0, answer.output
+    assert tree(Path("again")).items() <= tree(Path("out")).items()
