@@ -25,6 +25,8 @@ ROOMS = {
     "supervision",
     "targets",
     "traces",
+    "verification",
+    "explanation",
     "cli",
     "__main__",
     "",
@@ -37,6 +39,8 @@ ALLOWED = {
     "runtime": {"engine"},
     "traces": {"engine", "runtime"},
     "simulation": {"engine", "runtime"},
+    "explanation": {"synthesis", "supervision", "engine"},
+    "verification": {"synthesis", "supervision", "engine", "m2t"},
     "cli": ROOMS - {"__main__"},
 }
 #: Pieces that generators share, each with what it may use of the others.

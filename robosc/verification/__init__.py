@@ -1,0 +1,1 @@
+"""Proves or refutes that a supervised system keeps its promises, and that its outputs are what it is."""
