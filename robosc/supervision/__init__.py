@@ -9,7 +9,7 @@ from robosc.diagnostics import Diagnostic, ModelError, Severity, has_errors
 from robosc.metamodel.places import place
 from robosc.supervision.findings import findings_of
 from robosc.supervision.wording import blocking, in_words
-from robosc.synthesis import Synthesis, synthesize
+from robosc.synthesis import MEMORY, Statistics, Synthesis, synthesize
 
 if TYPE_CHECKING:
     from robosc.metamodel import sct
@@ -37,12 +37,15 @@ class EmptySupervisorError(ModelError):
         super().__init__([Diagnostic(file, span, Severity.ERROR, "empty-supervisor", message, hint)])
 
 
-def supervise(model: sct.SupervisoryControlModel) -> Supervision:
+def supervise(
+    model: sct.SupervisoryControlModel, *, memory: int = MEMORY, statistics: Statistics | None = None
+) -> Supervision:
     """Synthesizes the supervisor of a model, and makes it the model's own unless the findings have an error.
 
-    Raises EmptySupervisorError where there is none, ModelError and MemoryError as `robosc.synthesis.synthesize` does.
+    `memory` and `statistics` are those of `robosc.synthesis.synthesize`. Raises EmptySupervisorError where there is no
+    supervisor, ModelError and MemoryError as it does.
     """
-    synthesis = synthesize(model)
+    synthesis = synthesize(model, memory=memory, statistics=statistics)
     if synthesis.observations is None:
         raise EmptySupervisorError(model, synthesis)
     found = findings_of(model, synthesis.observations)

@@ -9,8 +9,7 @@ else:
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from time import perf_counter
+from dataclasses import dataclass
 
 from robosc.diagnostics import Diagnostic, ModelError, Severity
 from robosc.metamodel import sct
@@ -24,18 +23,22 @@ from robosc.synthesis.guards import permission
 from robosc.synthesis.observations import Observations, Observer
 from robosc.synthesis.paths import TraceStep
 from robosc.synthesis.relation import event_relations
+from robosc.synthesis.statistics import Phase, Statistics
 
-__all__ = ["Observations", "Reason", "Synthesis", "TraceStep", "synthesize"]
+__all__ = ["Observations", "Phase", "Reason", "Statistics", "Synthesis", "TraceStep", "synthesize"]
+
+#: How many bytes decision diagrams may take where nothing else is said.
+MEMORY = 4 << 30
 
 
 @dataclass(frozen=True)
 class Synthesis:
-    """The result of synthesis. All but `seconds` is the same on every run.
+    """The result of synthesis. All but the seconds is the same on every run.
 
     Either `supervisor` and `observations` are there and `reason` is None, or the supervisor is empty, and `reason` says
     why. A state is an assignment of locations and variables: `uncontrolled_states` counts those that the plants reach
     without requirements, `controlled_states` those under the supervisor. `bdd_nodes` are the nodes of the diagrams of
-    the controlled states and of the states in which each controllable event is allowed.
+    the controlled states and of the states in which each controllable event is allowed. `statistics` say what it cost.
     """
 
     supervisor: sct.Supervisor | None
@@ -44,24 +47,32 @@ class Synthesis:
     uncontrolled_states: int
     controlled_states: int
     bdd_nodes: int
-    seconds: float
+    statistics: Statistics
     #: The events that can happen under the supervisor, in the order of the plants.
     possible: tuple[sct.Event, ...] = ()
 
+    @property
+    def seconds(self) -> float:
+        """How long it took."""
+        return sum(self.statistics.seconds.values())
 
-def synthesize(model: sct.SupervisoryControlModel, *, memory: int = 4 << 30) -> Synthesis:
+
+def synthesize(
+    model: sct.SupervisoryControlModel, *, memory: int = MEMORY, statistics: Statistics | None = None
+) -> Synthesis:
     """The maximally permissive, controllable, non-blocking supervisor of a valid model, which stays as it is.
 
     Plants, events, expressions mean what the documentation of `sct.ecore` says; inputs are parameters of their event:
     an uncontrollable event is controllable for all of their values, a marked state is reachable for some. `memory`
-    bounds the bytes for decision diagrams: they grow as needed, and MemoryError is raised beyond. Raises ModelError,
+    bounds the bytes for decision diagrams: they grow as needed, and MemoryError is raised beyond. New `statistics` that
+    are handed in tell another thread how far it is. Raises ModelError,
     located, for what no synthesis can be made of: doubles, strings, and data that comes with a controllable event.
     """
-    began = perf_counter()
     _refuse_data_of_controllable_events(model)
-    layout = Layout(model)
-    result = with_enough_memory(lambda capacity: _synthesize(model, layout, capacity), memory)
-    return replace(result, seconds=perf_counter() - began)
+    statistics = statistics or Statistics()
+    with statistics.during(Phase.ORDER):
+        layout = Layout(model)
+    return with_enough_memory(lambda capacity: _synthesize(model, layout, capacity, statistics), memory)
 
 
 def _refuse_data_of_controllable_events(model: sct.SupervisoryControlModel) -> None:
@@ -77,47 +88,54 @@ def _refuse_data_of_controllable_events(model: sct.SupervisoryControlModel) -> N
         )
 
 
-def _synthesize(model: sct.SupervisoryControlModel, layout: Layout, capacity: int) -> Synthesis:
-    """All of the result but the seconds."""
-    diagrams = Diagrams(layout.levels, capacity)
-    encoding = Encoding(layout, diagrams)
-    relations = event_relations(model, encoding)
-    plant_moves = [(each, each.plant_step) for each in relations if each.plant_step is not None]
-    moves = [(each, each.step) for each in relations if each.step is not None]
-    uncontrolled = reachable(diagrams, [step for _, step in plant_moves], encoding.initial, diagrams.true)
-    found = supervise(
-        diagrams,
-        [step for _, step in moves],
-        [step for relation, step in moves if not relation.event.controllable],
-        encoding.initial,
-        encoding.all_marked,
-    )
+def _synthesize(model: sct.SupervisoryControlModel, layout: Layout, capacity: int, statistics: Statistics) -> Synthesis:
+    """The result, with room for so many nodes."""
+    statistics.begin_again()
+    with statistics.during(Phase.ENCODE):
+        diagrams = Diagrams(layout.levels, capacity, statistics)
+        encoding = Encoding(layout, diagrams)
+        relations = event_relations(model, encoding)
+        plant_moves = [(each, each.plant_step) for each in relations if each.plant_step is not None]
+        moves = [(each, each.step) for each in relations if each.step is not None]
+    with statistics.during(Phase.FIXPOINT):
+        uncontrolled = reachable(diagrams, [step for _, step in plant_moves], encoding.initial, diagrams.true)
+        found = supervise(
+            encoding,
+            [step for _, step in moves],
+            [step for relation, step in moves if not relation.event.controllable],
+        )
     if not found.controlled.satisfiable():
-        reason = EmptySupervisor(encoding, moves, plant_moves, found).reason()
-        return Synthesis(None, None, reason, encoding.count(uncontrolled), 0, found.controlled.node_count(), 0.0)
-    permissions = [
-        permission(each, found.controlled, encoding, restricts=len(found.rounds) > 1)
-        for each in relations
-        if each.event.controllable
-    ]
-    permitted = {each.relation.event: each.allowed for each in permissions}
-    supervisor = sct.Supervisor(
-        uncontrolledStates=encoding.count(uncontrolled),
-        controlledStates=encoding.count(found.controlled),
-        bddNodes=found.controlled.node_count() + sum(each.allowed.node_count() for each in permissions),
-        guards=[each.guard for each in permissions],
-    )
+        with statistics.during(Phase.GUARDS):
+            reason = EmptySupervisor(encoding, moves, plant_moves, found).reason()
+        nodes = found.controlled.node_count()
+        return Synthesis(None, None, reason, encoding.count(uncontrolled), 0, nodes, statistics)
+    with statistics.during(Phase.GUARDS):
+        permissions = [
+            permission(each, found.controlled, encoding, restricts=len(found.rounds) > 1)
+            for each in relations
+            if each.event.controllable
+        ]
+        permitted = {each.relation.event: each.allowed for each in permissions}
+        supervisor = sct.Supervisor(
+            uncontrolledStates=encoding.count(uncontrolled),
+            controlledStates=encoding.count(found.controlled),
+            bddNodes=found.controlled.node_count() + sum(each.allowed.node_count() for each in permissions),
+            guards=[each.guard for each in permissions],
+        )
+    with statistics.during(Phase.OBSERVE):
+        observations = Observer(model, encoding, moves, found, permissions).observations(uncontrolled)
+        possible = [
+            each.event
+            for each in relations
+            if (permitted[each.event] if each.event in permitted else found.controlled & each.enabled).satisfiable()
+        ]
     return Synthesis(
         supervisor,
-        Observer(model, encoding, moves, found, permissions).observations(uncontrolled),
+        observations,
         None,
         supervisor.uncontrolledStates,
         supervisor.controlledStates,
         supervisor.bddNodes,
-        0.0,
-        tuple(
-            each.event
-            for each in relations
-            if (permitted[each.event] if each.event in permitted else found.controlled & each.enabled).satisfiable()
-        ),
+        statistics,
+        tuple(possible),
     )

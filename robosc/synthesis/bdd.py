@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, TypeAlias
 from oxidd.bcdd import BCDDFunction, BCDDManager
 from oxidd.util import BooleanOperator, DDMemoryError
 
+from robosc.synthesis.statistics import Statistics
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
     from typing import TypeVar
@@ -21,15 +23,22 @@ Diagram: TypeAlias = BCDDFunction
 _BYTES_PER_NODE = 40
 _FIRST_CAPACITY = 1 << 18
 _GROWTH = 4
+#: The share of the room at which the library would collect garbage, a little less, and the one that may be in use then.
+_FULL = 0.94
+_TOO_FULL = 0.75
 
 
 class Diagrams:
     """Decision diagrams over a fixed number of variables; a variable's number is its level, 0 at the top."""
 
-    def __init__(self, levels: int, capacity: int) -> None:
-        """Room for `capacity` nodes; an operation that needs more raises DDMemoryError."""
+    def __init__(self, levels: int, capacity: int, statistics: Statistics | None = None) -> None:
+        """Room for `capacity` nodes; an operation that needs more raises DDMemoryError. `statistics` are kept."""
         self._manager = BCDDManager(capacity, capacity, 1)
         self._manager.add_vars(levels)
+        self._capacity = capacity
+        self._crowded = capacity // 2
+        self._collections = self._manager.gc_count()
+        self.statistics = statistics or Statistics()
         self.levels = levels
         self.true = self._manager.true()
         self.false = self._manager.false()
@@ -44,6 +53,26 @@ class Diagrams:
         for level in sorted(levels, reverse=True):
             result = self.variable(level) & result
         return result
+
+    def tidy(self) -> None:
+        """To be called between operations, every now and then: counts the nodes, and collects garbage in good time.
+
+        Where room gets really short the library would collect garbage on a thread of its own: then no two runs would be
+        the same. So that counts as too little room, and DDMemoryError is raised.
+        """
+        manager = self._manager
+        nodes = manager.approx_num_inner_nodes()
+        self.statistics.peak_nodes = max(self.statistics.peak_nodes, nodes)
+        full = self._capacity * _FULL
+        if nodes > full or manager.gc_count() != self._collections:
+            raise DDMemoryError
+        if nodes > self._crowded:
+            manager.gc()
+            self._collections = manager.gc_count()
+            left = manager.approx_num_inner_nodes()
+            if left > self._capacity * _TOO_FULL:
+                raise DDMemoryError
+            self._crowded = (left + self._capacity) // 2
 
     def node(self, level: int, high: Diagram, low: Diagram) -> Diagram:
         """`high` where the variable is true, else `low`."""
@@ -69,11 +98,12 @@ def with_enough_memory(run: Callable[[int], T], memory: int) -> T:
 
     `memory` bounds the bytes that the nodes may take; raises MemoryError beyond it.
     """
-    capacity = _FIRST_CAPACITY
+    most = memory // _BYTES_PER_NODE
+    capacity = min(_FIRST_CAPACITY, most)
     while True:
         try:
             return run(capacity)
         except DDMemoryError:
-            capacity *= _GROWTH
-            if capacity * _BYTES_PER_NODE > memory:
+            if capacity == most:
                 raise MemoryError(f"synthesis needs more than {memory >> 20} MiB for its decision diagrams") from None
+            capacity = min(capacity * _GROWTH, most)

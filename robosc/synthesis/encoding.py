@@ -122,6 +122,7 @@ class Encoding:
     def __init__(self, layout: Layout, diagrams: Diagrams) -> None:
         self.layout = layout
         self.diagrams = diagrams
+        self._codes: dict[tuple[Element, int], Diagram] = {}
         self._between: dict[tuple[Element, int, int], Diagram] = {}
 
     def bits(self, element: Element) -> tuple[Diagram, ...]:
@@ -134,7 +135,12 @@ class Encoding:
 
     def has_code(self, element: Element, code: int) -> Diagram:
         """Where the element has the value with that code."""
-        return self._same(self.bits(element), arithmetic.constant(self.diagrams, code))
+        known = self._codes.get((element, code))
+        if known is None:
+            known = self._codes[element, code] = self._same(
+                self.bits(element), arithmetic.constant(self.diagrams, code)
+            )
+        return known
 
     def in_domain(self, element: Element) -> Diagram:
         """Where the element's bits are a code at all."""
@@ -169,11 +175,11 @@ class Encoding:
 
     def location(self, location: sct.Location) -> Diagram:
         """Where the location's plant is in it."""
-        return self.has_code(location.eContainer(), self._location_code(location))
+        return self.has_code(location.eContainer(), self.location_code(location))
 
     def next_location(self, location: sct.Location) -> Diagram:
         """Where the location's plant will be in it."""
-        return self.becomes(location.eContainer(), arithmetic.constant(self.diagrams, self._location_code(location)))
+        return self.becomes(location.eContainer(), arithmetic.constant(self.diagrams, self.location_code(location)))
 
     def marked(self, plant: sct.Plant) -> Diagram:
         """Where the plant is in a marked location."""
@@ -300,7 +306,8 @@ class Encoding:
         code = (*self.bits(element), self.diagrams.false)
         return arithmetic.add(code, arithmetic.constant(self.diagrams, smallest(element)))
 
-    def _location_code(self, location: sct.Location) -> int:
+    def location_code(self, location: sct.Location) -> int:
+        """The code of a location among those of its plant."""
         plant: sct.Plant = location.eContainer()
         return next(code for code, each in enumerate(plant.locations) if each is location)
 

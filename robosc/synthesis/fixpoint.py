@@ -22,6 +22,7 @@ from robosc.synthesis.bdd import Diagram, Diagrams, split
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
+    from robosc.synthesis.encoding import Encoding
     from robosc.synthesis.relation import Step
 
 
@@ -78,6 +79,8 @@ class _Saturation:
             closed = states = self._close(states, within, group + 1)
             for step in self._groups[group][1]:
                 states |= self._fire(step, states) & within
+                self._diagrams.statistics.operations += 1
+                self._diagrams.tidy()
             if states == closed:
                 return closed
 
@@ -92,16 +95,18 @@ def coreachable(diagrams: Diagrams, steps: Sequence[Step], states: Diagram, with
     return _Saturation(diagrams, steps, lambda step, each: step.preimage(each)).closure(states, within)
 
 
-def supervise(
-    diagrams: Diagrams, steps: Sequence[Step], uncontrollable: Sequence[Step], initial: Diagram, marked: Diagram
-) -> SupervisedStates:
+def supervise(encoding: Encoding, steps: Sequence[Step], uncontrollable: Sequence[Step]) -> SupervisedStates:
     """The states of the maximally permissive, controllable, non-blocking supervisor.
 
     `steps` are all events under the requirements, `uncontrollable` those of them that no supervisor can forbid.
     """
+    diagrams, initial, marked = encoding.diagrams, encoding.initial, encoding.all_marked
+    statistics = diagrams.statistics
     good = reachable(diagrams, steps, initial, diagrams.true)
     rounds, alive = [good], []
     while True:
+        statistics.rounds += 1
+        statistics.states = encoding.count(good)
         alive.append(coreachable(diagrams, steps, marked & good, good))
         blocked = good & ~alive[-1]
         if not blocked.satisfiable():

@@ -49,6 +49,7 @@ def permission(relation: EventRelation, controlled: Diagram, encoding: Encoding,
             if guard.everEnabled
             else ex.BooleanLiteral(value=False)
         )
+    encoding.diagrams.tidy()
     return Permission(relation, guard, allowed)
 
 

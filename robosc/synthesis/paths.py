@@ -80,7 +80,9 @@ class Layers:
             here = self._encoding.state(state)
             allowed = layer & self._within
             move, before = next(
-                (move, before) for move in self._moves if (before := move[1].preimage(here) & allowed).satisfiable()
+                (move, before)
+                for move in self._moves
+                if move[0].may_lead_to(state) and (before := move[1].preimage(here) & allowed).satisfiable()
             )
             state = pick(before, self._encoding.layout.state)
             states.append(state)
@@ -107,6 +109,8 @@ def _inputs(
     encoding: Encoding, relation: EventRelation, before: Mapping[Element, int], after: Mapping[Element, int]
 ) -> dict[str, Value]:
     """Values of the event's inputs that lead from one state to the next; none for those that do not matter."""
+    if not relation.event.inputs:
+        return {}
     fitting = relation.between(before, after)
     chosen = {}
     for each in relation.event.inputs:

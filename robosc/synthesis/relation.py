@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from robosc.metamodel import sct
 from robosc.synthesis import arithmetic
 from robosc.synthesis.bdd import Diagram, and_exists
+from robosc.synthesis.encoding import referenced
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -83,17 +84,42 @@ class EventRelation:
         levels = [level for each in domains for level in (*each.levels, *each.next_levels)]
         return result.exists(encoding.diagrams.cube(levels))
 
+    def may_lead_to(self, codes: Mapping[Element, int]) -> bool:
+        """False only where the event leads to the state with these codes from nowhere: a quick look at its plants."""
+        return all(codes[plant] in targets for plant, targets in self._targets)
+
+    @cached_property
+    def _targets(self) -> list[tuple[sct.Plant, frozenset[int]]]:
+        """For each plant that takes part, the codes of the locations to which the event leads it."""
+        return [
+            (plant, frozenset(self._encoding.location_code(edge.target) for edge in edges))
+            for plant, edges in zip(self.enabled_by, self._edges, strict=True)
+        ]
+
     @cached_property
     def plant_step(self) -> Step | None:
         """What the event does where the plants enable it; None where it changes nothing at all."""
-        return self._step(self._encoding.diagrams.true) if self.changed else None
+        return self.step_where(self._encoding.diagrams.true)
 
     @cached_property
     def step(self) -> Step | None:
         """What the event does where the requirements allow it too."""
-        return self._step(self.requirement) if self.changed and not self.requirement.valid() else self.plant_step
+        return self.plant_step if self.requirement.valid() else self.step_where(self.requirement)
 
-    def _step(self, condition: Diagram) -> Step:
+    @cached_property
+    def touched(self) -> frozenset[Element]:
+        """Whatever the plants read or change when it happens, or to find out whether it can."""
+        touched = {*self.enabled_by, *self.changed}
+        for edge in (edge for edges in self._edges for edge in edges):
+            touched.update(referenced(edge.guard))
+            for update in edge.updates:
+                touched.update(referenced(update.value))
+        return frozenset(touched)
+
+    def step_where(self, condition: Diagram) -> Step | None:
+        """What the event does where the plants enable it and the condition holds; None where it changes nothing."""
+        if not self.changed:
+            return None
         domains = self._encoding.layout.domains
         diagrams = self._encoding.diagrams
         inputs = diagrams.cube(level for each in self.event.inputs for level in domains[each].levels)

@@ -1,0 +1,116 @@
+"""How many silent events may happen in a row before they come to rest, if they do."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from robosc.roles import SILENT
+from robosc.synthesis.encoding import referenced
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from robosc.metamodel import sct
+    from robosc.synthesis.bdd import Diagram, Diagrams
+    from robosc.synthesis.encoding import Element
+    from robosc.synthesis.relation import EventRelation, Step
+
+#: What looking at a step costs beside the nodes of the states.
+_OVERHEAD = 100
+
+
+@dataclass(frozen=True)
+class SilentEvent:
+    """A silent event under its supervisor.
+
+    `allowed` is where it can happen, `step` what it does there (None: nothing), `touched` all that it reads or changes.
+    """
+
+    relation: EventRelation
+    allowed: Diagram
+    step: Step | None
+    touched: frozenset[Element]
+
+    def before(self, states: Diagram) -> Diagram:
+        """Those states in which the event can happen so that one of them follows."""
+        return states & (self.allowed if self.step is None else self.step.preimage(states))
+
+
+def silent_events(
+    supervised: Sequence[tuple[EventRelation, Diagram]], guards: Sequence[sct.EventGuard]
+) -> list[SilentEvent]:
+    """The silent ones of all events, each given with where plants and supervisor let it happen."""
+    guard_of = {each.event: each for each in guards}
+    found = []
+    for relation, allowed in supervised:
+        if relation.event.kind in SILENT:
+            guard = guard_of.get(relation.event)
+            parts = (guard.requirement, guard.synthesis) if guard else ()
+            read = {element for part in parts for element in referenced(part)}
+            found.append(SilentEvent(relation, allowed, relation.step_where(allowed), relation.touched | read))
+    return found
+
+
+@dataclass(frozen=True)
+class Settling:
+    """Whether silent events come to rest.
+
+    `bound`: so many can happen in a row at most; None where there is no bound, or none was found with the effort
+    allowed. `restless` are the states from which they need never come to rest.
+    """
+
+    bound: int | None
+    restless: Diagram
+
+
+def settling(diagrams: Diagrams, events: Sequence[SilentEvent], states: Diagram, effort: int) -> Settling:
+    """What can happen in a row from the states, which hold all that the events lead to.
+
+    Events that have nothing to do with each other don't delay each other: the longest run of all is no longer than
+    those of the groups together, and it is endless where one of these is. `effort` bounds the work, in nodes looked at.
+    """
+    bound, restless = 0, diagrams.false
+    for group in _groups(events):
+        previous = states
+        for longer in runs(diagrams, group, states):
+            if not longer.satisfiable():
+                break
+            if longer == previous:
+                restless |= longer
+                break
+            effort -= len(group) * (longer.node_count() + _OVERHEAD)
+            if effort < 0:
+                return Settling(None, restless)
+            previous = longer
+            bound += 1
+    return Settling(None if restless.satisfiable() else bound, restless)
+
+
+def runs(diagrams: Diagrams, events: Sequence[SilentEvent], states: Diagram) -> Iterator[Diagram]:
+    """The states from which one event can happen, two in a row, three and so on: each set holds the next one."""
+    while True:
+        before = diagrams.false
+        for each in events:
+            before |= each.before(states)
+        states = before
+        yield states
+
+
+def _groups(events: Sequence[SilentEvent]) -> list[list[SilentEvent]]:
+    """Events of different groups change nothing that the others touch."""
+    groups: list[list[SilentEvent]] = []
+    for event in events:
+        related = [event]
+        apart = []
+        for group in groups:
+            if any(_related(event, other) for other in group):
+                related += group
+            else:
+                apart.append(group)
+        groups = [*apart, related]
+    return groups
+
+
+def _related(first: SilentEvent, second: SilentEvent) -> bool:
+    return not (first.touched.isdisjoint(second.relation.changed) and second.touched.isdisjoint(first.relation.changed))
