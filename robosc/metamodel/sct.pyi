@@ -111,9 +111,11 @@ class EventGuard(expression.Located):
     """When the supervisor allows an event: where both parts hold. What the plants forbid is not repeated."""
     event: Event
     requirement: expression.Expression | None
+    requirements: MutableSequence[Requirement]
     synthesis: expression.Expression | None
+    explanation: str | None
     everEnabled: bool
-    def __init__(self, *, event: Event | None = ..., requirement: expression.Expression | None = ..., synthesis: expression.Expression | None = ..., everEnabled: bool | None = ..., source: str | None = ...) -> None: ...
+    def __init__(self, *, event: Event | None = ..., requirement: expression.Expression | None = ..., requirements: Iterable[Requirement] = ..., synthesis: expression.Expression | None = ..., explanation: str | None = ..., everEnabled: bool | None = ..., source: str | None = ...) -> None: ...
 
 class LocationReference(expression.Expression):
     """True while its plant is in the location."""

@@ -165,6 +165,8 @@ def _supervisor(model: sct.SupervisoryControlModel) -> Iterator[Fault]:
     for guard in model.supervisor.guards:
         if guarded[guard.event] > 1:
             yield guard, f"the event '{guard.event.name}' has more than one guard"
+        if any(each.event is not guard.event or each not in model.requirements for each in guard.requirements):
+            yield guard, f"a requirement of this guard is not one on '{guard.event.name}'"
     for plant in model.plants:
         for event in plant.events:
             if event.controllable and event not in guarded:

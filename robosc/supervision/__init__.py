@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from robosc.diagnostics import Diagnostic, ModelError, Severity, has_errors
 from robosc.metamodel.places import place
 from robosc.supervision.findings import findings_of
-from robosc.supervision.wording import blocking, in_words
+from robosc.supervision.wording import blocking, in_words, trouble_in_words
 from robosc.synthesis import MEMORY, Statistics, Synthesis, synthesize
 
 if TYPE_CHECKING:
@@ -42,6 +42,8 @@ def supervise(
 ) -> Supervision:
     """Synthesizes the supervisor of a model, and makes it the model's own unless the findings have an error.
 
+    Its guards say why synthesis added something, where that is told at reasonable cost.
+
     `memory` and `statistics` are those of `robosc.synthesis.synthesize`. Raises EmptySupervisorError where there is no
     supervisor, ModelError and MemoryError as it does.
     """
@@ -49,6 +51,11 @@ def supervise(
     if synthesis.observations is None:
         raise EmptySupervisorError(model, synthesis)
     found = findings_of(model, synthesis.observations)
+    assert synthesis.supervisor is not None
+    for guard in synthesis.supervisor.guards:
+        trouble = synthesis.observations.troubles.get(guard.event)
+        if trouble is not None:
+            guard.explanation = trouble_in_words(trouble, model)
     if not has_errors(found):
         model.supervisor = synthesis.supervisor
     return Supervision(synthesis, found)

@@ -8,7 +8,7 @@ from robosc.diagnostics import Diagnostic, Severity, in_order
 from robosc.metamodel import sct
 from robosc.metamodel.places import place
 from robosc.roles import plant_of
-from robosc.supervision.wording import condition, in_words, listed, name
+from robosc.supervision.wording import condition, listed, name, trouble_in_words
 from robosc.synthesis.encoding import referenced
 from robosc.synthesis.observations import Forbidden
 
@@ -61,7 +61,7 @@ class _Findings:
         if observed.forbidden is Forbidden.BY_REQUIREMENTS:
             why, hint = f"wherever it could be, {_broken(observed.requirements)}", "loosen what it needs"
         elif observed.trouble is not None:
-            why, hint = self._trouble(observed.trouble), _way_out(observed.trouble)
+            why, hint = trouble_in_words(observed.trouble, self._model), _way_out(observed.trouble)
         elif observed.kept_away:
             why = f"the supervisor lets the robot reach no state in which it could be {done}"
             hint = "allow a way to such a state"
@@ -84,7 +84,7 @@ class _Findings:
             observed.event,
             "silent-restricted",
             f"the supervisor has to hold back {what}, so that the model may no longer follow the robot: otherwise, "
-            f"{self._trouble(observed.trouble)}",
+            f"{trouble_in_words(observed.trouble, self._model)}",
             _way_out(observed.trouble),
         )
 
@@ -136,16 +136,6 @@ class _Findings:
             "restricts it, and no component waits for its request",
             f"add `requirement {called} needs ...`, or `on request to {called}` in the states that allow it",
         )
-
-    def _trouble(self, trouble: Trouble) -> str:
-        steps = in_words(trouble.trace, self._model)
-        if trouble.onwards:
-            steps += f", and further {in_words(trouble.onwards, self._model)}"
-        problem = "the marked states of all components can't be reached together any more"
-        if trouble.unmarked:
-            stuck = listed([f"`{name(each)}`" for each in trouble.unmarked])
-            problem = f"{stuck} can't get back to a marked state"
-        return f"after {steps}, {problem}"
 
     def _requirements(self, event: sct.Event) -> list[sct.Requirement]:
         return [each for each in self._model.requirements if each.event is event]

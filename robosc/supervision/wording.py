@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from robosc.synthesis import Reason, TraceStep
     from robosc.synthesis.decoding import Value
     from robosc.synthesis.encoding import Element
+    from robosc.synthesis.observations import Trouble
 
 #: How many components a sentence names.
 _NAMED = 4
@@ -88,6 +89,19 @@ def in_words(steps: Sequence[TraceStep], model: sct.SupervisoryControlModel) -> 
         data = ", ".join(f"{_data(each, event)} = {text(chosen)}" for each, chosen in step.inputs.items())
         said.append(f"{words(event)} ({data})" if data else words(event))
     return ", then ".join(said)
+
+
+def trouble_in_words(trouble: Trouble, model: sct.SupervisoryControlModel) -> str:
+    """What would happen if synthesis did not hold an event back, in a sentence without its full stop."""
+    steps = in_words(trouble.trace, model)
+    problem = "the marked states of all components can't be reached together any more"
+    if trouble.unmarked:
+        problem = f"{listed([f'`{name(each)}`' for each in trouble.unmarked])} can't get back to a marked state"
+    if not trouble.onwards:
+        return f"after {steps}, {problem}"
+    *onwards, last = trouble.onwards
+    further = f", and further {in_words(onwards, model)}" if onwards else ""
+    return f"after {steps}{further}, {in_words([last], model)} can't be prevented, and then {problem}"
 
 
 def _data(input_name: str, event: sct.Event) -> str:

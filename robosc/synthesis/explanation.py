@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from robosc.roles import event_name
 from robosc.synthesis.decoding import Value, value
 from robosc.synthesis.fixpoint import reachable
-from robosc.synthesis.paths import TraceStep, shortest_path, trace
+from robosc.synthesis.paths import Path, TraceStep, shortest_path, trace
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from robosc.synthesis.bdd import Diagram
     from robosc.synthesis.encoding import Element, Encoding
     from robosc.synthesis.fixpoint import SupervisedStates
-    from robosc.synthesis.paths import Move, Path
+    from robosc.synthesis.paths import Move
 
 #: How many plants a sentence names.
 _NAMED = 4
@@ -60,7 +60,8 @@ class EmptySupervisor:
         return self._blocked_from_the_start() if blocked else self._uncontrollable()
 
     def _uncontrollable(self) -> Reason:
-        before = self._unavoidable()
+        slide = unavoidable(self._encoding, self._moves, self._found, self._encoding.initial_codes)
+        before = self._encoding.state(slide.states[-2])
         uncontrollable = [each for each in self._moves if not each[0].event.controllable]
         everything = self._encoding.diagrams.true
         blocked = self._found.rounds[0] & ~self._found.alive[0]
@@ -75,24 +76,6 @@ class EmptySupervisor:
             trace(self._encoding, first) + trace(self._encoding, last),
             last.states[-1],
         )
-
-    def _unavoidable(self) -> Diagram:
-        """The state before the uncontrollable event that is the root of it all.
-
-        Round by round, backwards: uncontrollable events lead from the state to one that, without the states given up in
-        earlier rounds, reaches no marked state; its nearest way there leads through one of those.
-        """
-        uncontrollable = [each for each in self._moves if not each[0].event.controllable]
-        rounds, alive = self._found.rounds, self._found.alive
-        state = self._encoding.initial
-        for index in range(len(rounds) - 2, -1, -1):
-            path = self._path(uncontrollable, state, rounds[index] & ~alive[index], rounds[index])
-            if index == 0:
-                return self._encoding.state(path.states[-2])
-            given_up = alive[index - 1] & ~rounds[index]
-            end = self._encoding.state(path.states[-1])
-            state = self._encoding.state(self._path(self._moves, end, given_up, alive[index - 1]).states[-1])
-        raise AssertionError("the initial state was never given up")
 
     def _blocked_from_the_start(self) -> Reason:
         path = shortest_path(
@@ -149,6 +132,33 @@ class EmptySupervisor:
             for variable in plant.variables:
                 state[f"{plant.name}.{variable.name}"] = value(variable, codes[variable])
         return Reason(f"{problem}; {who}", event, tuple(unmarked), tuple(steps), state)
+
+
+def unavoidable(
+    encoding: Encoding, moves: Sequence[Move], found: SupervisedStates, start: Mapping[Element, int]
+) -> Path:
+    """A way from a state that was given up to where no marked state can be reached, because of what nothing prevents.
+
+    Round by round, backwards: uncontrollable events lead from the state to one that, without the states given up in
+    earlier rounds, reaches no marked state; its nearest way there leads through one of those, and so on. So the last
+    event is uncontrollable; there is none where already the start reaches no marked state.
+    """
+    uncontrollable = [each for each in moves if not each[0].event.controllable]
+    rounds, alive = found.rounds, found.alive
+    index = max(each for each, good in enumerate(rounds) if (encoding.state(start) & good).satisfiable())
+    whole = Path([dict(start)], [])
+
+    def go(possible: Sequence[Move], goal: Diagram, within: Diagram) -> None:
+        part = shortest_path(encoding, possible, encoding.state(whole.states[-1]), goal, within)
+        assert part is not None
+        whole.states.extend(part.states[1:])
+        whole.moves.extend(part.moves)
+
+    go(uncontrollable, rounds[index] & ~alive[index], rounds[index])
+    for earlier in reversed(range(index)):
+        go(moves, alive[earlier] & ~rounds[earlier + 1], alive[earlier])
+        go(uncontrollable, rounds[earlier] & ~alive[earlier], rounds[earlier])
+    return whole
 
 
 def never_marked(encoding: Encoding, moves: Sequence[Move], codes: Mapping[Element, int]) -> list[sct.Plant]:

@@ -43,6 +43,7 @@ def permission(relation: EventRelation, controlled: Diagram, encoding: Encoding,
         asked = conjunction(_condition(each) for each in relation.requirements)
         assert asked is not None
         guard.requirement = simplified(asked, enabled, encoding)
+        guard.requirements.extend(each for each, holds in relation.asked.items() if (enabled & ~holds).satisfiable())
     if allowed != required:
         guard.synthesis = (
             separating_expression(encoding, allowed, required & ~allowed)

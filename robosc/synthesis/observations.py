@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 from robosc.metamodel import sct
 from robosc.roles import Roles, plant_of
 from robosc.synthesis.decoding import Value, pick, value
-from robosc.synthesis.explanation import never_marked
-from robosc.synthesis.paths import Layers, Path, TraceStep, shortest_path, trace
+from robosc.synthesis.explanation import never_marked, unavoidable
+from robosc.synthesis.paths import Layers, Path, TraceStep, trace
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -22,8 +22,12 @@ if TYPE_CHECKING:
     from robosc.synthesis.fixpoint import SupervisedStates
     from robosc.synthesis.guards import Permission
     from robosc.synthesis.paths import Move
+    from robosc.synthesis.relation import EventRelation
 
 _CALLS = (sct.PlantKind.service, sct.PlantKind.action)
+#: What the troubles of all guards may cost: images on the way, and steps of all traces together.
+_IMAGES = 2000
+_STEPS = 400
 _FOLLOWS_THE_ROBOT = (sct.EventKind.tau, sct.EventKind.reset, sct.EventKind.cancel)
 
 
@@ -31,10 +35,11 @@ _FOLLOWS_THE_ROBOT = (sct.EventKind.tau, sct.EventKind.reset, sct.EventKind.canc
 class Trouble:
     """What the supervisor prevents when it holds an event back that plants and requirements would allow.
 
-    `trace` is a shortest one from the initial state that ends with the event so held back. `onwards` is a shortest way
-    from there, under the requirements, to where no marked state can be reached any more; empty where that is so at
-    once. `unmarked` are the plants that can't be in a marked location from then on; none if each can be but never all
-    at once.
+    `trace` is a shortest one from the initial state, or from the state asked about, that ends with the event so held
+    back. `onwards` is a way from there, under the requirements, to where no marked state can be reached any more, as
+    `unavoidable` finds it: its last event is the uncontrollable one that is guarded against; empty where none is
+    needed. `unmarked` are the plants that can't be in a marked location from then on; none if each can be but never
+    all at once.
     """
 
     trace: tuple[TraceStep, ...]
@@ -119,7 +124,8 @@ class SharedTopicConflict:
 class Observations:
     """All of them, each kind in the order of the model. `unrestricted_calls` are triggers of services and actions.
 
-    These can happen, no requirement is on them, and no plant but their own takes part in them.
+    These can happen, no requirement is on them, and no plant but their own takes part in them. `troubles` are there for
+    events to which synthesis added something: for all in models that are not large.
     """
 
     never_enabled: tuple[NeverEnabled, ...]
@@ -128,6 +134,7 @@ class Observations:
     provide_gaps: tuple[ProvideGap, ...]
     shared_topic_conflicts: tuple[SharedTopicConflict, ...]
     unrestricted_calls: tuple[sct.Event, ...]
+    troubles: Mapping[sct.Event, Trouble]
 
 
 class Observer:
@@ -147,6 +154,7 @@ class Observer:
         self._found = found
         self._permissions = {each.relation.event: each for each in permissions}
         self._roles = Roles(model)
+        self._troubles: dict[sct.Event, Trouble] = {}
         self._triggers = [each for each in self._roles.triggers if each in self._permissions]
 
     def observations(self, uncontrolled: Diagram) -> Observations:
@@ -158,6 +166,7 @@ class Observer:
             tuple(self._provide_gaps()),
             tuple(self._shared_topic_conflicts()),
             tuple(self._unrestricted_calls()),
+            dict(self._affordable_troubles()),
         )
 
     def _never_enabled(self, uncontrolled: Diagram) -> Iterator[NeverEnabled]:
@@ -241,23 +250,45 @@ class Observer:
         controlled = self._found.controlled
         return Layers(self._encoding, self._moves, self._encoding.initial, controlled)
 
+    def _affordable_troubles(self) -> Iterator[tuple[sct.Event, Trouble]]:
+        steps = 0
+        for event, permission in self._permissions.items():
+            if permission.guard.synthesis is None:
+                continue
+            known = self._troubles.get(event)
+            way = None if known or steps > _STEPS else self._layers.path_to(held_back(permission, self._found), _IMAGES)
+            found = known or (way and trouble(self._encoding, self._moves, self._found, permission.relation, way))
+            if found:
+                steps += len(found.trace) + len(found.onwards)
+                yield event, found
+
     def _trouble(self, permission: Permission) -> Trouble:
-        relation, encoding, controlled = permission.relation, self._encoding, self._found.controlled
-        step = relation.step
-        assert step is not None  # else the event would change nothing, and lead to no trouble
-        held_back = controlled & relation.enabled & relation.requirement & ~permission.allowed
-        way = self._layers.path_to(held_back)
+        way = self._layers.path_to(held_back(permission, self._found))
         assert way is not None
-        after = pick(step.image(encoding.state(way.states[-1])), encoding.layout.state)
-        blocked = self._found.rounds[0] & ~self._found.alive[0]
-        # There is a way: whatever was given up in a round can leave for what an earlier round gave up.
-        onwards = shortest_path(encoding, self._moves, encoding.state(after), blocked, encoding.diagrams.true)
-        assert onwards is not None
-        return Trouble(
-            tuple(trace(encoding, Path([*way.states, after], [*way.moves, (relation, step)]))),
-            tuple(trace(encoding, onwards)),
-            tuple(never_marked(encoding, self._moves, onwards.states[-1])),
-        )
+        event = permission.relation.event
+        found = trouble(self._encoding, self._moves, self._found, permission.relation, way)
+        return self._troubles.setdefault(event, found)
+
+
+def held_back(permission: Permission, found: SupervisedStates) -> Diagram:
+    """The controlled states in which only synthesis forbids the event."""
+    relation = permission.relation
+    return found.controlled & relation.enabled & relation.requirement & ~permission.allowed
+
+
+def trouble(
+    encoding: Encoding, moves: Sequence[Move], found: SupervisedStates, relation: EventRelation, way: Path
+) -> Trouble:
+    """What would happen if the event were not held back at the end of a way."""
+    step = relation.step
+    assert step is not None  # else the event would change nothing, and lead to no trouble
+    after = pick(step.image(encoding.state(way.states[-1])), encoding.layout.state)
+    onwards = unavoidable(encoding, moves, found, after)
+    return Trouble(
+        tuple(trace(encoding, Path([*way.states, after], [*way.moves, (relation, step)]))),
+        tuple(trace(encoding, onwards)),
+        tuple(never_marked(encoding, moves, onwards.states[-1])),
+    )
 
 
 def _broken(permission: Permission, states: Diagram) -> tuple[sct.Requirement, ...]:

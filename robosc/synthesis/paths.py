@@ -50,15 +50,16 @@ class Layers:
         self._layers = [start]
         self._seen = start
 
-    def path_to(self, goal: Diagram) -> Path | None:
-        """A shortest path to a state of `goal`; None where there is none.
+    def path_to(self, goal: Diagram, images: int | None = None) -> Path | None:
+        """A shortest path to a state of `goal`; None where there is none, or so many images of all did not find it.
 
         Of several the same one every time: by the order of the moves, then by the states' codes.
         """
         steps = 0
         while not (self._layers[steps] & goal).satisfiable():
             steps += 1
-            if steps == len(self._layers) and not self._grow():
+            exhausted = images is not None and steps * len(self._moves) > images
+            if steps == len(self._layers) and (exhausted or not self._grow()):
                 return None
         return self._back(steps, goal)
 

@@ -200,6 +200,12 @@ def _no_guard(given: Any) -> None:
     given.supervisor.guards.clear()
 
 
+def _foreign_requirement(given: Any) -> None:
+    given.supervisor.guards[0].requirements.append(
+        sct.Requirement(event=_plants(given)[0].events[1], condition=ex.BooleanLiteral(value=True))
+    )
+
+
 def _two_guards(given: Any) -> None:
     given.supervisor.guards.append(sct.EventGuard(event=_plants(given)[0].events[0], everEnabled=True))
 
@@ -260,6 +266,7 @@ BROKEN: list[tuple[Callable[[Any], None], list[str]]] = [
     (_access, ["Access belongs in a robosc model only"]),
     (_restricted_response, ["the event 'u' is uncontrollable: nothing can restrict it"]),
     (_no_guard, ["the event 'p.c' has no guard"]),
+    (_foreign_requirement, ["a requirement of this guard is not one on 'c'"]),
     (_two_guards, ["the event 'c' has more than one guard", "the event 'c' has more than one guard"]),
     (_another_models_event, ["the event 'c' is another model's"]),
     (

@@ -1,6 +1,7 @@
 """What synthesis observes over decision diagrams against the definitions, state by state, on random models."""
 
 from itertools import combinations
+from unittest.mock import patch
 
 import pytest
 from hypothesis import assume, event, given
@@ -8,10 +9,11 @@ from hypothesis import strategies as st
 
 from robosc.metamodel import sct
 from robosc.roles import event_name, plant_of
-from robosc.synthesis import Observations, synthesize
+from robosc.synthesis import Observations, observations, synthesize
 from robosc.synthesis.observations import Example, Forbidden, Trouble
 from tests.random_sct import sct_models
 from tests.sct_models import edge, model, needs, plant
+from tests.synthesis.classics import philosophers
 from tests.synthesis.oracle import Oracle, State
 from tests.synthesis.test_against_oracle import RANDOM_MODELS
 from tests.synthesis.test_explanation import Replay, distance, is_blocked, is_never_marked
@@ -176,6 +178,9 @@ def check_details(definitions: Definitions, observed: Observations) -> None:
             check_trouble(definitions, each.event, each.trouble)
     for each in observed.silent_restricted:
         check_trouble(definitions, each.event, each.trouble)
+    assert list(observed.troubles) == [each for each in definitions.controllable if definitions.held_back(each)]
+    for each, trouble in observed.troubles.items():
+        check_trouble(definitions, each, trouble)
     for each in observed.self_cancelling:
         assert list(each.requirements) == broken(oracle, each.event, definitions.after(each.event))
     for each in observed.provide_gaps:
@@ -227,7 +232,9 @@ def check_trouble(definitions: Definitions, held_back: sct.Event, trouble: Troub
     assert after not in oracle.controlled
     assert len(trouble.trace) - 1 == min(distance(oracle, state, within=oracle.controlled) for state in states)
     assert is_blocked(oracle, end)
-    assert trouble.onwards == () or not is_blocked(oracle, replay.after(len(steps) - 1, requirements=True))
+    if trouble.onwards:
+        assert not replay.events[steps[-1].event].controllable
+        assert not is_blocked(oracle, replay.after(len(steps) - 1, requirements=True))
     assert set(trouble.unmarked) == {each for each in oracle.model.plants if is_never_marked(oracle, each, end)}
 
 
@@ -255,6 +262,31 @@ def test_trouble_that_comes_later_is_traced_to_its_end():
     assert never["c_tau1"].trouble == restricted.trouble
     assert never["c_tau2"].forbidden is Forbidden.BY_PLANTS
     assert never["c_tau2"].plants == (machine.element,)
+
+
+def test_trouble_leads_through_what_nothing_prevents():
+    """The shorter way to the ground is one that the supervisor could prevent by itself."""
+    machine = plant(
+        "M",
+        {
+            "rest": [edge("c_tau1", to="edge")],
+            "edge": [edge("c_tau2", to="ground"), edge("u_slip", to="slope"), edge("c_tau3", to="rest")],
+            "slope": [edge("u_fall", to="ground"), edge("c_tau3", to="rest")],
+            "ground": [],
+        },
+        controllable=["c_tau1", "c_tau2", "c_tau3"],
+        uncontrollable=["u_slip", "u_fall"],
+    )
+    [(held_back, trouble)] = synthesize(model([machine])).observations.troubles.items()
+    assert held_back.name == "c_tau1"
+    assert [each.event for each in trouble.onwards] == ["M.u_slip", "M.u_fall"]
+
+
+def test_large_models_get_no_more_troubles_than_are_cheap():
+    with patch.object(observations, "_STEPS", 10):
+        assert 0 < len(synthesize(philosophers(4)).observations.troubles) < 8
+    with patch.object(observations, "_IMAGES", 10):
+        assert not synthesize(philosophers(4)).observations.troubles
 
 
 @pytest.mark.parametrize(
