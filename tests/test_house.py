@@ -44,7 +44,14 @@ ALLOWED = {
     "cli": ROOMS - {"__main__"},
 }
 #: Pieces that generators share, each with what it may use of the others.
-SHARED = {"templates": set(), "c": {"templates"}, "cpp": {"c", "templates"}, "layer": {"c", "cpp", "templates"}}
+SHARED = {
+    "templates": set(),
+    "c": {"templates"},
+    "cpp": {"c", "templates"},
+    "layer": {"c", "cpp", "templates"},
+    "roscpp": set(),
+    "rclcpp": set(),
+}
 
 LIBRARIES = {
     "action_msgs": {"runtime"},

@@ -188,3 +188,18 @@ class Layer:
 
     def _livelock(self) -> None:
         self._port.error("internal transitions follow each other without end")
+
+
+def hearing(layer: Layer, topic: rosgraph.Subscription) -> Callable[[Message], bool]:
+    """What is done with a message of the robot's on a topic; whether it is forwarded: always."""
+
+    def hear(message: Message) -> bool:
+        layer.hear(topic, message)
+        return True
+
+    return hear
+
+
+def passing(layer: Layer, sending: rosgraph.Sending) -> Callable[[Message], bool]:
+    """What is done with a message of the controller's; whether it is forwarded."""
+    return lambda _: layer.passes(sending)

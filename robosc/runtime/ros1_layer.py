@@ -10,7 +10,7 @@ import rospy
 from actionlib_msgs.msg import GoalID, GoalStatus, GoalStatusArray
 
 from robosc.runtime.clients import Answers, ServiceClient
-from robosc.runtime.layer import below_layer
+from robosc.runtime.layer import below_layer, hearing, passing
 from robosc.runtime.ros1 import Ros1Node
 
 if TYPE_CHECKING:
@@ -32,10 +32,10 @@ class Ros1Layer(Ros1Node):
     def connect(self, layer: Layer, settings: Settings) -> None:
         """Stands between the controller and the robot from now on."""
         for topic in self._graph.subscriptions:
-            self._relay(topic, topic.topic, _inside(topic.topic), _hearing(layer, topic))
+            self._relay(topic, topic.topic, _inside(topic.topic), hearing(layer, topic))
         for publisher in self._graph.publishers:
             (sending,) = publisher.sendings
-            self._relay(publisher, _inside(publisher.topic), publisher.topic, _passing(layer, sending))
+            self._relay(publisher, _inside(publisher.topic), publisher.topic, passing(layer, sending))
         for service in self._graph.serviceClients:
             kind = self._types[service.interface]
             self._clients[service] = rospy.ServiceProxy(service.identifier, kind)
@@ -60,11 +60,11 @@ class Ros1Layer(Ros1Node):
             if passes(message):
                 latched = message._connection_header.get("latching") == "1"  # noqa: SLF001  # as genpy has it
                 if latched not in publishers:
-                    publishers[latched] = rospy.Publisher(target, kind, queue_size=_DEPTH, latch=latched)
+                    publishers[latched] = _publisher(target, kind, latch=latched)
                 publishers[latched].publish(message)
 
         # Advertised before the first message, so that those who listen are connected when it comes.
-        publishers[False] = rospy.Publisher(target, kind, queue_size=_DEPTH, tcp_nodelay=True)
+        publishers[False] = _publisher(target, kind)
         self.hear(source, kind, forward)
 
     def hear(self, name: str, kind: Any, act: Callable[[Message], None], most: int | None = _DEPTH) -> None:
@@ -76,21 +76,13 @@ class Ros1Layer(Ros1Node):
         rospy.Subscriber(name, kind, post, queue_size=most, tcp_nodelay=True)
 
 
+def _publisher(name: str, kind: Any, *, latch: bool = False) -> Any:
+    return rospy.Publisher(name, kind, queue_size=_DEPTH, latch=latch, tcp_nodelay=True)
+
+
 def _inside(name: str) -> str:
     """The name for the controller, as ROS 1 writes private names."""
     return below_layer(name).replace("~/", "~")
-
-
-def _hearing(layer: Layer, topic: rosgraph.Subscription) -> Callable[[Message], bool]:
-    def hear(message: Message) -> bool:
-        layer.hear(topic, message)
-        return True
-
-    return hear
-
-
-def _passing(layer: Layer, sending: rosgraph.Sending) -> Callable[[Message], bool]:
-    return lambda _: layer.passes(sending)
 
 
 class _ServiceProxy:
@@ -157,11 +149,11 @@ class _ActionProxy:
         goal, result, feedback = (type(each) for each in (made.action_goal, made.action_result, made.action_feedback))
         self._result_type = result
         inside, outside = _inside(action.identifier), action.identifier
-        self._goals = rospy.Publisher(f"{outside}/goal", goal, queue_size=_DEPTH)
-        self._cancels = rospy.Publisher(f"{outside}/cancel", GoalID, queue_size=_DEPTH)
-        self._results = rospy.Publisher(f"{inside}/result", result, queue_size=_DEPTH)
-        self._feedback = rospy.Publisher(f"{inside}/feedback", feedback, queue_size=_DEPTH)
-        self._statuses = rospy.Publisher(f"{inside}/status", GoalStatusArray, queue_size=_DEPTH)
+        self._goals = _publisher(f"{outside}/goal", goal)
+        self._cancels = _publisher(f"{outside}/cancel", GoalID)
+        self._results = _publisher(f"{inside}/result", result)
+        self._feedback = _publisher(f"{inside}/feedback", feedback)
+        self._statuses = _publisher(f"{inside}/status", GoalStatusArray)
         port.hear(f"{outside}/result", result, self._on_result, None)
         port.hear(f"{outside}/feedback", feedback, self._on_feedback)
         port.hear(f"{outside}/status", GoalStatusArray, self._on_status)

@@ -10,7 +10,7 @@ from rclpy.clock import Clock, ClockType
 from rclpy.qos import DurabilityPolicy, QoSProfile, qos_profile_sensor_data
 
 from robosc.runtime.clients import Answers, ServiceClient
-from robosc.runtime.layer import below_layer
+from robosc.runtime.layer import below_layer, hearing, passing
 from robosc.runtime.ros2 import Ros2Node
 
 if TYPE_CHECKING:
@@ -36,12 +36,12 @@ class Ros2Layer(Ros2Node):
             received = self._quality(topic.topic, qos_profile_sensor_data if sensor else usual)
             kind = self._types[topic.interface]
             route = _Route(kind, topic.topic, below_layer(topic.topic), received, usual)
-            _Relay(self, route, _hearing(layer, topic))
+            _Relay(self, route, hearing(layer, topic))
         for publisher in self._graph.publishers:
             (sending,) = publisher.sendings
             sent = self._quality(publisher.topic, usual)
             kind, inside = self._types[publisher.interface], below_layer(publisher.topic)
-            _Relay(self, _Route(kind, inside, publisher.topic, usual, sent), _passing(layer, sending))
+            _Relay(self, _Route(kind, inside, publisher.topic, usual, sent), passing(layer, sending))
         for service in self._graph.serviceClients:
             self._clients[service] = self.node.create_client(self._types[service.interface], service.identifier)
             _ServiceProxy(self, self._types[service.interface], service, layer, settings.seconds("service_timeout_ms"))
@@ -49,18 +49,6 @@ class Ros2Layer(Ros2Node):
             timeout = settings.seconds("action_timeout_ms")
             proxy = _ActionProxy(self, self._types[action.interface], action, layer, timeout)
             layer.cancels[action.cancel] = proxy.cancel
-
-
-def _hearing(layer: Layer, topic: rosgraph.Subscription) -> Callable[[Message], bool]:
-    def hear(message: Message) -> bool:
-        layer.hear(topic, message)
-        return True
-
-    return hear
-
-
-def _passing(layer: Layer, sending: rosgraph.Sending) -> Callable[[Message], bool]:
-    return lambda _: layer.passes(sending)
 
 
 @dataclass(frozen=True)

@@ -45,6 +45,8 @@ class Target:
     headers: tuple[str, ...] = ()
     #: Files beside those of all targets: path, with `{name}` for the package's name, to template.
     files: Mapping[str, str] = field(default_factory=dict)
+    #: Where templates lie that it shares with others, beside those of all nodes.
+    shared: tuple[str, ...] = ()
 
 
 def package(
@@ -87,7 +89,7 @@ def package(
         "has_defaults": has_defaults,
         "frame": lambda topic: configuration.frame_id.get(topic.removeprefix("/"), ""),
     }
-    templates = node_environment(target.package)
+    templates = node_environment(target.package, *target.shared)
     texts = {path: templates.get_template(template).render(values) for path, template in files.items()}
     texts[f"src/{name}_node.cpp"] = fold(texts[f"src/{name}_node.cpp"])
     supervisor = engine.generate(graph.model, configuration.control_loop)

@@ -19,11 +19,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Target:
-    """One kind of ROS: where its templates are, the ending of its launch files, headers of its own."""
+    """One kind of ROS: where its templates are, and the ending of its launch files."""
 
     package: str
     launch_file: str
-    header: str
+    #: Headers of its own, each with what of a `LayerNode` it is there for.
+    headers: Mapping[str, str]
+    #: Where templates lie that it shares with others, beside those of all layers.
+    shared: tuple[str, ...] = ()
 
 
 def package(
@@ -43,7 +46,7 @@ def package(
         "message_relay.hpp": layer.inward or layer.outward,
         "parameters.hpp": True,
         "service_proxy.hpp": layer.services,
-        target.header: layer.calls,
+        **{header: getattr(layer, what) for header, what in target.headers.items()},
     }
     headers = sorted(header for header, is_used in used.items() if is_used)
     files = {
@@ -69,7 +72,7 @@ def package(
         "controller": configuration.supervisor.controller,
         "definition": definition_text(graph),
     }
-    templates = node_environment(target.package, "robosc.m2t.layer")
+    templates = node_environment(target.package, *target.shared, "robosc.m2t.layer")
     texts = {path: templates.get_template(template).render(prepared) for path, template in files.items()}
     source = f"src/{name}_node.cpp"
     texts[source] = fold(texts[source])

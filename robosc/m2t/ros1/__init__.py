@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from robosc.m2t.cpp.node import Node
 from robosc.m2t.cpp.packages import Target, message_packages, package
 from robosc.m2t.cpp.preconditions import preconditions
-from robosc.metamodel import rosgraph
+from robosc.m2t.roscpp import header
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from robosc.config import Configuration
     from robosc.models import Models, TraceTest
 
-__all__ = ["generate", "header", "preconditions"]
+__all__ = ["generate", "preconditions"]
 
 #: The topics of an action: what ROS 1 re-maps is these, not the action's own name.
 _ACTION = ["/goal", "/cancel", "/status", "/feedback", "/result"]
@@ -37,7 +37,7 @@ def generate(models: Models, configuration: Configuration, tests: TraceTest | No
     if configuration.publish_state_information:
         headers.add("std_msgs/String.h")
     own = ("interruption.hpp", "wiring.hpp", *(["event_queue.hpp"] if node.clients else []))
-    target = Target("robosc.m2t.ros1", ".launch", own, _FILES | (_TEST_FILES if tests else {}))
+    target = Target("robosc.m2t.ros1", ".launch", own, _FILES | (_TEST_FILES if tests else {}), ("robosc.m2t.roscpp",))
     libraries = {"rosconsole", "roscpp", "xmlrpcpp"} | ({"actionlib"} if node.actions else set())
     values = {
         "headers": sorted(headers),
@@ -47,12 +47,6 @@ def generate(models: Models, configuration: Configuration, tests: TraceTest | No
     }
     files = package(target, graph, node, configuration, values)
     return files | ({f"test/{path}": text for path, text in tests.files.items()} if tests else {})
-
-
-def header(interface: rosgraph.Interface) -> str:
-    """The header of a type: `std_srvs/SetBool.h`, and for an action `nav2_msgs/NavigateToPoseAction.h`."""
-    action = "Action" if interface.kind == rosgraph.InterfaceKind.action else ""
-    return f"{interface.package}/{interface.type}{action}.h"
 
 
 def _names(node: Node) -> Iterator[tuple[str, str, str, list[str]]]:

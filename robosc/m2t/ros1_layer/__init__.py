@@ -8,15 +8,25 @@ from typing import TYPE_CHECKING, Any
 from robosc.m2t.layer import preconditions as shared
 from robosc.m2t.layer.names import below_layer, remapped
 from robosc.m2t.layer.packages import Target, controller_package, package, type_packages
+from robosc.m2t.roscpp import header
 
 if TYPE_CHECKING:
     from robosc.config import Configuration
     from robosc.diagnostics import Diagnostic
     from robosc.m2t.layer.node import LayerNode
-    from robosc.metamodel import rosgraph
     from robosc.models import Models
 
-_TARGET = Target("robosc.m2t.ros1_layer", ".launch", "deadline.hpp")
+_TARGET = Target(
+    "robosc.m2t.ros1_layer",
+    ".launch",
+    {
+        "countdown.hpp": "services",
+        "deadline.hpp": "actions",
+        "event_queue.hpp": "services",
+        "service_client.hpp": "services",
+    },
+    ("robosc.m2t.roscpp",),
+)
 #: The topics of an action.
 _PARTS = ("goal", "cancel", "result", "feedback", "status")
 
@@ -53,11 +63,6 @@ def generate(models: Models, configuration: Configuration) -> dict[str, str]:
         }
 
     return package(_TARGET, models, configuration, values)
-
-
-def header(interface: rosgraph.Interface) -> str:
-    """The header of a type; an action's is that of all its messages."""
-    return f"{interface.package}/{interface.type}{'Action' if interface.kind.name == 'action' else ''}.h"
 
 
 def _node_name(configuration: Configuration) -> str:

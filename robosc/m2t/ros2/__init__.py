@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING
 
 from robosc.m2t.cpp.node import Node, Publisher, Subscription
 from robosc.m2t.cpp.packages import Target, message_packages, package
 from robosc.m2t.cpp.preconditions import preconditions
+from robosc.m2t.rclcpp import header
 
 if TYPE_CHECKING:
     from robosc.config import Configuration
-    from robosc.metamodel import rosgraph
     from robosc.models import Models, TraceTest
 
 __all__ = ["generate", "preconditions"]
@@ -24,7 +23,6 @@ _TEST_FILES = {
 }
 
 _DEPTH = 10
-_FOLDERS = {"message": "msg", "service": "srv", "action": "action"}
 
 
 def generate(models: Models, configuration: Configuration, tests: TraceTest | None = None) -> dict[str, str]:
@@ -33,7 +31,8 @@ def generate(models: Models, configuration: Configuration, tests: TraceTest | No
     assert graph is not None
     node = Node(graph, configuration.on_shutdown)
     own = ("shutdown_hook.hpp", "wiring.hpp")
-    target = Target("robosc.m2t.ros2", ".launch.py", own, _FILES | (_TEST_FILES if tests else {}))
+    more = _FILES | (_TEST_FILES if tests else {})
+    target = Target("robosc.m2t.ros2", ".launch.py", own, more, ("robosc.m2t.rclcpp",))
     messages = message_packages(node, configuration)
     libraries = {"rclcpp", "rclcpp_components"}
     if node.actions:
@@ -53,13 +52,6 @@ def generate(models: Models, configuration: Configuration, tests: TraceTest | No
     }
     files = package(target, graph, node, configuration, values)
     return files | ({f"test/{path}": text for path, text in tests.files.items()} if tests else {})
-
-
-def header(interface: rosgraph.Interface) -> str:
-    """The header of a type, in the spelling of rosidl (`LaserScan`: `sensor_msgs/msg/laser_scan.hpp`)."""
-    words = re.sub(r"(.)([A-Z][a-z]+)", r"\1_\2", interface.type)
-    name = re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", words).lower()
-    return f"{interface.package}/{_FOLDERS[interface.kind.name]}/{name}.hpp"
 
 
 def _headers(node: Node, configuration: Configuration) -> list[str]:

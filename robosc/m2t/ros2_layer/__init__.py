@@ -2,25 +2,28 @@
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING, Any
 
 from robosc.m2t.layer.names import below_layer, remapped
 from robosc.m2t.layer.packages import Target, controller_package, package, type_packages
 from robosc.m2t.layer.preconditions import preconditions
+from robosc.m2t.rclcpp import header
 
 if TYPE_CHECKING:
     from robosc.config import Configuration
     from robosc.m2t.layer.node import Inward, LayerNode, Outward
-    from robosc.metamodel import rosgraph
     from robosc.models import Models
 
 __all__ = ["generate", "preconditions"]
 
-_TARGET = Target("robosc.m2t.ros2_layer", ".launch.py", "clock.hpp")
+_TARGET = Target(
+    "robosc.m2t.ros2_layer",
+    ".launch.py",
+    {"clock.hpp": "actions", "countdown.hpp": "services", "service_client.hpp": "services"},
+    ("robosc.m2t.rclcpp",),
+)
 #: The services and topics of an action (they are re-mapped, the action's own name is not).
 _PARTS = [f"_action/{each}" for each in ("send_goal", "cancel_goal", "get_result", "feedback", "status")]
-_FOLDERS = {"message": "msg", "service": "srv", "action": "action"}
 _DEPTH = 10
 
 
@@ -44,13 +47,6 @@ def generate(models: Models, configuration: Configuration) -> dict[str, str]:
         }
 
     return package(_TARGET, models, configuration, values)
-
-
-def header(interface: rosgraph.Interface) -> str:
-    """The header of a type, in the spelling of rosidl (`LaserScan`: `sensor_msgs/msg/laser_scan.hpp`)."""
-    words = re.sub(r"(.)([A-Z][a-z]+)", r"\1_\2", interface.type)
-    name = re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", words).lower()
-    return f"{interface.package}/{_FOLDERS[interface.kind.name]}/{name}.hpp"
 
 
 def _headers(layer: LayerNode, configuration: Configuration) -> list[str]:

@@ -7,6 +7,7 @@
 // supervisor first and is handed on then. The controller is started with names below ~/controller; the robot has those
 // of the model.
 
+#include <chrono>
 #include <cstddef>
 #include <exception>
 #include <memory>
@@ -24,12 +25,15 @@
 
 #include "usher_layer/action_proxy.hpp"
 #include "usher_layer/blocked.hpp"
+#include "usher_layer/countdown.hpp"
 #include "usher_layer/data.hpp"
 #include "usher_layer/deadline.hpp"
 #include "usher_layer/definition.hpp"
+#include "usher_layer/event_queue.hpp"
 #include "usher_layer/json.hpp"
 #include "usher_layer/message_relay.hpp"
 #include "usher_layer/parameters.hpp"
+#include "usher_layer/service_client.hpp"
 #include "usher_layer/service_proxy.hpp"
 #include "usher_supervisor.h"
 
@@ -62,9 +66,11 @@ model::Distance to_Distance([[maybe_unused]] const Data& value) {
 
 class Layer {
  public:
-  // Parameters: period_ms (shortest time from one report on ~/state to the next), service_timeout_ms (after this time without an answer a call has failed), action_timeout_ms (after this time without acceptance a goal has failed), event_log (a file that gets a line of JSON for each event; empty: none).
-  Layer() : log_(private_.param<std::string>("event_log", "")) {
-    const int service_timeout = parameter(private_, "service_timeout_ms", 2000, 1, 24 * 3600 * 1000);
+  // Parameters: period_ms (shortest time from one report on ~/state to the next), service_timeout_ms (after this time without an answer a call has failed), action_timeout_ms (after this time without acceptance a goal has failed), event_log (a file that gets a line of JSON for each event; empty: none), log_level.
+  Layer() : log_(parameter<std::string>(private_, "event_log", "")) {
+    set_log_level(private_);
+    const std::chrono::milliseconds service_timeout(
+        parameter(private_, "service_timeout_ms", 2000, 1, 24 * 3600 * 1000));
     const int action_timeout = parameter(private_, "action_timeout_ms", 2000, 1, 24 * 3600 * 1000);
     const double period = parameter(private_, "period_ms", 100, 1, 24 * 3600 * 1000) / 1000.0;
 
@@ -104,7 +110,7 @@ class Layer {
     service_light.response = [this](const auto& message) { on_service_light_response(message); };
     service_light.error = [this](const std::string& why) { on_service_light_error(why); };
     service_light_ = std::make_unique<ServiceProxy<std_srvs::SetBool>>(
-        callers_, self + "/controller/lamp/light", "/lamp/light", service_timeout, service_light);
+        node_, callers_, self + "/controller/lamp/light", "/lamp/light", service_timeout, service_light);
     ActionProxy<nav2_msgs::NavigateToPoseAction>::Handlers action_go_to;
     action_go_to.goal = [this](const auto&) { return pass_action_go_to(); };
     action_go_to.busy = [this] { block(usher_action_go_to_c_trigger, "Navigation.go_to", Reasons::busy()); };

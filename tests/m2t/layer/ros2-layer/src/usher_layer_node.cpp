@@ -25,11 +25,13 @@
 #include "usher_layer/action_proxy.hpp"
 #include "usher_layer/blocked.hpp"
 #include "usher_layer/clock.hpp"
+#include "usher_layer/countdown.hpp"
 #include "usher_layer/data.hpp"
 #include "usher_layer/definition.hpp"
 #include "usher_layer/json.hpp"
 #include "usher_layer/message_relay.hpp"
 #include "usher_layer/parameters.hpp"
+#include "usher_layer/service_client.hpp"
 #include "usher_layer/service_proxy.hpp"
 #include "usher_supervisor.h"
 

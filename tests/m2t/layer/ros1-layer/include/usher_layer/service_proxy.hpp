@@ -3,48 +3,24 @@
 #define USHER_LAYER_SERVICE_PROXY_HPP_
 
 #include <chrono>
-#include <condition_variable>
 #include <functional>
 #include <future>
-#include <list>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
 
-#include <boost/make_shared.hpp>
-#include <ros/callback_queue.h>
 #include <ros/ros.h>
-#include <ros/service.h>
 
-#include "usher_layer/deadline.hpp"
+#include "usher_layer/event_queue.hpp"
+#include "usher_layer/service_client.hpp"
 
 namespace usher_layer {
-
-/// Puts a function into the node's own queue: all that changes the supervisor runs there, one after the other.
-class Posted : public ros::CallbackInterface {
- public:
-  static void post(std::function<void()> function) {
-    ros::getGlobalCallbackQueue()->addCallback(boost::make_shared<Posted>(std::move(function)));
-  }
-
-  explicit Posted(std::function<void()> function) : function_(std::move(function)) {}
-
-  CallResult call() override {
-    function_();
-    return Success;
-  }
-
- private:
-  std::function<void()> function_;
-};
 
 /// A service for the controller behind which stands the robot's one. Who calls it waits for the robot's answer; to whom
 /// is blocked, or gets no answer, the call fails.
 ///
-/// ROS calls and answers synchronously: each caller waits in a thread of `callers`, the call to the robot in one of its
-/// own. What is decided, is decided in the node's queue.
+/// ROS answers synchronously: each caller waits in a thread of `callers`. What is decided, is decided in the node's queue.
 template <typename Type>
 class ServiceProxy {
  public:
@@ -59,64 +35,44 @@ class ServiceProxy {
     std::function<void(const std::string&)> error;  ///< It has not, and why.
   };
 
-  ServiceProxy(ros::NodeHandle callers, const std::string& controller_side, const std::string& robot_side,
-               int timeout_ms, Handlers handlers)
-      : name_(robot_side),
-        timeout_(timeout_ms / 1000.0),
-        within_(" within " + std::to_string(timeout_ms) + " ms"),
-        handlers_(std::move(handlers)) {
+  ServiceProxy(ros::NodeHandle& node, ros::NodeHandle& callers, const std::string& controller_side,
+               const std::string& robot_side, std::chrono::milliseconds timeout, Handlers handlers)
+      : handlers_(std::move(handlers)),
+        events_(node),
+        robot_(node, robot_side, timeout,
+               {
+                   [this](const Response& response) {
+                     handlers_.response(response);
+                     finish(response);
+                   },
+                   [this](const std::string& why) {
+                     handlers_.error(why);
+                     finish(std::nullopt);
+                   },
+               }) {
     server_ = callers.advertiseService<Request, Response>(
         controller_side, boost::function<bool(Request&, Response&)>(
                              [this](Request& request, Response& response) { return serve(request, response); }));
   }
 
-  ~ServiceProxy() {
-    server_.shutdown();
-    if (waiting_) waiting_->hang_up();
-  }
+  ~ServiceProxy() { server_.shutdown(); }
+  ServiceProxy(const ServiceProxy&) = delete;
+  ServiceProxy& operator=(const ServiceProxy&) = delete;
 
  private:
   using Answer = std::optional<Response>;
 
-  /// A call on its way to the robot; its thread may outlive the wait for it.
   struct Call {
     explicit Call(const Request& asked) : request(asked) {}
 
-    /// Whether the answer is still wanted, after so long.
-    bool wait(std::chrono::milliseconds time) {
-      std::unique_lock<std::mutex> lock(mutex);
-      return !hung_up.wait_for(lock, time, [this] { return over; });
-    }
-
-    /// Takes the connection through which the robot is asked, if an answer is still wanted.
-    bool dial(const ros::ServiceClient& robot) {
-      const std::lock_guard<std::mutex> lock(mutex);
-      client = robot;
-      return !over;
-    }
-
-    /// Ends the call, so that its thread ends, too; whether the robot was asked.
-    bool hang_up() {
-      const std::lock_guard<std::mutex> lock(mutex);
-      over = true;
-      hung_up.notify_all();
-      const bool asked = !client.getService().empty();
-      client.shutdown();
-      return asked;
-    }
-
     Request request;
     std::promise<Answer> answer;
-    std::mutex mutex;
-    std::condition_variable hung_up;
-    bool over = false;
-    ros::ServiceClient client;
   };
 
   bool serve(const Request& request, Response& response) {
     const auto call = std::make_shared<Call>(request);
     std::future<Answer> answer = call->answer.get_future();
-    Posted::post([this, call] { called(call); });
+    events_.push([this, call] { called(call); });
     while (answer.wait_for(std::chrono::milliseconds(100)) != std::future_status::ready) {
       if (!ros::ok()) return false;
     }
@@ -133,56 +89,20 @@ class ServiceProxy {
       call->answer.set_value(std::nullopt);
     } else {
       waiting_ = call;
-      deadline_.start(timeout_);
-      asking_.remove_if([](const std::future<void>& each) {
-        return each.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
-      });
-      asking_.push_back(std::async(std::launch::async, [this, call] { ask(call); }));
+      robot_.call(call->request);
     }
-  }
-
-  // In a thread of its own.
-  void ask(const std::shared_ptr<Call>& call) {
-    while (!ros::service::exists(name_, false)) {
-      if (!call->wait(std::chrono::milliseconds(100)) || !ros::ok()) return;
-    }
-    const ros::ServiceClient robot = ros::service::createClient<Request, Response>(name_, true);
-    if (!call->dial(robot)) return;
-    Answer answer = Response();
-    if (!call->client.call(call->request, *answer)) answer.reset();
-    Posted::post([this, call, answer] { answered(call, answer); });
-  }
-
-  void answered(const std::shared_ptr<Call>& call, const Answer& answer) {
-    if (waiting_ != call) return;  // too late: nobody waits for it
-    if (answer) {
-      handlers_.response(*answer);
-    } else {
-      handlers_.error("the call failed");
-    }
-    finish(answer);
-  }
-
-  void look() {
-    if (!waiting_ || !deadline_.over()) return;
-    handlers_.error((waiting_->hang_up() ? "no answer" : "no server") + within_);
-    finish(std::nullopt);
   }
 
   void finish(const Answer& answer) {
-    deadline_.stop();
     waiting_->answer.set_value(answer);
     waiting_.reset();
   }
 
-  std::string name_;
-  double timeout_;
-  std::string within_;
-  Handlers handlers_;
+  const Handlers handlers_;
   ros::ServiceServer server_;
-  Deadline deadline_{[this] { look(); }};
   std::shared_ptr<Call> waiting_;
-  std::list<std::future<void>> asking_;
+  EventQueue events_;
+  ServiceClient<Type> robot_;
 };
 
 }  // namespace usher_layer

@@ -9,18 +9,20 @@
 
 namespace usher_layer {
 
-/// A parameter that keeps the value with which the node started.
-template <typename Value>
-Value parameter(rclcpp::Node& node, const std::string& name, const Value& value, const std::string& meaning) {
+/// A parameter that keeps the value with which the node starts.
+template <typename Value, typename Node>
+Value parameter(Node& node, const std::string& name, const Value& value, const std::string& meaning) {
+  if (node.has_parameter(name)) return node.get_parameter(name).template get_value<Value>();
   rcl_interfaces::msg::ParameterDescriptor descriptor;
   descriptor.description = meaning;
   descriptor.read_only = true;
-  return node.declare_parameter<Value>(name, value, descriptor);
+  return node.template declare_parameter<Value>(name, value, descriptor);
 }
 
 /// The same for a whole number between two bounds; another value is refused.
-inline std::int64_t parameter(rclcpp::Node& node, const std::string& name, std::int64_t value, std::int64_t low,
-                              std::int64_t high, const std::string& meaning) {
+template <typename Node>
+int parameter(Node& node, const std::string& name, int value, int low, int high, const std::string& meaning) {
+  if (node.has_parameter(name)) return static_cast<int>(node.get_parameter(name).as_int());
   rcl_interfaces::msg::ParameterDescriptor descriptor;
   descriptor.description = meaning;
   descriptor.read_only = true;
@@ -28,7 +30,7 @@ inline std::int64_t parameter(rclcpp::Node& node, const std::string& name, std::
   descriptor.integer_range[0].from_value = low;
   descriptor.integer_range[0].to_value = high;
   descriptor.integer_range[0].step = 1;
-  return node.declare_parameter<std::int64_t>(name, value, descriptor);
+  return static_cast<int>(node.template declare_parameter<std::int64_t>(name, value, descriptor));
 }
 
 }  // namespace usher_layer

@@ -11,7 +11,7 @@
 
 #include <rclcpp/rclcpp.hpp>
 
-#include "usher_layer/clock.hpp"
+#include "usher_layer/service_client.hpp"
 
 namespace usher_layer {
 
@@ -33,78 +33,49 @@ class ServiceProxy {
 
   ServiceProxy(rclcpp::Node& node, const std::string& controller_side, const std::string& robot_side,
                std::chrono::milliseconds timeout, Handlers handlers)
-      : clock_(waiting_clock(node)),
-        timeout_(timeout),
-        within_(" within " + std::to_string(timeout.count()) + " ms"),
-        handlers_(std::move(handlers)) {
-    client_ = node.create_client<Type>(robot_side);
+      : handlers_(std::move(handlers)),
+        robot_(node, robot_side, rclcpp::ServicesQoS(), timeout,
+               {
+                   [this](const Response& response) {
+                     handlers_.response(response);
+                     finish(response);
+                   },
+                   [this](const std::string& why) {
+                     handlers_.error(why);
+                     finish(Response());
+                   },
+               }) {
     service_ = node.create_service<Type>(
         controller_side, [this](std::shared_ptr<rmw_request_id_t> caller, std::shared_ptr<Request> request) {
-          called(*caller, std::move(request));
+          called(*caller, *request);
         });
-    timer_ = rclcpp::create_timer(&node, clock_, kLook, [this] { look(); });
-    timer_->cancel();
   }
 
  private:
-  struct Call {
-    rmw_request_id_t caller;
-    std::shared_ptr<Request> request;
-    rclcpp::Time deadline;
-    std::optional<std::int64_t> sent;
-  };
-
-  void called(const rmw_request_id_t& caller, std::shared_ptr<Request> request) {
+  void called(const rmw_request_id_t& caller, const Request& request) {
     if (waiting_) {
       handlers_.busy();
       answer(caller, Response());
-    } else if (!handlers_.call(*request)) {
+    } else if (!handlers_.call(request)) {
       answer(caller, Response());
     } else {
-      waiting_ = Call{caller, std::move(request), clock_->now() + timeout_, std::nullopt};
-      timer_->reset();
-      look();
+      waiting_ = caller;
+      robot_.call(request);
     }
-  }
-
-  void look() {
-    if (!waiting_) {
-      timer_->cancel();
-    } else if (!waiting_->sent && client_->service_is_ready()) {
-      // Only an answer to this very call is heard.
-      waiting_->sent = client_->async_send_request(
-          waiting_->request, [this](typename rclcpp::Client<Type>::SharedFuture answer) { answered(*answer.get()); })
-              .request_id;
-    } else if (clock_->now() >= waiting_->deadline) {
-      const bool sent = waiting_->sent.has_value();
-      if (sent) client_->remove_pending_request(*waiting_->sent);
-      handlers_.error((sent ? "no answer" : "no server") + within_);
-      finish(Response());
-    }
-  }
-
-  void answered(const Response& response) {
-    handlers_.response(response);
-    finish(response);
   }
 
   void finish(const Response& response) {
-    const rmw_request_id_t caller = waiting_->caller;
+    const rmw_request_id_t caller = *waiting_;
     waiting_.reset();
-    timer_->cancel();
     answer(caller, response);
   }
 
   void answer(rmw_request_id_t caller, Response response) { service_->send_response(caller, response); }
 
-  rclcpp::Clock::SharedPtr clock_;
-  rclcpp::Duration timeout_;
-  std::string within_;
-  Handlers handlers_;
-  std::shared_ptr<rclcpp::Client<Type>> client_;
+  const Handlers handlers_;
+  std::optional<rmw_request_id_t> waiting_;
   std::shared_ptr<rclcpp::Service<Type>> service_;
-  rclcpp::TimerBase::SharedPtr timer_;
-  std::optional<Call> waiting_;
+  ServiceClient<Type> robot_;
 };
 
 }  // namespace usher_layer
