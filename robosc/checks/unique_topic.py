@@ -11,7 +11,8 @@ from robosc.metamodel import robosc as rsc
 
 @rule("unique-topic", Severity.WARNING)
 def unique_topic(base: rsc.Base) -> Iterator[Finding]:
-    """No two components send messages on one topic, with or without a `/` before it."""
+    """No two components send messages on one topic, with or without a `/` before it, no import gives a name two."""
+    yield from _remapped_twice(base)
     firsts: dict[str, Occurrence] = {}
     for second in Instances(base).occurrences():
         message = second.communication
@@ -27,6 +28,22 @@ def unique_topic(base: rsc.Base) -> Iterator[Finding]:
                 " arrives as both",
                 _repair(second, base),
             )
+
+
+def _remapped_twice(base: rsc.Base) -> Iterator[Finding]:
+    for component in base.definitions:
+        if not isinstance(component, rsc.Component) or not isinstance(component.type, rsc.ImportedComponent):
+            continue
+        firsts: dict[rsc.CommunicationType, rsc.TopicRemapping] = {}
+        for second in component.type.remappings:
+            first = firsts.setdefault(second.communicationType, second)
+            if first is not second:
+                yield Finding(
+                    second,
+                    f"`{second.communicationType.name}` of `{component.name}` has the topic `{first.identifier}`"
+                    f" already, expected one topic: `{second.identifier}` has no effect",
+                    "remove one of the two",
+                )
 
 
 def _place(occurrence: Occurrence, base: rsc.Base) -> ex.Located:
