@@ -9,6 +9,7 @@ from robosc.m2t.c.comments import comment
 from robosc.m2t.c.effects import Effects
 from robosc.m2t.c.nodes import All, Node
 from robosc.m2t.c.types import index_type
+from robosc.m2t.c.watching import Watching
 from robosc.roles import plant_of
 
 if TYPE_CHECKING:
@@ -18,6 +19,9 @@ if TYPE_CHECKING:
     from robosc.metamodel import sct
 
 _INDENT = 4
+#: A robot of so many events is asked for all of them whenever something happened: to keep an eye on who is concerned
+#: costs more. Measured, see docs/engine.md.
+SMALL = 40
 
 
 @dataclass(frozen=True)
@@ -53,17 +57,22 @@ class Behaviour:
         executed, guarded = self._effects(effects), self._guards()
         roles = self._context.roles
         arrived = [self._arrived(event) for event in self._context.data]
+        watching = bool(self._context.queued or roles.silent or roles.data) and len(self._context.events) > SMALL
         return {
+            "watching": watching,
+            **(Watching(self._context).prepared() if watching else {}),
             "index": index_type(len(self._context.events)),
             "cancels": len(roles.cancels),
             "triggers": len(roles.triggers),
             "queued": len(self._context.queued),
             "silent": len(roles.silent),
+            "own": " + ".join(["QUEUED"] * bool(self._context.queued) + ["SILENT"] * bool(roles.silent)),
             "bound": roles.settling_bound,
             "data": self._data_starts(),
             "settles": bool(roles.silent or roles.data),
             "topics": len(roles.shared_topics),
             "groups": len(roles.shared_topics) + len(roles.once_per_tick),
+            "group_index": index_type(len(roles.shared_topics) + len(roles.once_per_tick)),
             "group_of": self._group_of(),
             "guards": guarded,
             "guards_read_state": any("state->" in line for each in guarded for line in each.lines),

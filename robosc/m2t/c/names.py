@@ -26,7 +26,7 @@ uint64_t size_t ptrdiff_t linux unix i386
 """
 KEYWORDS = frozenset(_KEYWORDS.split())
 _API = """
-nothing event state inputs settings hooks supervisor default_settings init enabled perform begin end tick event_name
+nothing event state inputs settings hooks set supervisor default_settings init enabled perform begin end tick event_name
 """
 
 

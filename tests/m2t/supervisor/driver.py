@@ -3,9 +3,10 @@
 import subprocess
 from collections.abc import Sequence
 from pathlib import Path
+from unittest.mock import patch
 
 from robosc.config import ControlLoop
-from robosc.m2t.c import engine
+from robosc.m2t.c import behaviour, engine
 from robosc.m2t.c.names import CNames
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
@@ -116,16 +117,30 @@ def program(model: sct.SupervisoryControlModel) -> str:
     }
 
 
-def write(model: sct.SupervisoryControlModel, folder: Path, settings: ControlLoop | None = None) -> Path:
-    """Writes header and source; returns the source."""
-    for name, text in engine.generate(model, settings or ControlLoop()).items():
+def write(
+    model: sct.SupervisoryControlModel,
+    folder: Path,
+    settings: ControlLoop | None = None,
+    *,
+    small: int = behaviour.SMALL,
+) -> Path:
+    """Writes header and source; returns the source. With `small=0` the control loop is that of a large robot."""
+    with patch.object(behaviour, "SMALL", small):
+        files = engine.generate(model, settings or ControlLoop())
+    for name, text in files.items():
         (folder / name).write_text(text)
     return folder / f"{CNames(model).prefix}_supervisor.c"
 
 
-def build(model: sct.SupervisoryControlModel, folder: Path, settings: ControlLoop | None = None) -> Path:
+def build(
+    model: sct.SupervisoryControlModel,
+    folder: Path,
+    settings: ControlLoop | None = None,
+    *,
+    small: int = behaviour.SMALL,
+) -> Path:
     """Compiles engine and program, the engine without a warning."""
-    source, main, built = write(model, folder, settings), folder / "main.c", folder / "main"
+    source, main, built = write(model, folder, settings, small=small), folder / "main.c", folder / "main"
     main.write_text(program(model))
     compiled = folder / "engine.o"
     for arguments in (

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from robosc import config
 from robosc.engine import Settings
+from robosc.m2t.c.behaviour import SMALL
 from robosc.metamodel import sct
 from robosc.synthesis import synthesize
 from tests.engine.robots import robots
@@ -40,10 +41,11 @@ def _compare(model: sct.SupervisoryControlModel, loop: Settings, seed: int) -> N
         reactions_per_tick=loop.reactions_per_tick,
         react_immediately=loop.react_immediately,
     )
-    with tempfile.TemporaryDirectory() as folder:
-        said = run(build(model, Path(folder), chosen), walk.script)
-    for number, (theirs, ours) in enumerate(zip(said, walk.said, strict=True)):
-        assert theirs == ours, f"step {number} of {walk.script}"
+    for small in (SMALL, 0):
+        with tempfile.TemporaryDirectory() as folder:
+            said = run(build(model, Path(folder), chosen, small=small), walk.script)
+        for number, (theirs, ours) in enumerate(zip(said, walk.said, strict=True)):
+            assert theirs == ours, f"step {number} of {walk.script}"
 
 
 @_few

@@ -13,6 +13,7 @@ from robosc.config import Configuration
 from robosc.config import ControlLoop as Chosen
 from robosc.engine import Settings
 from robosc.m2t import supervisor
+from robosc.m2t.c.behaviour import SMALL
 from robosc.metamodel import sct
 from robosc.models import Models
 from tests.m2t.supervisor import corners
@@ -49,10 +50,13 @@ def line_follower() -> sct.SupervisoryControlModel:
 
 @pytest.fixture(scope="module")
 def sources(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
-    """The sources of all corner models and of two real ones, in one folder."""
-    folder = tmp_path_factory.mktemp("sources")
+    """The sources of all corner models and of two real ones, each as it is and as if it were large."""
     models = [make() for make in corners.ALL] + [dock(), line_follower()]
-    return [write(each, folder) for each in models]
+    return [
+        write(each, folder, small=small)
+        for folder, small in ((tmp_path_factory.mktemp("sources"), SMALL), (tmp_path_factory.mktemp("large"), 0))
+        for each in models
+    ]
 
 
 def call(*command: object, cwd: Path | None = None) -> str:
@@ -81,14 +85,15 @@ def test_cppcheck_has_nothing_to_say(sources: Sequence[Path]) -> None:
     assert call("cppcheck", "--quiet", "--std=c99", checks, *sources) == ""
 
 
+@pytest.mark.parametrize("small", [SMALL, 0])
 @pytest.mark.parametrize("make", [*corners.ALL, dock, line_follower])
-def test_it_runs_as_in_python(make: Callable[[], sct.SupervisoryControlModel], tmp_path: Path) -> None:
+def test_it_runs_as_in_python(make: Callable[[], sct.SupervisoryControlModel], small: int, tmp_path: Path) -> None:
     made = make()
     walk = Walk(made, Settings(events_per_tick=1, reactions_per_tick=3), seed=7)
     walk.tick()
     if walk.loop.engine.events:
         walk.steps(150)
-    built = build(made, tmp_path, Chosen(events_per_tick=1, reactions_per_tick=3))
+    built = build(made, tmp_path, Chosen(events_per_tick=1, reactions_per_tick=3), small=small)
     assert run(built, walk.script) == walk.said
 
 

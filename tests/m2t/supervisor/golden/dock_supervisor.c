@@ -11,6 +11,7 @@
 #define QUEUED 5U /* cancels and triggers */
 #define SILENT 4U
 #define BOUND 24U /* So many silent events may happen in a row. */
+#define EVENTS 19U
 
 const dock_settings dock_default_settings = {
     0U, 10U, true
@@ -156,30 +157,14 @@ static void execute(
  * (services, actions) between two ticks. Those with 0 are free. */
 static const uint8_t group[QUEUED] = { 0, 1, 2, 0, 0 };
 
-/* Lets an enabled event happen, unless the caller withholds it. */
-static bool run(dock_supervisor *self, dock_event event)
+/* Asks the caller whether an enabled event may happen. */
+static bool allowed(const dock_hooks *hooks, dock_event event)
 {
-    const dock_hooks *hooks = &self->hooks;
-    if (hooks->before != NULL && !hooks->before(hooks->context, event) && (unsigned)event < QUEUED + SILENT) {
-        return false;
+    bool given = true;
+    if (hooks->before != NULL) {
+        given = hooks->before(hooks->context, event);
     }
-    execute(&self->state, &self->inputs, event);
-    self->rested = false;
-    if ((unsigned)event < QUEUED) {
-        /* It moves behind the others of its kind. */
-        const unsigned last = (unsigned)event < CANCELS ? CANCELS - 1U : QUEUED - 1U;
-        for (unsigned place = 0U; place < last; ++place) {
-            if (self->queue[place] == (uint8_t)event) {
-                self->queue[place] = self->queue[place + 1U];
-                self->queue[place + 1U] = (uint8_t)event;
-            }
-        }
-        self->taken[group[event]] = group[event] != 0U;
-    }
-    if (hooks->after != NULL) {
-        hooks->after(hooks->context, event);
-    }
-    return true;
+    return given || ((unsigned)event >= QUEUED + SILENT);
 }
 
 /* Whether the plant that chooses data is where the event would lead it. */
@@ -195,6 +180,33 @@ static bool arrived(const dock_state *state, dock_event event)
     default:
         return false;
     }
+}
+
+/* This robot is small: the control loop asks all its events. */
+
+/* Lets an enabled event happen, unless the caller withholds it. */
+static bool run(dock_supervisor *self, dock_event event)
+{
+    if (!allowed(&self->hooks, event)) {
+        return false;
+    }
+    execute(&self->state, &self->inputs, event);
+    self->rested = false;
+    if ((unsigned)event < QUEUED) {
+        /* It moves behind the others of its kind. */
+        const unsigned last = (unsigned)event < CANCELS ? CANCELS - 1U : QUEUED - 1U;
+        for (unsigned place = 0U; place < last; ++place) {
+            if (self->queue[place] == (uint8_t)event) {
+                self->queue[place] = self->queue[place + 1U];
+                self->queue[place + 1U] = (uint8_t)event;
+            }
+        }
+        self->taken[group[event]] = group[event] != 0U;
+    }
+    if (self->hooks.after != NULL) {
+        self->hooks.after(self->hooks.context, event);
+    }
+    return true;
 }
 
 /* Chooses the data to send: for each trigger that of the first statement whose condition holds. */
@@ -257,20 +269,25 @@ static void settle(dock_supervisor *self)
  * many, and what is left of these is returned. */
 static uint16_t serve(dock_supervisor *self, uint16_t most)
 {
+    uint16_t left = most;
     unsigned place = 0U;
-    for (unsigned asked = 0U; asked < QUEUED && most > 0U; ++asked) {
+    for (unsigned asked = 0U; (asked < QUEUED) && (left > 0U); ++asked) {
         if (asked == CANCELS) {
             place = CANCELS;
         }
         const dock_event event = (dock_event)self->queue[place];
-        if (self->due[event] && !self->taken[group[event]] && guard(&self->state, event) && run(self, event)) {
-            --most; /* It has left its place to the next. */
+        bool ran = self->due[event] && !self->taken[group[event]] && guard(&self->state, event);
+        if (ran) {
+            ran = run(self, event);
+        }
+        if (ran) {
+            --left; /* It has left its place to the next. */
             settle(self);
         } else {
             ++place;
         }
     }
-    return most;
+    return left;
 }
 
 /* Whether the batch made a cancel or trigger possible, or changed what it sends. */
@@ -286,6 +303,54 @@ static bool fresh(const dock_supervisor *self, dock_event event)
         break;
     }
     return guard(&self->state, event) && (moved || !guard(&self->before, event));
+}
+
+/* What a batch made possible, or has other data, runs. */
+static void react(dock_supervisor *self)
+{
+    for (unsigned event = 0U; event < QUEUED; ++event) {
+        self->due[event] = fresh(self, (dock_event)event);
+    }
+    self->reactions = serve(self, self->reactions);
+}
+
+/* Each enabled cancel, then each enabled trigger runs once; at most so many. */
+static void go_round(dock_supervisor *self, uint16_t most)
+{
+    for (unsigned event = 0U; event < QUEUED; ++event) {
+        self->due[event] = true;
+    }
+    for (unsigned each = 1U; each <= 2U; ++each) {
+        self->taken[each] = false;
+    }
+    (void)serve(self, most);
+}
+
+/* Each enabled cancel runs once. */
+static void serve_cancels(dock_supervisor *self)
+{
+    for (unsigned event = 0U; event < QUEUED; ++event) {
+        self->due[event] = event < CANCELS;
+    }
+    (void)serve(self, QUEUED);
+}
+
+/* How the control loop is before anything has happened. */
+static void start(dock_supervisor *self)
+{
+    self->before = self->state;
+    for (unsigned event = 0U; event < QUEUED; ++event) {
+        self->queue[event] = (uint8_t)event;
+        self->due[event] = false;
+    }
+    for (unsigned each = 0U; each <= 2U; ++each) {
+        self->taken[each] = false;
+    }
+    self->reactions = 0U;
+    self->started = false;
+    self->silent = 0U;
+    self->livelocked = false;
+    self->rested = false;
 }
 
 void dock_init(
@@ -311,29 +376,21 @@ void dock_init(
         self->hooks.after = NULL;
         self->hooks.livelock = NULL;
     }
-    self->before = self->state;
-    for (unsigned event = 0U; event < QUEUED; ++event) {
-        self->queue[event] = (uint8_t)event;
-        self->due[event] = false;
-    }
-    for (unsigned each = 0U; each <= 2U; ++each) {
-        self->taken[each] = false;
-    }
-    self->reactions = 0U;
-    self->started = false;
-    self->silent = 0U;
-    self->livelocked = false;
-    self->rested = false;
+    start(self);
 }
 
 bool dock_enabled(const dock_supervisor *self, dock_event event)
 {
-    return (unsigned)event < DOCK_EVENT_COUNT && guard(&self->state, event);
+    return ((unsigned)event < EVENTS) && guard(&self->state, event);
 }
 
 bool dock_perform(dock_supervisor *self, dock_event event)
 {
-    return dock_enabled(self, event) && run(self, event);
+    bool ran = dock_enabled(self, event);
+    if (ran) {
+        ran = run(self, event);
+    }
+    return ran;
 }
 
 void dock_begin(dock_supervisor *self)
@@ -346,34 +403,22 @@ void dock_end(dock_supervisor *self)
 {
     settle(self);
     if (self->started && self->settings.react_immediately) {
-        for (unsigned event = 0U; event < QUEUED; ++event) {
-            self->due[event] = fresh(self, (dock_event)event);
-        }
-        self->reactions = serve(self, self->reactions);
+        react(self);
     }
 }
 
 void dock_tick(dock_supervisor *self)
 {
     settle(self);
-    for (unsigned event = 0U; event < QUEUED; ++event) {
-        self->due[event] = true;
-    }
-    for (unsigned each = 1U; each <= 2U; ++each) {
-        self->taken[each] = false;
-    }
     self->started = true;
     self->reactions = self->settings.reactions_per_tick;
-    (void)serve(self, self->settings.events_per_tick > 0U ? self->settings.events_per_tick : UINT16_MAX);
+    go_round(self, (self->settings.events_per_tick > 0U) ? self->settings.events_per_tick : QUEUED);
 }
 
 void dock_settle(dock_supervisor *self)
 {
     settle(self);
-    for (unsigned event = 0U; event < QUEUED; ++event) {
-        self->due[event] = event < CANCELS;
-    }
-    (void)serve(self, UINT16_MAX);
+    serve_cancels(self);
 }
 
 #ifndef DOCK_NO_NAMES
@@ -402,7 +447,7 @@ const char *dock_event_name(dock_event event)
         "service_call_help.u_response",
         "service_call_help.u_error"
     };
-    return (unsigned)event < DOCK_EVENT_COUNT ? names[event] : "";
+    return ((unsigned)event < EVENTS) ? names[event] : "";
 }
 
 const char *dock_location_name_component_Power(unsigned number)
