@@ -2,8 +2,9 @@
 
 Everything that has a state is a finite domain: the location of a plant, a discrete variable, an input. A value's code
 is its index in the domain, in binary, the most significant bit on top. Each bit of the state has a copy for the next
-state right below it. Wide integers that are computed from each other or compared take turns bit by bit: apart, the
-diagram of `x = y` has a node for every value.
+state right below it, and with wide integers in the model one in between, for a state halfway. Wide integers that are
+computed from each other or compared, or are counted by the same event, take turns bit by bit: apart, the diagram of
+`x = y` has a node for every value.
 """
 
 from __future__ import annotations
@@ -44,11 +45,15 @@ class Domain:
     rank: int
     size: int
     levels: tuple[int, ...]
+    halfway_levels: tuple[int, ...]
     next_levels: tuple[int, ...]
 
 
 class Layout:
-    """Which element takes which levels: the static order of a model's domains."""
+    """Which element takes which levels: the static order of a model's domains.
+
+    `wide` are the wide integers of the state, each with those that its bits take turns with, itself included.
+    """
 
     def __init__(self, model: sct.SupervisoryControlModel) -> None:
         elements = [each for plant in model.plants for each in _elements(plant)]
@@ -58,6 +63,11 @@ class Layout:
         self.domains: dict[Element, Domain] = {}
         self.levels = 0
         together = _groups_of_wide(model)
+        self.wide: dict[Element, list[Element]] = {
+            each: [other for other in together.get(each, [each]) if not isinstance(other, sct.Input)]
+            for each in elements
+            if domain_size(each) >= _WIDE and not isinstance(each, sct.Input)
+        }
         for vertex in order:
             if elements[vertex] not in self.domains:
                 self._add([(each, index[each]) for each in together.get(elements[vertex], [elements[vertex]])])
@@ -72,14 +82,19 @@ class Layout:
             for element, _ in elements:
                 if weight < bits[element]:
                     levels[element].append(self.levels)
-                    self.levels += _copies(element)
+                    self.levels += self._copies(element)
         for element, rank in elements:
-            following = tuple(level + _copies(element) - 1 for level in levels[element])
-            self.domains[element] = Domain(element, rank, domain_size(element), tuple(levels[element]), following)
+            halfway, following = (
+                tuple(level + copy for level in levels[element]) for copy in (1, self._copies(element) - 1)
+            )
+            self.domains[element] = Domain(
+                element, rank, domain_size(element), tuple(levels[element]), halfway, following
+            )
 
-
-def _copies(element: Element) -> int:
-    return 1 if isinstance(element, sct.Input) else 2
+    def _copies(self, element: Element) -> int:
+        if isinstance(element, sct.Input):
+            return 1
+        return 3 if self.wide else 2
 
 
 def foreign(expression: ex.Expression) -> ModelError:
@@ -350,9 +365,11 @@ def _groups_of_wide(model: sct.SupervisoryControlModel) -> dict[Element, list[El
 
 
 def _computations(model: sct.SupervisoryControlModel) -> Iterator[list[Element]]:
-    """What each comparison reads, and what each assignment reads and writes."""
+    """What each comparison reads, what each assignment reads and writes, and what each edge counts."""
     for _, each in tree(model):
         if isinstance(each, sct.Update):
             yield [each.variable, *referenced(each.value)]
+        elif isinstance(each, sct.Edge):
+            yield [update.variable for update in each.updates if update.variable in referenced(update.value)]
         elif isinstance(each, _COMPARISONS):
             yield list(referenced(each))

@@ -14,16 +14,22 @@ from __future__ import annotations
 import sys
 from contextlib import contextmanager
 from dataclasses import dataclass
-from itertools import groupby
+from itertools import count, groupby
 from typing import TYPE_CHECKING
 
 from robosc.synthesis.bdd import Diagram, Diagrams, split
+from robosc.synthesis.leaps import Leaps, hopeless
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Iterator, Sequence
 
     from robosc.synthesis.encoding import Encoding
     from robosc.synthesis.relation import Step
+
+
+#: After how many turns without an end wide integers are taken in leaps, and after how many not even that helps.
+_PATIENCE = 32
+_HOPELESS = 1 << 16
 
 
 @dataclass(frozen=True)
@@ -43,11 +49,12 @@ class SupervisedStates:
 class _Saturation:
     """The closure of a state set under steps, forwards or backwards, within a bounding set."""
 
-    def __init__(self, diagrams: Diagrams, steps: Sequence[Step], fire: Callable[[Step, Diagram], Diagram]) -> None:
+    def __init__(self, diagrams: Diagrams, steps: Sequence[Step], *, forwards: bool) -> None:
         self._diagrams = diagrams
+        self._forwards = forwards
+        self._leaps = Leaps(steps, forwards=forwards)
         by_level = sorted(steps, key=lambda step: step.level)
         self._groups = [(level, list(group)) for level, group in groupby(by_level, key=lambda step: step.level)]
-        self._fire = fire
         self._known: dict[tuple[Diagram, Diagram, int], Diagram] = {}
 
     def closure(self, states: Diagram, within: Diagram) -> Diagram:
@@ -75,24 +82,36 @@ class _Saturation:
         return result
 
     def _fire_all(self, states: Diagram, within: Diagram, group: int) -> Diagram:
-        while True:
+        here = self._groups[group][1]
+        for turn in count(1):
             closed = states = self._close(states, within, group + 1)
-            for step in self._groups[group][1]:
+            for step in here:
                 states |= self._fire(step, states) & within
-                self._diagrams.statistics.operations += 1
-                self._diagrams.tidy()
             if states == closed:
-                return closed
+                break
+            if turn >= _PATIENCE and turn.bit_count() == 1:
+                below = [step for _, steps in self._groups[group + 1 :] for step in steps]
+                if turn >= _HOPELESS and self._leaps.possible:
+                    raise hopeless([*here, *below])
+                # The more often it was in vain, the farther it leaps.
+                for leap in self._leaps.over(here, below, (turn // _PATIENCE).bit_length(), within):
+                    states |= self._fire(leap, states)
+        return states
+
+    def _fire(self, step: Step, states: Diagram) -> Diagram:
+        self._diagrams.statistics.operations += 1
+        self._diagrams.tidy()
+        return step.image(states) if self._forwards else step.preimage(states)
 
 
 def reachable(diagrams: Diagrams, steps: Sequence[Step], states: Diagram, within: Diagram) -> Diagram:
     """All states that the steps reach from `states` without leaving `within`."""
-    return _Saturation(diagrams, steps, lambda step, each: step.image(each)).closure(states, within)
+    return _Saturation(diagrams, steps, forwards=True).closure(states, within)
 
 
 def coreachable(diagrams: Diagrams, steps: Sequence[Step], states: Diagram, within: Diagram) -> Diagram:
     """All states from which the steps reach `states` without leaving `within`."""
-    return _Saturation(diagrams, steps, lambda step, each: step.preimage(each)).closure(states, within)
+    return _Saturation(diagrams, steps, forwards=False).closure(states, within)
 
 
 def supervise(encoding: Encoding, steps: Sequence[Step], uncontrollable: Sequence[Step]) -> SupervisedStates:

@@ -23,6 +23,8 @@ class Step:
 
     `relation` speaks of present and next values. `present` and `following` are the variables of what it changes, and
     `same` says that these are equal: renaming by a conjunction, unlike by substitution, leaves alone what is below.
+    `changed` are the elements that it changes; `touched`, those and what the plants read, are told only where some
+    integer is wide.
     """
 
     level: int
@@ -30,6 +32,9 @@ class Step:
     present: Diagram
     following: Diagram
     same: Diagram
+    encoding: Encoding
+    changed: tuple[Element, ...]
+    touched: tuple[Element, ...]
 
     def image(self, states: Diagram) -> Diagram:
         """The states after the event in one of `states`."""
@@ -132,6 +137,11 @@ class EventRelation:
             present=diagrams.cube(present),
             following=diagrams.cube(following),
             same=self._conjunction(self._encoding.keeps(each) for each in self.changed),
+            encoding=self._encoding,
+            changed=self.changed,
+            touched=tuple(sorted(self.touched, key=lambda each: domains[each].rank))
+            if self._encoding.layout.wide
+            else (),
         )
 
     def _conjunction(self, parts: Iterable[Diagram]) -> Diagram:
