@@ -23,12 +23,15 @@ from robosc.synthesis.guards import permission
 from robosc.synthesis.observations import Observations, Observer
 from robosc.synthesis.paths import TraceStep
 from robosc.synthesis.relation import event_relations
+from robosc.synthesis.settling import settling, silent_events
 from robosc.synthesis.statistics import Phase, Statistics
 
 __all__ = ["Observations", "Phase", "Reason", "Statistics", "Synthesis", "TraceStep", "synthesize"]
 
 #: How many bytes decision diagrams may take where nothing else is said.
 MEMORY = 4 << 30
+#: What may be spent on the bound on silent events, in nodes looked at: some tenths of a second.
+SETTLING_EFFORT = 2_000_000
 
 
 @dataclass(frozen=True)
@@ -122,6 +125,10 @@ def _synthesize(model: sct.SupervisoryControlModel, layout: Layout, capacity: in
             bddNodes=found.controlled.node_count() + sum(each.allowed.node_count() for each in permissions),
             guards=[each.guard for each in permissions],
         )
+        # Within the controlled states a step leads where its guard lets it, and nowhere else.
+        supervised = [(each, each.enabled & each.requirement, each.step) for each in relations]
+        silent = silent_events(supervised, supervisor.guards)
+        supervisor.settlingBound = settling(diagrams, silent, found.controlled, SETTLING_EFFORT).bound
     with statistics.during(Phase.OBSERVE):
         observations = Observer(model, encoding, moves, found, permissions).observations(uncontrolled)
         possible = [

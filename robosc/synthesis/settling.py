@@ -9,7 +9,7 @@ from robosc.roles import SILENT
 from robosc.synthesis.encoding import referenced
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
 
     from robosc.metamodel import sct
     from robosc.synthesis.bdd import Diagram, Diagrams
@@ -38,17 +38,17 @@ class SilentEvent:
 
 
 def silent_events(
-    supervised: Sequence[tuple[EventRelation, Diagram]], guards: Sequence[sct.EventGuard]
+    events: Iterable[tuple[EventRelation, Diagram, Step | None]], guards: Iterable[sct.EventGuard]
 ) -> list[SilentEvent]:
-    """The silent ones of all events, each given with where plants and supervisor let it happen."""
+    """The silent ones of events, each given with where it can happen under its guard and what it does there."""
     guard_of = {each.event: each for each in guards}
     found = []
-    for relation, allowed in supervised:
+    for relation, allowed, step in events:
         if relation.event.kind in SILENT:
             guard = guard_of.get(relation.event)
             parts = (guard.requirement, guard.synthesis) if guard else ()
             read = {element for part in parts for element in referenced(part)}
-            found.append(SilentEvent(relation, allowed, relation.step_where(allowed), relation.touched | read))
+            found.append(SilentEvent(relation, allowed, step, relation.touched | read))
     return found
 
 
@@ -71,7 +71,7 @@ def settling(diagrams: Diagrams, events: Sequence[SilentEvent], states: Diagram,
     those of the groups together, and it is endless where one of these is. `effort` bounds the work, in nodes looked at.
     """
     bound, restless = 0, diagrams.false
-    for group in _groups(events):
+    for group in groups(events):
         previous = states
         for longer in runs(diagrams, group, states):
             if not longer.satisfiable():
@@ -93,23 +93,19 @@ def runs(diagrams: Diagrams, events: Sequence[SilentEvent], states: Diagram) -> 
         before = diagrams.false
         for each in events:
             before |= each.before(states)
+            diagrams.tidy()
         states = before
         yield states
 
 
-def _groups(events: Sequence[SilentEvent]) -> list[list[SilentEvent]]:
-    """Events of different groups change nothing that the others touch."""
-    groups: list[list[SilentEvent]] = []
+def groups(events: Sequence[SilentEvent]) -> list[list[SilentEvent]]:
+    """The events so that those of one group change nothing that those of another touch."""
+    found: list[list[SilentEvent]] = []
     for event in events:
-        related = [event]
-        apart = []
-        for group in groups:
-            if any(_related(event, other) for other in group):
-                related += group
-            else:
-                apart.append(group)
-        groups = [*apart, related]
-    return groups
+        related = [each for each in found if any(_related(event, other) for other in each)]
+        apart = [each for each in found if each not in related]
+        found = [*apart, [*(other for each in related for other in each), event]]
+    return found
 
 
 def _related(first: SilentEvent, second: SilentEvent) -> bool:

@@ -25,9 +25,9 @@ class Outcome(StrEnum):
 class Verdict:
     """The answer to one question, in `seconds`.
 
-    `property` is its short name (`non-blocking`), `evidence` what was looked at (`1,234 states`), `explanation` a sentence
-    where it is refuted or skipped. `trace` is then a shortest way from the initial state to the fault, `other` a second
-    way from its end where two are needed to show it.
+    `property` is its short name (`non-blocking`), `evidence` what was looked at (`1,234 states`), `explanation` a
+    sentence where it is refuted or skipped. `trace` is then a shortest way from the initial state to the fault,
+    `onwards` how it can go on from there, `other` a second way from there, where these are needed to show it.
     """
 
     property: str
@@ -35,5 +35,6 @@ class Verdict:
     evidence: str
     explanation: str = ""
     trace: tuple[TraceStep, ...] = ()
+    onwards: tuple[TraceStep, ...] = ()
     other: tuple[TraceStep, ...] = ()
     seconds: float = 0.0

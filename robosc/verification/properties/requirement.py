@@ -1,0 +1,38 @@
+"""A requirement holds: wherever its event happens, its condition allows it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robosc.diagnostics import Span
+from robosc.roles import event_name
+from robosc.supervision.wording import words
+from robosc.synthesis.encoding import referenced
+from robosc.verification.system import counted, happening
+from robosc.verification.verdict import Outcome, Verdict
+
+if TYPE_CHECKING:
+    from robosc.metamodel import sct
+    from robosc.verification.system import SupervisedSystem
+
+
+def requirement_name(requirement: sct.Requirement) -> str:
+    """The requirement in the robot model's words, and its line there."""
+    span = Span.parse(requirement.source)
+    said = requirement.text or f"requirement on {event_name(requirement.event)}"
+    return f"{said} (line {span.line})" if span else said
+
+
+def requirement_holds(system: SupervisedSystem, requirement: sct.Requirement) -> Verdict:
+    """The supervisor lets the event happen in no reachable state in which the requirement forbids it."""
+    relation = next(each for each in system.relations if each.event is requirement.event)
+    happens = system.reachable & system.allowed[relation]
+    broken = happens & ~relation.asked[requirement]
+    states = counted(system.encoding.count(happens), "state")
+    evidence, said = f"happens in {states}", requirement_name(requirement)
+    if not broken.satisfiable():
+        return Verdict(said, Outcome.PROVED, evidence)
+    path = system.path_to(broken)
+    where = system.where(path.states[-1], referenced(requirement.condition))
+    explanation = f"{words(requirement.event)} can happen" + (f" where `{where}`" if where else "")
+    return Verdict(said, Outcome.REFUTED, evidence, explanation, (*system.trace(path), happening(relation)))
