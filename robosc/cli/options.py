@@ -33,3 +33,13 @@ findings_format = click.option(
     show_default=True,
     help="How findings are shown.",
 )
+
+memory = click.option(
+    "--memory",
+    "megabytes",
+    type=click.IntRange(min=1),
+    metavar="MB",
+    default=4096,
+    show_default=True,
+    help="The most memory for the decision diagrams of synthesis, in megabytes of 2^20 bytes.",
+)

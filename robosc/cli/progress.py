@@ -1,22 +1,38 @@
-"""Says what takes longer than a second, on a terminal only."""
+"""Says what takes longer than a second, on a terminal only, and ends it when interrupted."""
 
 from __future__ import annotations
 
+import os
+import signal
 import sys
 from contextlib import contextmanager
-from threading import Timer
+from threading import Event, Thread, Timer, current_thread, main_thread
 from typing import TYPE_CHECKING
 
+from robosc.cli import INTERRUPTED
+
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from rich.status import Status
+
+    from robosc.synthesis import Statistics
 
 PATIENCE_SECONDS = 1.0
 
 
+class _Line:
+    """What is shown, asked for anew each time."""
+
+    def __init__(self, text: Callable[[], str]) -> None:
+        self._text = text
+
+    def __rich__(self) -> str:
+        return self._text()
+
+
 @contextmanager
-def progress(what: str) -> Iterator[None]:
+def progress(what: str | Callable[[], str]) -> Iterator[None]:
     """While the `with` block runs on for over a second, a terminal shows what it does; nothing of it stays there."""
     if not sys.stderr.isatty():
         yield
@@ -26,7 +42,7 @@ def progress(what: str) -> Iterator[None]:
     def show() -> None:
         from rich.console import Console
 
-        status = Console(stderr=True).status(what)
+        status = Console(stderr=True).status(what if isinstance(what, str) else _Line(what))
         status.start()
         shown.append(status)
 
@@ -40,3 +56,73 @@ def progress(what: str) -> Iterator[None]:
         timer.join()
         for each in shown:
             each.stop()
+
+
+@contextmanager
+def synthesizing() -> Iterator[Statistics]:
+    """Shows how far a synthesis is that is done in the `with` block and keeps these statistics.
+
+    An interrupt ends it within a moment. Raises MemoryError with what helps where it lacks memory.
+    """
+    from robosc.synthesis import Statistics
+
+    statistics = Statistics()
+    try:
+        with interruptible(), progress(lambda: _how_far(statistics)):
+            yield statistics
+    except MemoryError as error:
+        helps = "let `synthesize` or `transform` have more `--memory`, or give integers smaller ranges"
+        raise MemoryError(f"{str(error) or 'out of memory'}: {helps}") from error
+
+
+def _how_far(statistics: Statistics) -> str:
+    said = "synthesizing the supervisor"
+    if statistics.phase is None:
+        return said
+    parts = [statistics.phase.value]
+    if statistics.rounds:
+        parts.append(f"round {statistics.rounds} on {_number(statistics.states)} states")
+    parts += [f"{statistics.operations:,} operations", f"{statistics.peak_nodes:,} nodes"]
+    return f"{said}: {', '.join(parts)}"
+
+
+def _number(number: int) -> str:
+    digits = str(number)
+    return f"{number:,}" if len(digits) < 13 else f"{digits[0]}.{digits[1]}e{len(digits) - 1}"
+
+
+@contextmanager
+def interruptible() -> Iterator[None]:
+    """An interrupt ends the `with` block within a moment, or else the process, with the status for it.
+
+    Python hears of a signal only between two operations, and one on decision diagrams may take minutes. Nothing that
+    has to be cleaned up may be open in the block.
+    """
+    if current_thread() is not main_thread():
+        yield
+        return
+    import socket
+
+    ended = Event()
+    ears, mouth = socket.socketpair()
+
+    def listen() -> None:
+        while heard := ears.recv(1):
+            if heard[0] == signal.SIGINT and not ended.wait(PATIENCE_SECONDS):
+                if sys.stderr.isatty():
+                    # What is shown there has hidden the cursor.
+                    os.write(2, b"\r\x1b[2K\x1b[?25h")
+                os._exit(INTERRUPTED)
+
+    listener = Thread(target=listen, daemon=True)
+    mouth.setblocking(False)
+    before = signal.set_wakeup_fd(mouth.fileno(), warn_on_full_buffer=False)
+    listener.start()
+    try:
+        yield
+    finally:
+        ended.set()
+        signal.set_wakeup_fd(before)
+        mouth.close()
+        listener.join()
+        ears.close()

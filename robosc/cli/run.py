@@ -11,7 +11,7 @@ import click
 from robosc import config
 from robosc.cli import CallError
 from robosc.cli.options import FILE, findings_format, interface_path, library_path, model
-from robosc.cli.progress import progress
+from robosc.cli.progress import synthesizing
 from robosc.cli.reading import read_models
 from robosc.cli.report import Report
 from robosc.supervision import supervise
@@ -68,8 +68,8 @@ def command(
         file = Path(chosen) if chosen else config.find(Path(model).parent)
         configuration = config.read(file) if file else config.Configuration()
         if models.sct.supervisor is None:
-            with progress("synthesizing the supervisor"):
-                supervision = supervise(models.sct)
+            with synthesizing() as statistics:
+                supervision = supervise(models.sct, statistics=statistics)
             report.add(supervision.findings)
             report.stop_on_errors()
         target = TARGETS[f"ros{version}-layer" if layer else f"ros{version}"]

@@ -12,7 +12,7 @@ import click
 
 from robosc import config
 from robosc.cli.options import FILE, interface_path, library_path, model
-from robosc.cli.progress import progress
+from robosc.cli.progress import synthesizing
 from robosc.cli.reading import read_models
 from robosc.cli.report import Report
 from robosc.engine import Settings
@@ -69,8 +69,8 @@ def command(
         models = read_models(model, library_paths, report, interface_paths)
         settings = _settings(Path(model), chosen) if loop else None
         if models.sct.supervisor is None:
-            with progress("synthesizing the supervisor"):
-                supervision = supervise(models.sct)
+            with synthesizing() as statistics:
+                supervision = supervise(models.sct, statistics=statistics)
             report.add(supervision.findings)
             report.stop_on_errors()
         if script is not None:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import json
+import sys
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from robosc.cli.options import interface_path, library_path, model
-from robosc.cli.progress import progress
+from robosc.cli.options import interface_path, library_path, memory, model
+from robosc.cli.progress import synthesizing
 from robosc.cli.reading import read_models
 from robosc.cli.report import Report
 from robosc.expressions import SctPrinter, conjunction, copied
@@ -17,23 +18,30 @@ from robosc.roles import SILENT, event_name
 from robosc.supervision import EmptySupervisorError, supervise
 from robosc.supervision.wording import change
 
+if sys.platform != "win32":
+    import resource
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from robosc.synthesis import Synthesis
+    from robosc.synthesis import Statistics, Synthesis
 
 
 @click.command("synthesize")
 @model
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
+@memory
 @library_path
 @interface_path
-def command(model: str, as_json: bool, library_paths: Sequence[str], interface_paths: Sequence[str]) -> None:
+def command(
+    model: str, as_json: bool, megabytes: int, library_paths: Sequence[str], interface_paths: Sequence[str]
+) -> None:
     """Synthesize the supervisor of a robot: its states, and when it allows what.
 
     MODEL is a .rscd file with a robot, or an .xmi file that `transform --to xmi` wrote. A guard says where the
     supervisor allows an event, beyond what the robot itself forbids; what no requirement asks for and synthesis had to
-    add is shown apart. --json lists all events, those for the data to send and those from the robot, too.
+    add is shown apart. --json lists all events, those for the data to send and those from the robot, too, and tells
+    what synthesis cost.
 
     \b
     Examples:
@@ -45,8 +53,8 @@ def command(model: str, as_json: bool, library_paths: Sequence[str], interface_p
     with Report(aside=True) as report:
         plants = read_models(model, library_paths, report, interface_paths).sct
         try:
-            with progress("synthesizing the supervisor"):
-                supervision = supervise(plants)
+            with synthesizing() as statistics:
+                supervision = supervise(plants, memory=megabytes << 20, statistics=statistics)
         except EmptySupervisorError as error:
             if as_json:
                 _show_json(plants, error.synthesis)
@@ -69,8 +77,29 @@ def _show_json(model: sct.SupervisoryControlModel, synthesis: Synthesis) -> None
         ],
         "seconds": round(synthesis.seconds, 3),
         "bdd_nodes": synthesis.bdd_nodes,
+        **_cost(synthesis.statistics),
     }
     click.echo(json.dumps(answer, indent=2))
+
+
+def _cost(statistics: Statistics) -> dict[str, Any]:
+    """What synthesis cost; the seconds and bytes alone differ from run to run."""
+    return {
+        "peak_nodes": statistics.peak_nodes,
+        "operations": statistics.operations,
+        "rounds": statistics.rounds,
+        "attempts": statistics.attempts,
+        "phase_seconds": {phase: round(seconds, 3) for phase, seconds in statistics.seconds.items()},
+        "peak_bytes": _peak_bytes(),
+    }
+
+
+def _peak_bytes() -> int | None:
+    """The most memory that the whole process has had so far; None where the system does not tell."""
+    if sys.platform == "win32":
+        return None
+    most = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return most if sys.platform == "darwin" else most * 1024
 
 
 def _controllable(guard: sct.EventGuard) -> dict[str, Any]:

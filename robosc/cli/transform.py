@@ -9,8 +9,8 @@ import click
 
 from robosc import config
 from robosc.cli import CallError
-from robosc.cli.options import FILE, findings_format, interface_path, library_path, model
-from robosc.cli.progress import progress
+from robosc.cli.options import FILE, findings_format, interface_path, library_path, memory, model
+from robosc.cli.progress import progress, synthesizing
 from robosc.cli.reading import read_models
 from robosc.cli.report import Report
 from robosc.output import OutputError, write
@@ -45,6 +45,7 @@ _EPILOG = "\n".join(["\b", "Targets:", *(f"  {each.name:<11} {each.description}"
     "--with-tests", is_flag=True, help="Add a test that plays event traces against the node, and a Dockerfile."
 )
 @findings_format
+@memory
 @library_path
 @interface_path
 def command(
@@ -54,6 +55,7 @@ def command(
     chosen: str | None,
     with_tests: bool,
     form: str,
+    megabytes: int,
     library_paths: Sequence[str],
     interface_paths: Sequence[str],
 ) -> None:
@@ -80,8 +82,8 @@ def command(
                 raise CallError(f"{model} has no ROS graph, which {target.name} needs: give its .rosgraph.xmi or .rscd")
         configuration = _configuration(Path(model), chosen)
         if models.sct.supervisor is None:
-            with progress("synthesizing the supervisor"):
-                supervision = supervise(models.sct)
+            with synthesizing() as statistics:
+                supervision = supervise(models.sct, memory=megabytes << 20, statistics=statistics)
             report.add(supervision.findings)
             report.stop_on_errors()
         for target in targets:

@@ -1,13 +1,15 @@
 """What takes long is said, on a terminal only."""
 
 import io
+import subprocess
 import sys
 import time
 
 import pytest
 
 from robosc.cli import progress as module
-from robosc.cli.progress import progress
+from robosc.cli.progress import progress, synthesizing
+from robosc.synthesis import Phase
 
 
 class Terminal(io.StringIO):
@@ -63,3 +65,39 @@ def test_a_failure_ends_it(monkeypatch: pytest.MonkeyPatch) -> None:
     said = terminal.getvalue()
     time.sleep(0.2)
     assert terminal.getvalue() == said
+
+
+def test_how_far_a_synthesis_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "stderr", terminal := Terminal())
+    monkeypatch.setenv("COLUMNS", "200")
+    with synthesizing() as statistics:
+        wait_for("synthesizing the supervisor", terminal)
+        with statistics.during(Phase.FIXPOINT):
+            statistics.rounds, statistics.states, statistics.operations, statistics.peak_nodes = 2, 34 * 10**29, 1234, 5
+            wait_for("fixpoint, round 2 on 3.4e30 states, 1,234 operations, 5 nodes", terminal)
+
+
+#: One operation on decision diagrams that takes minutes: all bits of one number, then all of another.
+OPERATION = """
+import os
+import signal
+from threading import Timer
+from oxidd.bcdd import BCDDManager
+from robosc.cli import progress
+
+progress.PATIENCE_SECONDS = 0.02
+manager = BCDDManager(1 << 27, 1 << 20, 1)
+manager.add_vars(52)
+halves = [manager.true(), manager.true()]
+for bit in range(26):
+    halves[bit // 13] &= manager.var(bit).equiv(manager.var(bit + 26))
+with progress.interruptible():
+    Timer(0.5, os.kill, (os.getpid(), signal.SIGINT)).start()
+    halves[0] & halves[1]
+    print("done")
+"""
+
+
+def test_an_interrupt_amid_an_operation_ends_the_process() -> None:
+    done = subprocess.run([sys.executable, "-c", OPERATION], check=False, capture_output=True)
+    assert (done.returncode, done.stdout, done.stderr) == (130, b"", b"")

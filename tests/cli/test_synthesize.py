@@ -1,7 +1,13 @@
 """`robosc synthesize`: the supervisor as text and as JSON."""
 
 import json
+import os
+import signal
+import subprocess
+import sys
 from pathlib import Path
+
+import pytest
 
 from .conftest import DOOR, Run
 
@@ -12,11 +18,17 @@ def test_as_json(run: Run, door: Path) -> None:
     said = json.loads(answer.stdout)
     assert said.pop("seconds") > 0
     assert said.pop("bdd_nodes") > 0
+    assert said.pop("peak_nodes") > 0
+    assert said.pop("operations") > 0
+    assert said.pop("peak_bytes") > 1 << 20
+    assert [*said.pop("phase_seconds")] == ["order", "encode", "fixpoint", "guards", "observe"]
     assert said == {
         "robot": "Door",
         "uncontrolled_states": 2,
         "controlled_states": 2,
         "empty": False,
+        "rounds": 1,
+        "attempts": 1,
         "events": [
             {
                 "name": "message_open.c_trigger",
@@ -39,8 +51,82 @@ def test_as_json(run: Run, door: Path) -> None:
 def test_all_but_the_time_is_the_same_on_every_run(run: Run, door: Path) -> None:
     said = [json.loads(run("synthesize", door, "--json").stdout) for _ in range(2)]
     for each in said:
-        del each["seconds"]
+        del each["seconds"], each["phase_seconds"], each["peak_bytes"]
     assert said[0] == said[1]
+
+
+#: Two counts and their sum: neither single steps nor leaps come to an end within minutes.
+SUM = """
+robot Sum {
+  component Counter {
+    outgoing message left with identifier: "/left", type: none
+    outgoing message right with identifier: "/right", type: none
+    incoming message go with identifier: "/go", type: none
+
+    behaviour {
+      variable lefts: integer(0..2000000000)
+      variable rights: integer(0..2000000000)
+      variable all: integer(0..2000000000)
+      initial marked state counting {
+        on response from left do lefts := lefts + 1, all := all + 1
+        on response from right do rights := rights + 1, all := all + 1
+      }
+    }
+  }
+
+  requirement go needs Counter.all < Counter.lefts + Counter.rights
+}
+"""
+
+
+@pytest.fixture
+def long(tmp_path: Path) -> Path:
+    """A file with a robot whose synthesis takes minutes, and much memory."""
+    file = tmp_path / "sum.rscd"
+    file.write_text(SUM)
+    return file
+
+
+@pytest.mark.parametrize("command", [("synthesize", "--json"), ("transform", "--to", "cif")])
+def test_memory_is_bounded(run: Run, long: Path, command: tuple[str, ...]) -> None:
+    answer = run(*command, "--memory", "1", long)
+    assert answer.exit_code == 2
+    assert answer.stdout == ""
+    assert answer.stderr == (
+        "Error: the model is too large: synthesis needs more than 1 MiB for its decision diagrams: "
+        "let `synthesize` or `transform` have more `--memory`, or give integers smaller ranges\n"
+    )
+    assert sorted(Path.cwd().iterdir()) == [long]
+
+
+def test_no_memory_at_all_is_a_wrong_call(run: Run, door: Path) -> None:
+    assert run("synthesize", door, "--memory", "0").exit_code == 2
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there are no pseudo-terminals")
+def test_an_interrupt_ends_a_long_synthesis(long: Path) -> None:
+    """On a terminal, where it says how far it is: it leaves the cursor visible, and no output."""
+    ours, theirs = os.openpty()
+    command = [sys.executable, "-m", "robosc", "synthesize", "--json", long]
+    with subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=theirs, stdin=subprocess.DEVNULL, env={**os.environ, "TERM": "xterm"}
+    ) as process:
+        os.close(theirs)
+        shown = b""
+        while b"fixpoint, round" not in shown and b"operations" not in shown:
+            shown += os.read(ours, 1000)
+        process.send_signal(signal.SIGINT)
+        try:
+            while more := os.read(ours, 1000):
+                shown += more
+        except OSError:
+            pass  # that is how a pseudo-terminal ends
+        assert process.stdout is not None
+        assert process.stdout.read() == b""
+    os.close(ours)
+    assert process.returncode == 130
+    assert b"Traceback" not in shown
+    assert shown.rindex(b"\x1b[?25h") > shown.rindex(b"\x1b[?25l")
 
 
 #: A leaf that can only be closed while nobody has locked it, and that may not stay open.
