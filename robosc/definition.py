@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from robosc.expressions import SctPrinter
+from robosc.expressions import RobotPrinter
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
 from robosc.roles import event_name
@@ -40,24 +40,6 @@ def _lines(value: Any) -> str:
     return "[\n" + ",\n".join(f"  {json.dumps(each)}" for each in value) + "]"
 
 
-class _Printer(SctPrinter):
-    """Names states and variables by their component, as the robot model does."""
-
-    def atom(self, expression: ex.Expression) -> str:
-        """A reference as `Component.name`; all else as in every sct model."""
-        match expression:
-            case sct.LocationReference():
-                return f"{_component_of(expression.location)}.{expression.location.name}"
-            case sct.VariableReference():
-                return f"{_component_of(expression.variable)}.{expression.variable.name}"
-        return super().atom(expression)
-
-
-def _component_of(element: sct.Location | sct.DiscreteVariable) -> str:
-    plant: sct.Plant = element.eContainer()
-    return plant.origin or plant.name
-
-
 def _component(plant: sct.Plant, graph: rosgraph.RosGraph) -> dict[str, Any]:
     mine = [each for each in graph.variables if each.component == plant.origin]
     assigning = {(reaction.event, each) for reaction in graph.reactions for each in reaction.locations}
@@ -78,7 +60,7 @@ def _component(plant: sct.Plant, graph: rosgraph.RosGraph) -> dict[str, Any]:
 
 
 def _transition(location: sct.Location, edge: sct.Edge) -> dict[str, Any]:
-    guard = {} if edge.guard is None else {"guard": _Printer()(edge.guard)}
+    guard = {} if edge.guard is None else {"guard": RobotPrinter()(edge.guard)}
     return {"from": location.name, "to": edge.target.name, "event": event_name(edge.event), **guard}
 
 

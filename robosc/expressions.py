@@ -167,6 +167,24 @@ class SctPrinter(ExpressionPrinter):
         return super().atom(expression)
 
 
+class RobotPrinter(SctPrinter):
+    """Prints an expression of an sct model as the robot model does: states and variables with their component."""
+
+    def atom(self, expression: ex.Expression) -> str:
+        """A reference as `Component.name`; all else as in every sct model."""
+        match expression:
+            case sct.LocationReference():
+                return _with_origin(expression.location)
+            case sct.VariableReference():
+                return _with_origin(expression.variable)
+        return super().atom(expression)
+
+
+def _with_origin(element: sct.Location | sct.DiscreteVariable) -> str:
+    plant: sct.Plant = element.eContainer()
+    return f"{plant.origin or plant.name}.{element.name}"
+
+
 def _with_plant(element: Any) -> str:
     return f"{element.eContainer().name}.{element.name}"
 

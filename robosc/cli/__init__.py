@@ -24,6 +24,7 @@ _COMMANDS = {
     "check": "Say what is wrong with models.",
     "transform": "Generate code and models.",
     "synthesize": "Show the supervisor.",
+    "explain": "Say why something can't happen.",
     "simulate": "Try the supervised robot.",
     "run": "Be a robot's controller on ROS, without a build.",
     "format": "Lay out models in the one canonical way.",

@@ -51,10 +51,12 @@ class Report:
         A finding about a model made from text knows the file's bare name only; it gets the path from the texts.
         """
         self.texts |= texts or {}
+        self.findings += [replace(each, file=self.path(each.file)) for each in findings]
+
+    def path(self, file: str) -> str:
+        """The path of a file of which a model made from text knows the bare name only."""
         paths = {PurePath(path).name: path for path in reversed(self.texts)}
-        for each in findings:
-            known = each.file in self.texts or each.file not in paths
-            self.findings.append(each if known else replace(each, file=paths[each.file]))
+        return file if file in self.texts else paths.get(file, file)
 
     def stop_on_errors(self) -> None:
         """Leaves the `with` block where there are errors: what comes next could not make sense of the model."""

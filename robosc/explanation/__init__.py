@@ -1,1 +1,1 @@
-"""Why an event is forbidden, an event never happens, or a supervisor is empty, in the model's own words."""
+"""Says why an event can't happen, or never, or why nothing can, in the words of its model, and what would help."""

@@ -33,7 +33,10 @@ class EmptySupervisorError(ModelError):
         trace = f"; a shortest trace: {in_words(reason.trace, model)}" if reason.trace else ""
         file, span = place(reason.event or model)
         message = f"the supervisor is empty: {blocking(reason)}{trace}"
-        hint = "loosen a requirement, or give every component a way back to a marked state"
+        hint = (
+            "loosen a requirement, or give every component a way back to a marked state; `robosc explain --why-empty`"
+            " tells more"
+        )
         super().__init__([Diagnostic(file, span, Severity.ERROR, "empty-supervisor", message, hint)])
 
 

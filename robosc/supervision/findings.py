@@ -8,7 +8,7 @@ from robosc.diagnostics import Diagnostic, Severity, in_order
 from robosc.metamodel import sct
 from robosc.metamodel.places import place
 from robosc.roles import plant_of
-from robosc.supervision.wording import condition, listed, name, trouble_in_words
+from robosc.supervision.wording import condition, listed, name, trouble_in_words, way_out
 from robosc.synthesis.encoding import referenced
 from robosc.synthesis.observations import Forbidden
 
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
         SelfCancelling,
         SharedTopicConflict,
         SilentRestricted,
-        Trouble,
     )
 
 _DONE = {sct.PlantKind.service: "called", sct.PlantKind.action: "started"}
@@ -61,7 +60,7 @@ class _Findings:
         if observed.forbidden is Forbidden.BY_REQUIREMENTS:
             why, hint = f"wherever it could be, {_broken(observed.requirements)}", "loosen what it needs"
         elif observed.trouble is not None:
-            why, hint = trouble_in_words(observed.trouble, self._model), _way_out(observed.trouble)
+            why, hint = trouble_in_words(observed.trouble, self._model), way_out(observed.trouble)
         elif observed.kept_away:
             why = f"the supervisor lets the robot reach no state in which it could be {done}"
             hint = "allow a way to such a state"
@@ -85,7 +84,7 @@ class _Findings:
             "silent-restricted",
             f"the supervisor has to hold back {what}, so that the model may no longer follow the robot: otherwise, "
             f"{trouble_in_words(observed.trouble, self._model)}",
-            _way_out(observed.trouble),
+            way_out(observed.trouble),
         )
 
     @staticmethod
@@ -179,11 +178,6 @@ def _not_requested(observed: NeverEnabled) -> str:
     if not waiting:
         return "the components that wait for its request never do so at the same time"
     return f"{listed(waiting)} can't reach a state that waits for its request"
-
-
-def _way_out(trouble: Trouble) -> str:
-    stuck = [f"`{name(each)}`" for each in trouble.unmarked if each.kind == sct.PlantKind.behaviour]
-    return f"give {listed(stuck) or 'the components'} a way from there to a marked state"
 
 
 def _entered(event: sct.Event) -> Iterable[tuple[sct.Plant, sct.Location]]:

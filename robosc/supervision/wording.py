@@ -104,6 +104,12 @@ def trouble_in_words(trouble: Trouble, model: sct.SupervisoryControlModel) -> st
     return f"after {steps}{further}, {in_words([last], model)} can't be prevented, and then {problem}"
 
 
+def way_out(trouble: Trouble) -> str:
+    """What would make synthesis allow the event."""
+    stuck = [f"`{name(each)}`" for each in trouble.unmarked if each.kind == sct.PlantKind.behaviour]
+    return f"give {listed(stuck) or 'the components'} a way from there to a marked state"
+
+
 def _data(input_name: str, event: sct.Event) -> str:
     return input_name.removeprefix(f"i_{event.kind.name}").removeprefix("_") or "value"
 
@@ -116,6 +122,13 @@ def listed(names: Sequence[str]) -> str:
 def condition(values: Iterable[tuple[Element, Value]]) -> str:
     """Values of plants and variables as a condition of the language, such as `Lidar.free and Lidar.front = clear`."""
     return " and ".join(_is(element, chosen) for element, chosen in values)
+
+
+def what_is(element: Element, chosen: Value) -> str:
+    """What a plant or variable is at the moment, such as "`Lidar` is in `free`" or "`Gauge.level` is 3"."""
+    if isinstance(element, sct.Plant):
+        return f"`{name(element)}` is in `{chosen}`"
+    return f"`{name(element.eContainer())}.{element.name}` is {text(chosen)}"
 
 
 def _is(element: Element, chosen: Value) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from robosc.roles import event_name
@@ -32,7 +32,7 @@ class Reason:
     no marked state. `unmarked` are the plants that can't be in a marked location any more once the event happened, or
     at all; none if each can be but never all at once. `trace` is a shortest one from the initial state, the event
     last; `state` is where it ends, before an event that a requirement forbids: the location of every plant with several
-    of them, and the value of every variable.
+    of them, and the value of every variable. `codes` are those of that state.
     """
 
     message: str
@@ -40,6 +40,7 @@ class Reason:
     unmarked: tuple[sct.Plant, ...]
     trace: tuple[TraceStep, ...]
     state: Mapping[str, Value]
+    codes: Mapping[Element, int] = field(repr=False)
 
 
 class EmptySupervisor:
@@ -131,7 +132,7 @@ class EmptySupervisor:
                 state[plant.name] = value(plant, codes[plant])
             for variable in plant.variables:
                 state[f"{plant.name}.{variable.name}"] = value(variable, codes[variable])
-        return Reason(f"{problem}; {who}", event, tuple(unmarked), tuple(steps), state)
+        return Reason(f"{problem}; {who}", event, tuple(unmarked), tuple(steps), state, codes)
 
 
 def unavoidable(

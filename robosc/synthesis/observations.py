@@ -38,12 +38,13 @@ class Trouble:
     `trace` is a shortest one from the initial state, or from the state asked about, that ends with the event so held
     back. `onwards` is a way from there, under the requirements, to where no marked state can be reached any more, as
     `unavoidable` finds it: its last event is the uncontrollable one that is guarded against; empty where none is
-    needed. `unmarked` are the plants that can't be in a marked location from then on; none if each can be but never
-    all at once.
+    needed. `codes` are those of the state where it ends. `unmarked` are the plants that can't be in a marked location
+    from then on; none if each can be but never all at once.
     """
 
     trace: tuple[TraceStep, ...]
     onwards: tuple[TraceStep, ...]
+    codes: Mapping[Element, int]
     unmarked: tuple[sct.Plant, ...]
 
 
@@ -287,6 +288,7 @@ def trouble(
     return Trouble(
         tuple(trace(encoding, Path([*way.states, after], [*way.moves, (relation, step)]))),
         tuple(trace(encoding, onwards)),
+        onwards.states[-1],
         tuple(never_marked(encoding, moves, onwards.states[-1])),
     )
 

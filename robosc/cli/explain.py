@@ -1,0 +1,108 @@
+"""`robosc explain`."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from robosc.cli import CallError
+from robosc.cli.options import interface_path, library_path, model
+from robosc.cli.progress import progress
+from robosc.cli.reading import read_models
+from robosc.cli.report import Report
+from robosc.explanation import as_json
+from robosc.explanation.as_text import Teller
+from robosc.explanation.emptiness import emptiness
+from robosc.explanation.explaining import explain
+from robosc.explanation.names import NamingError, event_named, state_given
+from robosc.explanation.possibility import possibility
+from robosc.explanation.space import explored
+from robosc.metamodel.places import place
+from robosc.supervision import supervise
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from robosc.explanation.answers import Explanation, Possibility
+    from robosc.explanation.space import Space
+    from robosc.metamodel import sct
+
+
+@click.command("explain")
+@model
+@click.option("--event", metavar="EVENT", help="Why EVENT can or can't happen in a state.")
+@click.option(
+    "--state", metavar="STATE", help="That state: `Door=open,Gauge.level=3`, or JSON. Else it is the first one."
+)
+@click.option("--why-empty", is_flag=True, help="Why the robot has no supervisor.")
+@click.option("--why-never", metavar="EVENT", help="Why EVENT can never happen, in whatever state.")
+@click.option("--json", "as_data", is_flag=True, help="Print one JSON object.")
+@library_path
+@interface_path
+def command(
+    model: str,
+    event: str | None,
+    state: str | None,
+    why_empty: bool,
+    why_never: str | None,
+    as_data: bool,
+    library_paths: Sequence[str],
+    interface_paths: Sequence[str],
+) -> None:
+    """Say why an event can't happen in a state, or never, or why nothing can.
+
+    MODEL is a .rscd file with a robot, or an .xmi file that `transform --to xmi` wrote. An event is a communication's
+    name for what it is there for (`move`, `Platform.move`), or one of its events (`drive.cancel`, `grip.error`), or the
+    name that `synthesize` shows (`message_move.c_trigger`). What a state leaves open is chosen so that the robot gets
+    there soonest; the answer shows the state and the way to it.
+
+    \b
+    Examples:
+      robosc explain line_follower.rscd --event move
+      robosc explain line_follower.rscd --event move --state EmergencyStop=stopped,LineDetector=following
+      robosc explain line_follower.rscd --why-never halt
+      robosc explain broken.rscd --why-empty
+
+    Exit status: 0 answered, 1 errors in the model, 2 a wrong call, 3 no supervisor exists and --why-empty did not ask.
+    """
+    if [event is not None, why_empty, why_never is not None].count(True) != 1:
+        raise click.UsageError("give one of --event, --why-empty and --why-never")
+    if state is not None and event is None:
+        raise click.UsageError("--state needs --event")
+    with Report(aside=True) as report:
+        plants = read_models(model, library_paths, report, interface_paths).sct
+        with progress("exploring what the robot can do"):
+            told = explored(plants, emptiness if why_empty else _question(plants, event, state, why_never))
+        if told is None and not why_empty:
+            supervise(plants)  # raises, and says why there is no supervisor
+        elif as_data:
+            click.echo(json.dumps(as_json.answer(told, lambda each: _position(each, report)), indent=2))
+        else:
+            click.echo(
+                Teller(plants, lambda each: "{file}:{line}:{column}".format(**_position(each, report))).answer(told)
+            )
+
+
+def _question(
+    model: sct.SupervisoryControlModel, event: str | None, state: str | None, why_never: str | None
+) -> Callable[[Space], Explanation | Possibility | None]:
+    """What is asked of a space; the answer is None where the supervisor is empty."""
+    try:
+        asked = event_named(model, event or why_never or "")
+        codes = {} if state is None else state_given(model, state)
+    except NamingError as error:
+        raise CallError(str(error)) from error
+
+    def answer(space: Space) -> Explanation | Possibility | None:
+        if not space.controlled.satisfiable():
+            return None
+        return possibility(space, asked) if event is None else explain(space, asked, codes)
+
+    return answer
+
+
+def _position(element: Any, report: Report) -> dict[str, Any]:
+    file, span = place(element)
+    return {"file": report.path(file), "line": span.line, "column": span.column}

@@ -1,0 +1,180 @@
+"""What plants and requirements have against an event in a state, and which events would change that."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robosc.explanation.answers import Note
+from robosc.expressions import RobotPrinter
+from robosc.metamodel import expression as ex
+from robosc.metamodel import sct
+from robosc.supervision.wording import listed, name, what_is, words
+from robosc.synthesis.decoding import value
+from robosc.synthesis.encoding import referenced
+from robosc.synthesis.fixpoint import reachable
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from robosc.explanation.space import Codes, Space
+    from robosc.synthesis.encoding import Element
+
+#: How many states a sentence names.
+_NAMED = 4
+_CALLS = (sct.PlantKind.service, sct.PlantKind.action)
+#: The locations that a service or action has (thesis, listings 5.2 and 5.3).
+_PHASES = {
+    "idle": "is not under way",
+    "wait_for_response": "still waits for its answer",
+    "executing": "is still under way",
+    "ready": "has ended, but is not yet ready to be used again",
+    "error": "has failed, and is not yet ready to be used again",
+}
+_WAITING = {
+    sct.EventKind.trigger: "`on request to {}`",
+    sct.EventKind.response: "`on response from {}`",
+    sct.EventKind.error: "`on error from {}`",
+    sct.EventKind.feedback: "`on feedback from {}`",
+    sct.EventKind.cancel: "`on cancel from {}`",
+}
+
+
+class Obstacles:
+    """Of one event in one state."""
+
+    def __init__(self, space: Space, event: sct.Event, codes: Codes) -> None:
+        self._space = space
+        self._event = event
+        self._codes = codes
+        self._print = RobotPrinter()
+
+    def plants(self) -> list[Note]:
+        """A note on each plant that can't take part in it: at its location, or at the transition whose guard fails."""
+        enabled = self._space.relations[self._event].enabled_by
+        return [self._plant(each) for each, where in enabled.items() if not self._space.is_in(self._codes, where)]
+
+    def requirements(self) -> list[Note]:
+        """A note on each requirement that forbids it, with the parts that fail."""
+        relation = self._space.relations[self._event]
+        return [
+            Note(
+                each, each.text or "a requirement forbids it", tuple(dict.fromkeys(map(self._said, self._parts(each))))
+            )
+            for each, where in relation.asked.items()
+            if not self._space.is_in(self._codes, where)
+        ]
+
+    def changes(self) -> list[Note]:
+        """The transitions from here that change something of this at once."""
+        relation = self._space.relations[self._event]
+        found: list[Note] = []
+        for plant, where in relation.enabled_by.items():
+            if not self._space.is_in(self._codes, where):
+                found += self._to_where_it_waits(plant)
+        for requirement, where in relation.asked.items():
+            if not self._space.is_in(self._codes, where):
+                for part, _ in self._parts(requirement):
+                    found += self._changing(part)
+        return list(dict.fromkeys(found))
+
+    # Plants
+
+    def _here(self, plant: sct.Plant) -> sct.Location:
+        return plant.locations[self._codes[plant]]
+
+    def _plant(self, plant: sct.Plant) -> Note:
+        here = self._here(plant)
+        edge = next((each for each in here.edges if each.event is self._event), None)
+        if edge is not None and edge.guard is not None:
+            parts = tuple(dict.fromkeys(map(self._said, self._failing(edge.guard, wanted=True))))
+            asked = f"{self._transition(plant)} asks for `{self._print(edge.guard)}`"
+            return Note(edge, f"`{name(plant)}` is in `{here.name}`, where {asked}", parts)
+        if plant.kind in _CALLS and here.name in _PHASES:
+            return Note(plant, f"`{name(plant)}` {_PHASES[here.name]}")
+        others = [f"`{each.name}`" for each in plant.locations if any(own.event is self._event for own in each.edges)]
+        elsewhere = (
+            f"it has one in {listed(others)}" if len(others) <= _NAMED else f"{len(others)} other states have one"
+        )
+        return Note(here, f"`{name(plant)}` is in `{here.name}`, without {self._transition(plant)}: {elsewhere}")
+
+    def _transition(self, plant: sct.Plant) -> str:
+        """What a component writes to take part in the event."""
+        owner: sct.Plant = self._event.eContainer()
+        if plant.kind == sct.PlantKind.data:
+            return "this `provide`"
+        if self._event.kind not in _WAITING:
+            return f"the {words(self._event)}"
+        own, _, short = name(owner).rpartition(".")
+        return _WAITING[self._event.kind].format(short if own == name(plant) else name(owner))
+
+    def _to_where_it_waits(self, plant: sct.Plant) -> Iterator[Note]:
+        here = self._here(plant)
+        for edge in here.edges:
+            if edge.target is not here and any(each.event is self._event for each in edge.target.edges):
+                yield _moves(edge)
+
+    # Conditions
+
+    def _parts(self, requirement: sct.Requirement) -> list[tuple[ex.Expression, bool]]:
+        return self._failing(requirement.condition, wanted=requirement.kind == sct.RequirementKind.needs)
+
+    def _failing(self, condition: ex.Expression | None, *, wanted: bool) -> list[tuple[ex.Expression, bool]]:
+        """The smallest parts of a condition that would all have to change, each with the value that it should have."""
+        if condition is None or self._space.holds(condition, self._codes) == wanted:
+            return []
+        match condition:
+            case ex.Negation():
+                return self._failing(condition.operand, wanted=not wanted)
+            case ex.Conjunction() if wanted:
+                sides = (condition.left, condition.right)
+                return [part for each in sides for part in self._failing(each, wanted=True)]
+            case ex.Disjunction() if not wanted:
+                sides = (condition.left, condition.right)
+                return [part for each in sides for part in self._failing(each, wanted=False)]
+        return [(condition, wanted)]
+
+    def _said(self, part: tuple[ex.Expression, bool]) -> str:
+        condition, wanted = part
+        held = f"`{self._print(condition)}` {'does not hold' if wanted else 'holds'}"
+        told = not (isinstance(condition, sct.LocationReference) and not wanted)
+        values = [what_is(each, value(each, self._codes[each])) for each in dict.fromkeys(referenced(condition))]
+        return f"{held}: {listed(values)}" if values and told else held
+
+    def _changing(self, part: ex.Expression) -> Iterator[Note]:
+        """What changes an element that a part of a condition reads."""
+        targets = {part.location} if isinstance(part, sct.LocationReference) else None
+        for element in dict.fromkeys(referenced(part)):
+            yield from self._changing_element(element, targets)
+
+    def _changing_element(self, element: Element, targets: Iterable[sct.Location] | None) -> Iterator[Note]:
+        if isinstance(element, sct.Plant):
+            here = self._here(element)
+            wanted = targets if targets is not None and here not in targets else element.locations
+            for edge in here.edges:
+                if edge.target is not here and edge.target in wanted:
+                    yield _moves(edge)
+            return
+        plant: sct.Plant = element.eContainer()
+        for edge in self._here(plant).edges:
+            if any(update.variable is element for update in edge.updates):
+                yield Note(edge, f"`{name(plant)}.{element.name}` changes by {words(edge.event)}")
+
+
+def blamed(space: Space, end: Codes) -> list[Note]:
+    """The requirements that forbid something which the plants would do from a state on."""
+    diagrams = space.encoding.diagrams
+    onwards = reachable(diagrams, [step for _, step in space.moves], space.encoding.state(end), diagrams.true)
+    return [
+        Note(requirement, requirement.text or "a requirement", (f"forbids the {words(event)}",))
+        for event, relation in space.relations.items()
+        for requirement, asked in relation.asked.items()
+        if (onwards & relation.enabled & ~asked).satisfiable()
+    ]
+
+
+def _moves(edge: sct.Edge) -> Note:
+    """That an edge leads its plant from one location to another."""
+    here: sct.Location = edge.eContainer()
+    return Note(
+        edge, f"`{name(here.eContainer())}` goes from `{here.name}` to `{edge.target.name}` by {words(edge.event)}"
+    )

@@ -1,0 +1,254 @@
+"""What is explained, on random models, against the engine that runs the supervisor and against the definitions."""
+
+import json
+from collections.abc import Sequence
+from functools import partial
+from itertools import islice
+
+from hypothesis import assume, event, given, settings
+from hypothesis import strategies as st
+
+from robosc.engine import Blocked, Engine
+from robosc.explanation.answers import Explanation, Reach
+from robosc.explanation.emptiness import emptiness
+from robosc.explanation.explaining import explain
+from robosc.explanation.names import state_given, whole_state
+from robosc.explanation.possibility import possibility
+from robosc.explanation.space import Space, explored
+from robosc.metamodel import sct
+from robosc.roles import event_name
+from robosc.synthesis import TraceStep, synthesize
+from robosc.synthesis.decoding import text
+from tests.random_sct import sct_models
+from tests.synthesis.oracle import Oracle
+from tests.synthesis.test_against_oracle import RANDOM_MODELS
+from tests.synthesis.test_explanation import Replay, is_blocked, is_never_marked
+from tests.synthesis.test_observations import Definitions
+
+SOME_MODELS = settings(RANDOM_MODELS, max_examples=40)
+
+
+def supervised(model: sct.SupervisoryControlModel) -> Engine:
+    model.supervisor = synthesize(model).supervisor
+    assume(model.supervisor is not None)
+    return Engine(model)
+
+
+def run(engine: Engine, steps: Sequence[TraceStep]) -> None:
+    for step in steps:
+        assert engine.perform(step.event, step.inputs), step
+
+
+def some_states(engine: Engine, number: int = 12):
+    """States that the engine comes to, breadth first."""
+    inputs = {event_name(each): bool(each.inputs) for each in engine.roles.events}
+    seen = {engine.state: None}
+    pending = [engine.state]
+    for state in pending:
+        for each in engine.events:
+            engine.state = state
+            if not inputs[each] and engine.perform(each) and engine.state not in seen:
+                seen[engine.state] = None
+                pending.append(engine.state)
+        if len(pending) >= number:
+            break
+    return list(islice(seen, number))
+
+
+def told_state(engine: Engine) -> str:
+    return ",".join(f"{name}={text(value)}" for name, value in engine.state.items())
+
+
+@given(sct_models())
+@SOME_MODELS
+def test_an_event_in_a_state_is_what_the_engine_says(model):
+    engine = supervised(model)
+
+    def look(space: Space) -> None:
+        for state in some_states(engine):
+            engine.state = state
+            told = told_state(engine)
+            codes = state_given(model, told) if told else {}
+            for each in engine.roles.events:
+                engine.state = state
+                told = explain(space, each, codes)
+                assert told.situation.reach is Reach.SUPERVISED
+                assert {name: told.situation.state[name] for name in state} == dict(state)
+                assert told.by == engine.blocked_by(event_name(each))
+                assert told.allowed == engine.enabled(event_name(each))
+                event(f"by {told.by}")
+                check(engine, state, told)
+
+    explored(model, look)
+
+
+def check(engine: Engine, state, told: Explanation) -> None:
+    """Its traces can be run and end where they claim to; its reasons are there where they are due."""
+    name = event_name(told.event)
+    fresh = Engine(engine.model)
+    run(fresh, told.situation.trace)
+    assert dict(fresh.state) == dict(state)
+    if told.way is not None:
+        run(fresh, told.way)
+        assert fresh.enabled(name)
+    assert (told.way == ()) == told.allowed
+    assert bool(told.plants) == (told.by is Blocked.PLANT)
+    assert bool(told.requirements) >= (told.by is Blocked.REQUIREMENT)
+    assert all(note.details for note in told.requirements)
+    assert (told.trouble is not None) == (told.by is Blocked.SYNTHESIS)
+    if told.trouble is not None:
+        steps = [*told.situation.trace, *told.trouble.trace, *told.trouble.onwards]
+        replay = Replay(engine.model, steps)
+        end = replay.after(len(steps), requirements=True)
+        assert [each.event for each in told.trouble.trace] == [name]
+        assert is_blocked(replay.oracle, end)
+        assert {each.name for each in told.trouble.unmarked} == {
+            each.name for each in engine.model.plants if is_never_marked(replay.oracle, each, end)
+        }
+
+
+@given(sct_models(), st.data())
+@SOME_MODELS
+def test_states_out_of_the_supervisors_reach_are_told_apart(model, data):
+    engine = supervised(model)
+    oracle = Oracle(model)
+    outside = sorted(
+        (oracle.uncontrolled - oracle.controlled), key=lambda each: str([getattr(part, "name", part) for part in each])
+    )
+    assume(outside)
+    state = data.draw(st.sampled_from(outside))
+    chosen = data.draw(st.sampled_from(engine.roles.events))
+    codes = state_given(model, json.dumps({"state": Replay(model, []).names(state)}))
+
+    def look(space: Space) -> Explanation:
+        return explain(space, chosen, codes)
+
+    told = explored(model, look)
+    assert told.situation.reach is Reach.UNSUPERVISED
+    assert not told.allowed
+    assert told.way is None
+    # Whoever goes this way is stopped by the supervisor, and first there.
+    refusal = told.refusal
+    assert refusal is not None
+    run(engine, refusal.situation.trace)
+    assert refusal.situation.trace == told.situation.trace[: len(refusal.situation.trace)]
+    stopped = told.situation.trace[len(refusal.situation.trace)]
+    assert stopped.event == event_name(refusal.event)
+    assert engine.blocked_by(stopped.event) == refusal.by
+    assert refusal.by in {Blocked.REQUIREMENT, Blocked.SYNTHESIS}
+    assert Replay(model, told.situation.trace).after(len(told.situation.trace), requirements=False) == state
+    # What the plants and the requirements say is true there, too.
+    assert bool(told.plants) == (oracle.edges(chosen, state) is None)
+    assert bool(told.requirements) == (not oracle.required(chosen, state))
+
+
+@given(sct_models())
+@SOME_MODELS
+def test_what_never_happens(model):
+    engine = supervised(model)
+    oracle = Oracle(model)
+    definitions = Definitions(oracle)
+
+    def look(space: Space) -> None:
+        for each in engine.roles.events:
+            told = possibility(space, each)
+            ever = any(
+                oracle.allows(each, state) if each.controllable else oracle.edges(each, state) is not None
+                for state in oracle.controlled
+            )
+            assert told.possible == ever
+            if told.nearest is None:
+                assert not any(oracle.edges(each, state) is not None for state in oracle.uncontrolled)
+                assert told.plants
+                continue
+            event(f"nearest {told.nearest.situation.reach} {told.nearest.by}")
+            fresh = Engine(model)
+            if told.nearest.situation.reach is Reach.SUPERVISED:
+                run(fresh, told.nearest.situation.trace)
+                assert fresh.blocked_by(event_name(each)) == told.nearest.by
+            if not ever:
+                assert (told.nearest.by is Blocked.SYNTHESIS) == bool(definitions.held_back(each))
+                check_beyond(oracle, each, told.beyond)
+                check_loosenings(model, told.loosenings, partial(possible, event_name(each)))
+
+    explored(model, look)
+
+
+def check_beyond(oracle: Oracle, each: sct.Event, beyond: Explanation | None) -> None:
+    """It is there where plants and requirements allow the event in no controlled state, but in some other."""
+    willing = [
+        state for state in oracle.uncontrolled if oracle.edges(each, state) is not None and oracle.required(each, state)
+    ]
+    enabled = any(oracle.edges(each, state) is not None for state in oracle.controlled)
+    assert (beyond is not None) == (bool(willing) and enabled and not any(s in oracle.controlled for s in willing))
+    if beyond is not None:
+        replay = Replay(oracle.model, beyond.situation.trace)
+        assert replay.after(len(replay.trace), requirements=False) in willing
+        assert beyond.refusal is not None
+
+
+def possible(name: str, model: sct.SupervisoryControlModel) -> bool:
+    return name in map(event_name, synthesize(model).possible)
+
+
+def check_loosenings(model, loosenings, helps) -> None:
+    """Each requirement that is said to help does so if it is left out, and no other does."""
+    requirements = list(model.requirements)
+    helpful = []
+    for left_out in requirements:
+        model.requirements.remove(left_out)
+        if helps(model):
+            helpful.append(left_out)
+        model.requirements.clear()
+        model.requirements.extend(requirements)
+    if loosenings is None:
+        model.requirements.clear()
+        assert not helps(model)
+        model.requirements.extend(requirements)
+    else:
+        assert {each.requirements for each in loosenings} == {(each,) for each in helpful}
+
+
+@given(sct_models())
+@SOME_MODELS
+def test_why_there_is_no_supervisor(model):
+    synthesis = synthesize(model)
+    told = explored(model, emptiness)
+    assert (told is None) == (synthesis.supervisor is not None)
+    assume(told is not None)
+    assert told.reason == synthesis.reason
+    assert [each.element for each in told.stuck] == [
+        each.locations[told.reason.codes[each]] for each in told.reason.unmarked
+    ]
+    oracle = Oracle(model)
+    before = 1 if told.reason.event is not None and told.reason.event.controllable else 0
+    end = Replay(model, told.reason.trace).after(len(told.reason.trace) - before, requirements=True)
+    onwards = oracle.reach(end, requirements=True)
+    assert {each.element for each in told.blamed} == {
+        each
+        for each in model.requirements
+        if any(
+            oracle.edges(each.event, state) is not None
+            and oracle.value(each.condition, state, {}) != (each.kind == sct.RequirementKind.needs)
+            for state in onwards
+        )
+    }
+    event(f"loosenings {told.loosenings and len(told.loosenings)}")
+    check_loosenings(model, told.loosenings, lambda other: synthesize(other).supervisor is not None)
+    for each in told.loosenings or ():
+        for own in each.requirements:
+            model.requirements.remove(own)
+        assert synthesize(model).controlled_states == each.states
+        model.requirements.extend(each.requirements)
+
+
+@given(sct_models())
+@SOME_MODELS
+def test_a_state_reads_as_it_is_written(model):
+    engine = supervised(model)
+    told = told_state(engine)
+    assume(told)
+    codes = state_given(model, told)
+    whole = {each: codes.get(each, 0) for plant in model.plants for each in (plant, *plant.variables)}
+    shown = whole_state(model, whole)
+    assert {name: shown[name] for name in engine.state} == dict(engine.state)
