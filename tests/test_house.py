@@ -73,7 +73,7 @@ LIBRARIES = {
     "rosgraph_msgs": {"runtime"},
     "rospy": {"runtime"},
     "std_msgs": {"runtime"},
-    "textx": {"language"},
+    "textx": {"language", "verification"},
 }
 
 
