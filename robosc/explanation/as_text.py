@@ -55,8 +55,7 @@ class Teller:
     def _explained(self, told: Explanation) -> Iterator[str]:
         event = words(told.event)
         if told.allowed:
-            can = "can happen" if told.event.controllable else "can happen, and nothing prevents it"
-            yield f"The {event} {can} here."
+            yield f"The {event} can happen here{'' if told.event.controllable else ', and nothing prevents it'}."
         elif told.by is None:
             yield f"Neither the robot nor a requirement forbids the {event} here, but the robot never gets here."
         else:

@@ -107,7 +107,7 @@ def _elements(model: sct.SupervisoryControlModel) -> dict[str, list[Element]]:
     short: dict[str, list[Element]] = {}
     for plant in model.plants:
         exact.setdefault(plant.name, []).append(plant)
-        if plant.kind != sct.PlantKind.data:
+        if plant.kind != sct.PlantKind.data and len(plant.locations) > 1:
             for each in dict.fromkeys(_plant_names(plant)):
                 short.setdefault(each, []).append(plant)
         for variable in plant.variables:

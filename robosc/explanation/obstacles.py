@@ -71,6 +71,9 @@ class Obstacles:
         for plant, where in relation.enabled_by.items():
             if not self._space.is_in(self._codes, where):
                 found += self._to_where_it_waits(plant)
+                edge = self._edge(plant)
+                for part, _ in self._failing(edge.guard, wanted=True) if edge else ():
+                    found += self._changing(part)
         for requirement, where in relation.asked.items():
             if not self._space.is_in(self._codes, where):
                 for part, _ in self._parts(requirement):
@@ -82,9 +85,12 @@ class Obstacles:
     def _here(self, plant: sct.Plant) -> sct.Location:
         return plant.locations[self._codes[plant]]
 
+    def _edge(self, plant: sct.Plant) -> sct.Edge | None:
+        return next((each for each in self._here(plant).edges if each.event is self._event), None)
+
     def _plant(self, plant: sct.Plant) -> Note:
         here = self._here(plant)
-        edge = next((each for each in here.edges if each.event is self._event), None)
+        edge = self._edge(plant)
         if edge is not None and edge.guard is not None:
             parts = tuple(dict.fromkeys(map(self._said, self._failing(edge.guard, wanted=True))))
             asked = f"{self._transition(plant)} asks for `{self._print(edge.guard)}`"
