@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from robosc.m2t.c.comments import comment
 from robosc.m2t.c.effects import Effects
-from robosc.m2t.c.nodes import All, Node
-from robosc.m2t.c.types import index_type
+from robosc.m2t.c.nodes import All
+from robosc.m2t.c.sharing import Shared
+from robosc.m2t.c.types import unsigned_type
 from robosc.m2t.c.watching import Watching
-from robosc.roles import plant_of
+from robosc.roles import event_name, plant_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -19,9 +21,11 @@ if TYPE_CHECKING:
     from robosc.metamodel import sct
 
 _INDENT = 4
+#: Of how many events a comment on what their guards share gives the names.
+_NAMED = 3
 #: A robot of so many events is asked for all of them whenever something happened: to keep an eye on who is concerned
 #: costs more. Measured, see docs/engine.md.
-SMALL = 40
+SMALL = 64
 
 
 @dataclass(frozen=True)
@@ -45,11 +49,20 @@ def _merged(cases: Iterable[_Case]) -> list[_Case]:
     return merged
 
 
+def _of(events: list[sct.Event]) -> str:
+    named = [event_name(each) for each in events[:_NAMED]]
+    more = len(events) - len(named)
+    return f"In the guards of {', '.join(named)}{f' and {more} more' if more else ''}."
+
+
 class Behaviour:
     """Prepares conditions, changes and tables for the templates."""
 
     def __init__(self, context: Context) -> None:
         self._context = context
+        roles = context.roles
+        self._watching = bool(context.queued or roles.silent or roles.data) and len(context.events) > SMALL
+        self._shared = Shared(context, watched=self._watching)
 
     def prepared(self) -> dict[str, Any]:
         """The values that the templates put in."""
@@ -57,11 +70,10 @@ class Behaviour:
         executed, guarded = self._effects(effects), self._guards()
         roles = self._context.roles
         arrived = [self._arrived(event) for event in self._context.data]
-        watching = bool(self._context.queued or roles.silent or roles.data) and len(self._context.events) > SMALL
         return {
-            "watching": watching,
-            **(Watching(self._context).prepared() if watching else {}),
-            "index": index_type(len(self._context.events)),
+            "watching": self._watching,
+            **(Watching(self._context, self._shared).prepared() if self._watching else {}),
+            "index": unsigned_type(len(self._context.events)),
             "cancels": len(roles.cancels),
             "triggers": len(roles.triggers),
             "queued": len(self._context.queued),
@@ -72,10 +84,14 @@ class Behaviour:
             "settles": bool(roles.silent or roles.data),
             "topics": len(roles.shared_topics),
             "groups": len(roles.shared_topics) + len(roles.once_per_tick),
-            "group_index": index_type(len(roles.shared_topics) + len(roles.once_per_tick)),
+            "group_index": unsigned_type(len(roles.shared_topics) + len(roles.once_per_tick)),
             "group_of": self._group_of(),
+            "conditions": [
+                {"name": each.name, "comment": comment([_of(each.events)]), "text": self._shared.body(each)}
+                for each in self._shared.conditions
+            ],
             "guards": guarded,
-            "guards_read_state": any("state->" in line for each in guarded for line in each.lines),
+            "guards_read_state": any(re.search(r"\bstate\b", line) for each in guarded for line in each.lines),
             "effects": executed,
             "effects_read_inputs": any("inputs->" in line for each in executed for line in each.lines),
             "helpers": sorted(effects.helpers),
@@ -101,19 +117,16 @@ class Behaviour:
 
     def _lines(self, unforced: All, added: All) -> list[str]:
         """A condition, one part a line."""
-        operator, terms = self._conditions(All([unforced, added]))
-        plain, by_synthesis = self._conditions(unforced)[1], self._conditions(added)[1]
-        told = [each for each in by_synthesis if each not in plain] if operator == "&&" else []
-        marked = [f"{each} /* added by synthesis */" if each in told else each for each in terms]
+        operator, terms = self._shared.shown(All([unforced, added]))
+        plain, by_synthesis = (
+            {text for texts, _ in self._shared.shown(each)[1] for text in texts} for each in (unforced, added)
+        )
+        told = by_synthesis - plain if operator == "&&" else set()
+        marked = [
+            text if not texts & told else f"{text} /* {'' if texts <= told else 'partly '}added by synthesis */"
+            for texts, text in terms
+        ]
         return [marked[0], *(f"{operator} {each}" for each in marked[1:])]
-
-    def _conditions(self, node: Node) -> tuple[str, list[str]]:
-        """The outermost operator of a condition, and its operands."""
-        reduced = self._context.ranges.reduced(node)
-        joined = self._context.ranges.joined(reduced) if self._context.ranges(reduced).single is None else None
-        if joined is None:
-            return "&&", [self._context.printer(reduced)]
-        return "&&" if joined.neutral else "||", self._context.printer.terms(joined)
 
     def _effects(self, effects: Effects) -> list[_Case]:
         """The statements of the events that change something."""

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from robosc.m2t.c.expressions import CPrinter
 from robosc.m2t.c.guards import EventTable
 from robosc.m2t.c.names import CNames
+from robosc.m2t.c.nodes import All
 from robosc.m2t.c.ranges import Ranges
 from robosc.roles import Roles
 
@@ -29,3 +30,7 @@ class Context:
         #: The order of the enumerators: the control loop then knows an event's role by its number.
         self.events = [*self.queued, *self.roles.silent, *self.data, *self.roles.incoming]
         self.located = [plant for plant in model.plants if len(plant.locations) > 1]
+
+    def guard(self, event: sct.Event) -> All:
+        """When the event can happen: the plants can do it, the requirements hold, and what synthesis added."""
+        return All([self.table.possible(event, self.printer), self.table.required(event), self.table.added(event)])

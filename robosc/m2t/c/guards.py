@@ -35,12 +35,14 @@ class EventTable:
             self._requirements.setdefault(requirement.event, []).append(requirement)
 
     def words(self, event: sct.Event) -> list[str]:
-        """The requirements on an event in the robot model's words, each with its place."""
-        return [
+        """What the requirements on an event say, each with its place, and why synthesis restricts it."""
+        words = [
             f"{each.text}{f' ({each.source})' if each.source else ''}"
             for each in self._requirements.get(event, ())
             if each.text
         ]
+        why = self._guards[event].explanation if event in self._guards else None
+        return [*words, f"synthesis prevents this: {why}"] if why else words
 
     def possible(self, event: sct.Event, printer: CPrinter) -> All:
         """Where all plants of the event can take part in it."""

@@ -77,6 +77,11 @@ def index_type(count: int) -> str:
     return storage(Interval(0, max(count, 1)))
 
 
+def unsigned_type(most: int) -> str:
+    """The C type that stores a number up to `most` and mixes with `unsigned` ones."""
+    return next(f"uint{bits}_t" for bits in (8, 16, 32) if unsigned(bits).high >= most)
+
+
 def number(value: int) -> str:
     """A constant of any integer type; C's most negative number can't be written as one."""
     return f"(-{-(value + 1)} - 1)" if value == signed(64).low else str(value)

@@ -7,8 +7,8 @@ from itertools import accumulate
 from typing import TYPE_CHECKING, Any
 
 from robosc.m2t.c.comments import comment_text
-from robosc.m2t.c.nodes import All
-from robosc.m2t.c.types import index_type
+from robosc.m2t.c.sharing import Condition
+from robosc.m2t.c.types import unsigned_type
 from robosc.roles import event_name, plant_of
 
 if TYPE_CHECKING:
@@ -16,70 +16,91 @@ if TYPE_CHECKING:
 
     from robosc.m2t.c.context import Context
     from robosc.m2t.c.ranges import Cell
+    from robosc.m2t.c.sharing import Shared
     from robosc.metamodel import sct
 
 
 _WORD = 32
 #: How many times its length the queue has places: the more, the fewer rounds begin with closing its gaps.
 _GENEROUS = 3
+#: How many events the engine remembers before it looks up whom they concern. A message rarely means more.
+_BEHIND = 8
 
 
 class Watching:
-    """What the engine keeps an eye on, by number: cancels, triggers, silent events, and the plants that choose data."""
+    """What the engine keeps an eye on, by number.
 
-    def __init__(self, context: Context) -> None:
+    These are the cancels, triggers, silent events, the plants that choose data, and conditions that their guards share.
+    """
+
+    def __init__(self, context: Context, shared: Shared) -> None:
         self._context = context
-        self._written = {event: self._writes(event) for event in context.events}
-        self._read: dict[Cell, list[int]] = {}
-        for number, cells in enumerate(self._reads()):
-            for cell in cells:
-                self._read.setdefault(cell, []).append(number)
+        self._shared = shared
+        self._read: dict[Cell | Condition, list[int]] = {}
+        self._count = 0
+        for cells in self._reads():
+            self._note(cells)
+        self._conditions = [each for each in shared.conditions if each in self._read]
+        for each in self._conditions:
+            self._note(context.ranges.cells(each.node))
+
+    def _note(self, cells: Iterable[Cell | Condition]) -> None:
+        for cell in cells:
+            self._read.setdefault(cell, []).append(self._count)
+        self._count += 1
 
     def prepared(self) -> dict[str, Any]:
         """The values that the templates put in."""
         events, roles = self._context.events, self._context.roles
         queued = len(self._context.queued)
         watched, places = queued + len(roles.silent) + len(roles.data), _GENEROUS * queued
-        words = -(-max(watched, places, len(events)) // _WORD)
-        readers = {event: self._readers(event) for event in events}
-        starts = accumulate(map(len, readers.values()), initial=0)
+        words = -(-max(self._count, places, len(events)) // _WORD)
+        readers = [(event_name(event), self._readers(self._writes(event))) for event in events]
+        readers += [(each.name, self._readers([each])) for each in self._conditions]
+        starts = accumulate((len(numbers) for _, numbers in readers), initial=0)
         return {
             "watched": watched,
+            "behind": _BEHIND,
             "after_queued": "QUEUED" if queued else "0U",
             "places": places,
-            "queue_index": index_type(queued),
-            "place_index": index_type(places),
-            "moved_index": index_type(max((len(each.locations) for each in roles.data_plants.values()), default=0)),
+            "queue_index": unsigned_type(queued),
+            "place_index": unsigned_type(places),
+            "moved_index": unsigned_type(max((len(each.locations) for each in roles.data_plants.values()), default=0)),
             "ready": "ready_like(self, event)" if roles.cancels and roles.triggers else "&self->ready",
             "words": words,
             "summary": -(-words // _WORD),
-            "watched_index": index_type(watched),
-            "reader_index": index_type(sum(map(len, readers.values()))),
+            "watched_conditions": [each.call for each in self._conditions],
+            "watched_index": unsigned_type(self._count),
+            "reader_index": unsigned_type(sum(len(numbers) for _, numbers in readers)),
             "readers": [
-                {"event": comment_text(event_name(event)), "numbers": ", ".join(map(str, numbers))}
-                for event, numbers in readers.items()
+                {"of": comment_text(name), "numbers": ", ".join(map(str, numbers))}
+                for name, numbers in readers
                 if numbers
             ],
             "first_reader": textwrap.fill(", ".join(map(str, starts)), 100, subsequent_indent="    "),
         }
 
-    def _readers(self, event: sct.Event) -> list[int]:
-        """The numbers of those that the event concerns, in ascending order."""
-        return sorted({number for cell in self._written[event] for number in self._read.get(cell, ())})
+    def _readers(self, cells: Iterable[Cell | Condition]) -> list[int]:
+        """The numbers of those that read any of these, in ascending order."""
+        return sorted({number for cell in cells for number in self._read.get(cell, ())})
 
-    def _reads(self) -> Iterable[set[Cell]]:
+    def _reads(self) -> Iterable[set[Cell | Condition]]:
         """What each of them depends on, by number."""
         roles = self._context.roles
         for event in (*self._context.queued, *roles.silent):
             sent = roles.data_plants.get(event)
-            yield self._guard(event) | ({sent} if sent is not None else set())
+            yield self._guard(event).union([] if sent is None else [sent])
         for events in roles.data:
-            yield {plant_of(events[0])}.union(*map(self._guard, events))
+            yield set().union([plant_of(events[0])], *map(self._guard, events))
 
-    def _guard(self, event: sct.Event) -> set[Cell]:
-        table, printer = self._context.table, self._context.printer
-        condition = All([table.possible(event, printer), table.required(event), table.added(event)])
-        return set(self._context.ranges.cells(condition))
+    def _guard(self, event: sct.Event) -> set[Cell | Condition]:
+        """What the guard of an event reads: conditions that it shares, and for the rest locations and variables."""
+        parts = self._shared.parts(self._context.guard(event))
+        return {
+            each
+            for part in parts
+            for each in ([part] if isinstance(part, Condition) else self._context.ranges.cells(part))
+        }
 
     def _writes(self, event: sct.Event) -> set[Cell]:
         written: set[Cell] = set()

@@ -172,6 +172,74 @@ def texts() -> sct.SupervisoryControlModel:
     return made
 
 
+def shared() -> sct.SupervisoryControlModel:
+    """Guards with conditions in common: as a whole, within others, denied; and comparisons that many have."""
+    steps = {
+        "u_response": {"n": "n + 1", "m": "m - 1"},
+        "u_error": {"n": "n - 2", "m": "m + 3"},
+    }
+    store = plant(
+        "store",
+        {"here": [edge(each, to="there", do=do) for each, do in steps.items()], "there": [edge("u_error", to="here")]},
+        uncontrollable=list(steps),
+        variables={"n": "0..9 = 5", "m": "0..9"},
+    )
+    either = "(store.n > 3 or store.m > 6 and store.here)"
+    guards = {
+        "p0.c_trigger": (f"{either} and store.n < 7", "store.m < 9"),
+        "p1.c_trigger": (f"not {either}", "store.m < 9"),
+        "p2.c_trigger": (either, "store.m < 9 and store.n < 7"),
+        "p3.c_trigger": ("store.n < 7 and store.m < 9", f"store.there or {either}"),
+        "p4.c_trigger": ("store.m < 9", None),
+        "p5.c_tau1": (f"store.there and {either}", "store.m < 9"),
+    }
+    others = [_still(name, [event]) for name, event in (each.split(".") for each in list(guards)[:-1])]
+    return model([store, *others, _one("p5", {"c_tau1": ""})], guards=guards, name="Shared")
+
+
+def large() -> sct.SupervisoryControlModel:
+    """So many events that sets of them need words of words, and all that the control loop does with them."""
+    counts = [edge("a0.u_error", do={"n": "n + 30"}), edge("a1.u_error", do={"n": "n - 25"})]
+    plants = [plant("hub", {"only": counts}, variables={"n": "0..99"})]
+    for number in range(180):
+        there_and_back = {
+            "idle": [edge("c_trigger", to="busy"), edge("u_error", to="idle")],
+            "busy": [edge("c_cancel", to="idle"), edge("u_response", to="idle"), edge("c_tau1", to="idle")],
+        }
+        plants.append(
+            plant(
+                f"a{number}",
+                there_and_back,
+                controllable=["c_trigger", "c_cancel", "c_tau1"],
+                uncontrollable=["u_response", "u_error"],
+                kind="action" if number % 3 else "message",
+                topic=f"/t{number % 7}",
+                origin=f"A.a{number}",
+            )
+        )
+        if number % 5 == 0:
+            chosen = [edge("c_d1", to="d1", when=f"a{number}.busy"), edge("c_none", to="none")]
+            plants.append(
+                plant(
+                    f"data_a{number}",
+                    {"none": chosen, "d1": chosen},
+                    controllable=["c_d1", "c_none"],
+                    kind="data",
+                    origin=f"A.a{number}",
+                )
+            )
+    return model(
+        plants,
+        guards={
+            f"a{number}.{event}": f"a{(7 * number + 3) % 180}.{location}" if number % 4 else "hub.n < 50"
+            for number in range(180)
+            for event, location in (("c_trigger", "idle"), ("c_tau1", "busy"), ("c_cancel", "idle"))
+        },
+        name="Large",
+    )
+
+
 ALL = (
-    nothing, incoming, triggers, one_trigger, cancels, cancel_and_trigger, silent, data, swap, wide, names, texts
+    nothing, incoming, triggers, one_trigger, cancels, cancel_and_trigger, silent, data, swap, wide, names, texts,
+    shared
 )  # fmt: skip

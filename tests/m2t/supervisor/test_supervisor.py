@@ -85,8 +85,10 @@ def test_cppcheck_has_nothing_to_say(sources: Sequence[Path]) -> None:
     assert call("cppcheck", "--quiet", "--std=c99", checks, *sources) == ""
 
 
-@pytest.mark.parametrize("small", [SMALL, 0])
-@pytest.mark.parametrize("make", [*corners.ALL, dock, line_follower])
+@pytest.mark.parametrize(
+    ("make", "small"),
+    [(make, small) for make in (*corners.ALL, dock, line_follower) for small in (SMALL, 0)] + [(corners.large, SMALL)],
+)
 def test_it_runs_as_in_python(make: Callable[[], sct.SupervisoryControlModel], small: int, tmp_path: Path) -> None:
     made = make()
     walk = Walk(made, Settings(events_per_tick=1, reactions_per_tick=3), seed=7)
@@ -173,6 +175,16 @@ def test_requirements_stand_at_the_guard_in_the_words_of_the_model() -> None:
     at = source.index("case dock_action_approach_c_trigger:")
     assert words in source[:at].rsplit("return", 1)[1]
     assert words in header.split("dock_action_approach_c_trigger,")[0].rsplit("/*", 1)[1]
+
+
+def test_what_guards_have_in_common_is_one_function(tmp_path: Path) -> None:
+    source = write(corners.shared(), tmp_path).read_text()
+    assert len(re.findall(r"state->store_n > 3", source)) == 1
+    assert len(re.findall(r"state->store_n < 7", source)) == 1
+    shared = re.findall(r"static bool (condition_\d+)\(", source)
+    assert shared
+    assert all(len(re.findall(rf"\b{each}\(state\)", source)) > 1 for each in shared)
+    assert "condition_1(state) /* partly added by synthesis */" in source
 
 
 def test_what_a_model_says_stays_in_its_comment(tmp_path: Path) -> None:

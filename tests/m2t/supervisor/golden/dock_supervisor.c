@@ -386,7 +386,7 @@ bool dock_enabled(const dock_supervisor *self, dock_event event)
 
 bool dock_perform(dock_supervisor *self, dock_event event)
 {
-    bool ran = dock_enabled(self, event);
+    bool ran = ((unsigned)event < EVENTS) && guard(&self->state, event);
     if (ran) {
         ran = run(self, event);
     }
