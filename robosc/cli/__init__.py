@@ -25,6 +25,7 @@ _COMMANDS = {
     "transform": "Generate code and models.",
     "synthesize": "Show the supervisor.",
     "explain": "Say why something can't happen.",
+    "verify": "Prove what the supervised robot promises.",
     "simulate": "Try the supervised robot.",
     "run": "Be a robot's controller on ROS, without a build.",
     "format": "Lay out models in the one canonical way.",
@@ -94,6 +95,7 @@ def main(**_: Any) -> None:
       robosc check line_follower.rscd
       robosc transform line_follower.rscd --to ros2,cif
       robosc synthesize line_follower.rscd
+      robosc verify line_follower.rscd
       robosc run line_follower.rscd --ros2
       robosc rule marked-state
 

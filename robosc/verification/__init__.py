@@ -1,6 +1,6 @@
 """Proves or refutes that a supervised system keeps its promises, and that its outputs are what it is.
 
-verdicts = verify_system(model)
+verdicts = verify(Models(model_with_supervisor), Configuration())
 """
 
 from __future__ import annotations
@@ -13,12 +13,23 @@ from robosc.synthesis.bdd import Diagrams, with_enough_memory
 from robosc.synthesis.encoding import Encoding, Layout
 from robosc.verification.properties import properties
 from robosc.verification.system import SupervisedSystem
+from robosc.verification.translation import validate
 from robosc.verification.verdict import Outcome, Verdict
 
 if TYPE_CHECKING:
+    from robosc.config import Configuration
     from robosc.metamodel import sct
+    from robosc.models import Models
 
-__all__ = ["Outcome", "Verdict", "verify_system"]
+__all__ = ["Outcome", "Verdict", "verify", "verify_system"]
+
+
+def verify(models: Models, configuration: Configuration) -> list[Verdict]:
+    """The verdicts on a model with its supervisor, and on the C and the CIF that the configuration makes of it.
+
+    Raises ValueError where the model has no supervisor, MemoryError where decision diagrams take more than 4 GB.
+    """
+    return [*verify_system(models.sct), *validate(models, configuration)]
 
 
 def verify_system(model: sct.SupervisoryControlModel, *, memory: int = 4 << 30) -> list[Verdict]:

@@ -1,0 +1,104 @@
+"""`robosc verify`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from robosc import config
+from robosc.cli import ERRORS_FOUND
+from robosc.cli.options import FILE, interface_path, library_path, model
+from robosc.cli.progress import progress
+from robosc.cli.reading import read_models
+from robosc.cli.report import Report
+from robosc.supervision import supervise
+from robosc.verification import Outcome, as_json, as_junit, as_text, verify
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from robosc.metamodel import sct
+    from robosc.verification import Verdict
+
+_STYLES = {
+    Outcome.PROVED: "green",
+    Outcome.REFUTED: "bold red",
+    Outcome.SAMPLED: "yellow",
+    Outcome.SKIPPED: "yellow",
+}
+#: The width of the table where nobody looks at a terminal.
+_WIDTH = 120
+
+
+@click.command("verify")
+@model
+@click.option("--json", "as_object", is_flag=True, help="Print one JSON object.")
+@click.option("--junit", type=click.Path(dir_okay=False, writable=True), help="Write JUnit XML to FILE, too.")
+@click.option("--config", "chosen", type=FILE, help="The configuration, if not the one near the model.")
+@library_path
+@interface_path
+def command(
+    model: str,
+    as_object: bool,
+    junit: str | None,
+    chosen: str | None,
+    library_paths: Sequence[str],
+    interface_paths: Sequence[str],
+) -> None:
+    """Prove what a supervised robot promises, or refute it by a shortest trace.
+
+    MODEL is a .rscd file with a robot, or an .xmi file that `transform --to xmi` wrote, whose supervisor is taken as it
+    is. Examined are the supervised system, with its requirements, its silent events, its control loop; and whether the
+    generated C and CIF do the same. docs/verify.md says what each property means.
+
+    \b
+    Examples:
+      robosc verify line_follower.rscd
+      robosc verify line_follower.rscd --junit verify.xml
+      robosc verify out/LineFollower.sct.xmi --json | jq .proved
+
+    Exit status: 0 nothing refuted, 1 refuted or errors in the model, 2 a wrong call, 3 no supervisor exists.
+    """
+    with Report(aside=True) as report:
+        models = read_models(model, library_paths, report, interface_paths)
+        file = Path(chosen) if chosen else config.find(Path(model).parent)
+        configuration = config.read(file) if file else config.Configuration()
+        if models.sct.supervisor is None:
+            with progress("synthesizing the supervisor"):
+                supervision = supervise(models.sct)
+            report.add(supervision.findings)
+            report.stop_on_errors()
+        with progress("verifying"):
+            verdicts = verify(models, configuration)
+    if junit:
+        Path(junit).write_text(as_junit.render(models.sct, verdicts, model), encoding="utf-8")
+    if as_object:
+        click.echo(as_json.render(models.sct.name, verdicts), nl=False)
+    else:
+        _show(models.sct, verdicts)
+    if any(each.outcome is Outcome.REFUTED for each in verdicts):
+        raise click.exceptions.Exit(ERRORS_FOUND)
+
+
+def _show(model: sct.SupervisoryControlModel, verdicts: Sequence[Verdict]) -> None:
+    console = Console(highlight=False)
+    if not console.is_terminal:
+        console.width = _WIDTH
+    table = Table()
+    for heading in ("property", "verdict", "evidence"):
+        table.add_column(heading)
+    table.add_column("seconds", justify="right")
+    for each in verdicts:
+        verdict = Text(each.outcome.value, _STYLES[each.outcome])
+        table.add_row(Text(each.property), verdict, Text(each.evidence), f"{each.seconds:.3f}")
+    console.print(table)
+    for each in verdicts:
+        said = as_text.details(each, model)
+        if said:
+            click.echo(f"\n{said}")
+    click.echo(f"\n{model.name}: {as_text.summary(verdicts)}")
