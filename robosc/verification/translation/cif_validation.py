@@ -127,17 +127,18 @@ class _Comparison:
             valid &= encoding.in_domain(each)
         for event, transition in of_system(system).items():
             twin = self._their_transition(event, theirs)
-            both = valid & transition.enabled & twin.enabled
-            compared: list[_Bits] = [(None, (transition.enabled,), (twin.enabled,), valid)]
+            compared: list[_Bits] = [(None, (transition.enabled,), (twin.enabled,), encoding.diagrams.true)]
+            both = transition.enabled & twin.enabled
             for element in dict.fromkeys([*transition.after, *(self._twins.original(each) for each in twin.after)]):
                 bits = transition.bits(element, encoding), twin.bits(self._twins[element], theirs)
                 compared.append((element, *bits, both))
             for element, our_bits, their_bits, within in compared:
-                different_bits = encoding.diagrams.false
+                differ = encoding.diagrams.false
                 for one, other in zip(our_bits, their_bits, strict=True):
-                    different_bits |= one ^ other
-                if (different_bits & within).satisfiable():
-                    yield _Difference(event, element, our_bits, their_bits, different_bits & within)
+                    differ |= (one ^ other) & within
+                # Most are the same even for codes without a value: then the many domains need not be looked at.
+                if differ.satisfiable() and (differ & valid).satisfiable():
+                    yield _Difference(event, element, our_bits, their_bits, differ & valid)
 
     def _their_transition(self, event: sct.Event, theirs: Encoding) -> Transition:
         """What the event does in CIF: only automata that have it take part, and one of them at least."""
