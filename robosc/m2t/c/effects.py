@@ -184,4 +184,6 @@ def _chain(
         if position:
             condition = "} else {" if total and position == len(acting) - 1 else f"}} else {condition}"
         lines += [condition, *(_INDENT + each for each in statements)]
+    if len(acting) > 1 and not total:
+        lines += ["} else {", f"{_INDENT}/* Elsewhere nothing changes. */"]
     return [*lines, "}"] if lines else []

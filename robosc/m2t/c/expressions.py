@@ -140,7 +140,20 @@ class CPrinter(ExpressionPrinter):
                 return text if self.precedence(child) == ATOM else f"({text})"
             if working_type(parent, self.ranges) != "int":
                 return self.converted(parent, child)
+            if isinstance(parent, COMPARISONS) and self._beside_unsigned(parent, child):
+                return f"{self(child)}U"
         return super().operand(parent, child, chain=chain)
+
+    def _beside_unsigned(self, parent: ex.BinaryExpression, child: ex.Expression) -> bool:
+        """Whether a constant is compared with an unsigned variable, which C would make signed for a signed one."""
+        other = self.ranges.reduced(parent.right if child is parent.left else parent.left)
+        value = self.ranges(child).single
+        return (
+            value is not None
+            and value >= 0
+            and isinstance(other, (sct.VariableReference, sct.InputReference))
+            and self.type(other).startswith("uint")
+        )
 
     def converted(self, parent: ex.Expression, child: ex.Expression) -> str:
         """An operand of arithmetic as a unary expression."""

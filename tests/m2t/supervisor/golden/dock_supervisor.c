@@ -11,7 +11,7 @@
 #define QUEUED 5U /* cancels and triggers */
 #define SILENT 4U
 #define BOUND 24U /* So many silent events may happen in a row. */
-#define EVENTS 19U
+#define EVENTS ((unsigned)DOCK_EVENT_COUNT)
 
 const dock_settings dock_default_settings = {
     0U, 10U, true
@@ -34,11 +34,11 @@ static bool guard(const dock_state *state, dock_event event)
         return state->action_approach == dock_action_approach_idle
             && (state->component_Power == dock_component_Power_low || state->component_Operator_wish == dock_Order_dock_now)
             && state->component_Station == dock_component_Station_away
-            && state->component_Station_failures < 3;
+            && state->component_Station_failures < 3U;
     /* requirement call_help needs Station.failures >= 3 (dock.rscd:81:3-81:52) */
     case dock_service_call_help_c_trigger:
         return state->service_call_help == dock_service_call_help_idle
-            && state->component_Station_failures >= 3;
+            && state->component_Station_failures >= 3U;
     /* requirement leave needs Operator.wish = leave and Power.enough (dock.rscd:80:3-80:65) */
     case dock_message_leave_c_trigger:
         return state->component_Station == dock_component_Station_docked
@@ -46,10 +46,10 @@ static bool guard(const dock_state *state, dock_event event)
             && state->component_Power == dock_component_Power_enough;
     case dock_component_Power_c_tau1:
         return state->component_Power == dock_component_Power_enough
-            && (state->component_Power_charge < 20 || state->component_Power_drop > 10);
+            && (state->component_Power_charge < 20U || state->component_Power_drop > 10);
     case dock_component_Power_c_tau2:
         return state->component_Power == dock_component_Power_low
-            && state->component_Power_charge >= 80;
+            && state->component_Power_charge >= 80U;
     case dock_action_approach_c_reset:
         return state->action_approach == dock_action_approach_ready
             || state->action_approach == dock_action_approach_error;
@@ -60,10 +60,10 @@ static bool guard(const dock_state *state, dock_event event)
         return state->component_Station == dock_component_Station_docked;
     case dock_data_light_c_d2:
         return state->component_Power == dock_component_Power_enough
-            || state->component_Station_failures > 0;
+            || state->component_Station_failures > 0U;
     case dock_data_light_c_none:
         return state->component_Station == dock_component_Station_away
-            && !(state->component_Power == dock_component_Power_enough || state->component_Station_failures > 0);
+            && !(state->component_Power == dock_component_Power_enough || state->component_Station_failures > 0U);
     case dock_action_approach_u_feedback:
     case dock_action_approach_u_response:
     case dock_action_approach_u_error:
@@ -194,7 +194,10 @@ static bool run(dock_supervisor *self, dock_event event)
     self->rested = false;
     if ((unsigned)event < QUEUED) {
         /* It moves behind the others of its kind. */
-        const unsigned last = (unsigned)event < CANCELS ? CANCELS - 1U : QUEUED - 1U;
+        unsigned last = QUEUED - 1U;
+        if ((unsigned)event < CANCELS) {
+            last = CANCELS - 1U;
+        }
         for (unsigned place = 0U; place < last; ++place) {
             if (self->queue[place] == (uint8_t)event) {
                 self->queue[place] = self->queue[place + 1U];
@@ -238,11 +241,12 @@ static void settle(dock_supervisor *self)
         unsigned next = self->silent;
         provide(self);
         for (unsigned asked = 0U; asked < SILENT && !ran; ++asked) {
-            const dock_event event = (dock_event)(QUEUED + next);
-            next = next + 1U < SILENT ? next + 1U : 0U;
+            const unsigned number = QUEUED + next;
+            const dock_event event = (dock_event)number;
+            next = (next + 1U < SILENT) ? next + 1U : 0U;
             if (guard(&self->state, event)) {
                 if (left == 0U) {
-                    if (!self->livelocked && self->hooks.livelock != NULL) {
+                    if (!self->livelocked && (self->hooks.livelock != NULL)) {
                         self->hooks.livelock(self->hooks.context);
                     }
                     self->livelocked = true;
