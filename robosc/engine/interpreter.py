@@ -106,6 +106,15 @@ class Engine:
             return Blocked.SYNTHESIS
         return None
 
+    def failing(self, event: str) -> list[sct.Requirement]:
+        """The requirements on the event that forbid it in this state, whatever else does."""
+        return [
+            each
+            for each in self.model.requirements
+            if event_name(each.event) == event
+            and bool(self._compile(each.condition)(self._cells, ())) == (each.kind == sct.RequirementKind.disables)
+        ]
+
     def enabled(self, event: str) -> bool:
         """Whether the event can happen in this state."""
         return self.blocked_by(event) is None

@@ -55,6 +55,8 @@ class Layer:
         self._incoming = set(roles.incoming)
         self._sent = {*roles.triggers, *roles.cancels}
         self._ignored = {each for events in roles.data for each in events}
+        assert graph.model.supervisor is not None
+        self._explained = {each.event: [each.explanation] for each in graph.model.supervisor.guards if each.explanation}
         self._noted: Mapping[str, Json] | None = None
         self.cancels: dict[sct.Event, Callable[[], None]] = {}
 
@@ -130,16 +132,11 @@ class Layer:
         self._block(sending.event, "busy", [])
 
     def _reason(self, event: sct.Event) -> tuple[str, list[str]]:
-        failing = [
-            each.text or "a requirement"
-            for each in self._graph.model.requirements
-            if each.event == event
-            and bool(self._data.value(each.condition)) == (each.kind == sct.RequirementKind.disables)
-        ]
+        failing = self._loop.engine.failing(event_name(event))
         if failing:
-            return "requirement", failing
+            return "requirement", [each.text or "a requirement" for each in failing]
         missing = [place for plant in self._graph.model.plants for place in self._missing(plant, event)]
-        return ("state", missing) if missing else ("synthesis", [])
+        return ("state", missing) if missing else ("synthesis", self._explained.get(event, []))
 
     def _missing(self, plant: sct.Plant, event: sct.Event) -> list[str]:
         """The location of a plant that takes part in the event, where it has no transition for it."""

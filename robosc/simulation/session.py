@@ -97,12 +97,13 @@ class Session:
         if by is Blocked.PLANT:
             return f"{event}: the robot is not ready for it"
         if by is Blocked.REQUIREMENT:
-            texts = [str(each.text) for each in model.requirements if event_name(each.event) == event and each.text]
+            texts = [each.text for each in self._simulation.engine.failing(event) if each.text]
             return f"{event}: forbidden by {' and '.join(texts) or 'a requirement'}"
         assert model.supervisor is not None
         guard = next(each for each in model.supervisor.guards if event_name(each.event) == event)
         needed = SctPrinter()(guard.synthesis) if guard.synthesis is not None else "false"
-        return f"{event}: forbidden by synthesis, which asks for {needed}"
+        otherwise = f"; otherwise, {guard.explanation}" if guard.explanation else ""
+        return f"{event}: forbidden by synthesis, which asks for {needed}{otherwise}"
 
     def _undo(self) -> str:
         undone = self._simulation.undo()

@@ -11,7 +11,7 @@ from robosc.m2t.c.types import type_name
 from robosc.m2t.cpp import reports
 from robosc.m2t.cpp.expressions import CppPrinter, parts, reads_elements
 from robosc.m2t.cpp.names import CppNames
-from robosc.m2t.cpp.shutdown import message_named, requirements_on
+from robosc.m2t.cpp.shutdown import message_named, reasons_of, requirements_on
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
 from robosc.metamodel.expression_types import is_double
@@ -365,7 +365,7 @@ class Node:
             self._happening(client.error),
             self._reception(feedback) if feedback else None,
             self._names.c.enumerator(cancel) if cancel else None,
-            requirements_on(self._graph, cancel) if cancel else [],
+            reasons_of(self._graph, cancel) if cancel else [],
             self._names.c.enumerator(client.reset),
         )
 
@@ -376,14 +376,14 @@ class Node:
         publisher, message = next(
             (topic, each) for topic in self.publishers for each in topic.messages if each.event == event
         )
-        return LastMessage(publisher, message, message.requirements)
+        return LastMessage(publisher, message, requirements_on(self._graph, sending.event))
 
     def _message(self, sending: rosgraph.Sending) -> Message:
         plant: sct.Plant = sending.event.eContainer()
         return Message(
             self._names.c.member(plant).removeprefix(f"{plant.kind.name}_"),
             self._names.c.enumerator(sending.event),
-            requirements_on(self._graph, sending.event),
+            reasons_of(self._graph, sending.event),
             [self._alternative(each) for each in sending.alternatives],
             any(is_double(field.value) for each in sending.alternatives for field in each.fields),
             self._happening(sending.event) if self._reactions(sending.event) else None,

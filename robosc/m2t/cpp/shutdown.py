@@ -15,6 +15,13 @@ def message_named(graph: rosgraph.RosGraph, name: str) -> rosgraph.Sending | Non
     return found[0] if len(found) == 1 else None
 
 
+def reasons_of(graph: rosgraph.RosGraph, event: sct.Event) -> list[str]:
+    """Why an event may be forbidden, in the words of the robot's model: its requirements, and why synthesis does so."""
+    guards = graph.model.supervisor.guards if graph.model.supervisor else ()
+    why = [each.explanation for each in guards if each.event == event and each.explanation]
+    return [*requirements_on(graph, event), *(f"synthesis prevents this: {each}" for each in why)]
+
+
 def requirements_on(graph: rosgraph.RosGraph, event: sct.Event) -> list[str]:
     """The requirements on an event, in the words of the robot's model."""
     return [each.text for each in graph.model.requirements if each.event == event and each.text]

@@ -35,6 +35,8 @@ class Passage:
     failing: list[Reason]
     #: Where a component or a communication has no transition for it.
     missing: list[Reason]
+    #: What would follow if synthesis did not forbid it, as a literal of C++.
+    explanation: str | None
 
 
 class Passages:
@@ -49,6 +51,7 @@ class Passages:
         """How an event is passed or blocked."""
         plant = plant_of(event)
         mine = [each for each in self._model.requirements if each.event == event]
+        guards = self._model.supervisor.guards if self._model.supervisor else ()
         return Passage(
             self._names.c.member(plant),
             self._names.c.enumerator(event),
@@ -56,6 +59,9 @@ class Passages:
             [each.text for each in mine if each.text],
             [Reason(self._failing(each), string_literal(each.text or "a requirement")) for each in mine],
             [each for plant in self._model.plants for each in self._missing(plant, event)],
+            next(
+                (string_literal(each.explanation) for each in guards if each.event == event and each.explanation), None
+            ),
         )
 
     def _failing(self, requirement: sct.Requirement) -> str:

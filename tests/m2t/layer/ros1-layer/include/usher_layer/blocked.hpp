@@ -9,7 +9,7 @@
 namespace usher_layer {
 
 /// The reasons for which something is blocked; the first of these kinds is told: another one is under way (busy),
-/// requirements that fail, states without a transition for it, and else what synthesis added.
+/// requirements that fail, states without a transition for it, and else what synthesis prevents.
 class Reasons {
  public:
   static Reasons busy() {
@@ -28,10 +28,12 @@ class Reasons {
     missing_ = true;
   }
 
+  void add_consequence(const std::string& text) { consequences_.add(text); }
+
   const char* kind() const { return busy_ ? "busy" : fails_ ? "requirement" : missing_ ? "state" : "synthesis"; }
 
   /// The texts of that kind.
-  const Json& texts() const { return fails_ ? requirements_ : states_; }
+  const Json& texts() const { return fails_ ? requirements_ : missing_ ? states_ : consequences_; }
 
  private:
   bool busy_ = false;
@@ -39,6 +41,7 @@ class Reasons {
   bool missing_ = false;
   Json requirements_ = Json::array();
   Json states_ = Json::array();
+  Json consequences_ = Json::array();
 };
 
 }  // namespace usher_layer
