@@ -1,0 +1,246 @@
+"""Plain automata of an SCT model, and their supervisor by libFAUDES: a second opinion, explicit state by state.
+
+A variable becomes part of its plant's state, an event with data one event for each value of it, a requirement an
+automaton that follows the plants that it speaks of. A guard or an update that reads another plant has no such form:
+that is a ValueError.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import product
+from typing import TYPE_CHECKING, Any
+
+from robosc.evaluation import evaluate
+from robosc.metamodel import expression as ex
+from robosc.metamodel import sct
+from robosc.metamodel.reflection import tree
+from robosc.roles import event_name
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+    from contextlib import AbstractContextManager
+
+#: The values of locations (which is the plant's own) and variables.
+Valuation = dict[sct.Plant | sct.DiscreteVariable, Any]
+
+
+@dataclass
+class Automaton:
+    """A deterministic automaton: state 0 is initial; each transition leads from a state by an event to a state.
+
+    `values` are what plants and variables are in each state.
+    """
+
+    alphabet: frozenset[str]
+    values: list[Valuation]
+    transitions: dict[tuple[int, str], int]
+    marked: list[bool]
+
+
+def plants(model: sct.SupervisoryControlModel) -> dict[sct.Plant, Automaton]:
+    """The automaton of each plant; all of its variables are in its states."""
+    return {each: _plant(each) for each in model.plants}
+
+
+def requirements(model: sct.SupervisoryControlModel, of: Mapping[sct.Plant, Automaton]) -> list[Automaton]:
+    """Automata that allow what the requirements allow; one for all that speak of the same plants."""
+    asked: dict[tuple[sct.Plant, ...], list[tuple[str, ex.Expression, bool]]] = {}
+    for requirement in model.requirements:
+        needed = requirement.kind == sct.RequirementKind.needs
+        for part in _parts(requirement.condition, ex.Conjunction if needed else ex.Disjunction):
+            read = _plants_read(part)
+            about = tuple(each for each in model.plants if each in read)
+            asked.setdefault(about, []).append((event_name(requirement.event), part, needed))
+    return [_requirement([of[each] for each in about], parts) for about, parts in asked.items()]
+
+
+def uncontrollable(model: sct.SupervisoryControlModel) -> set[str]:
+    """The names of the events that no supervisor can forbid, with each value that they carry."""
+    return {
+        label
+        for plant in model.plants
+        for event in plant.events
+        if not event.controllable
+        for label, _ in _occurrences(event)
+    }
+
+
+def _plant(plant: sct.Plant) -> Automaton:
+    initial: Valuation = {plant: next(each for each in plant.locations if each.initial)}
+    for variable in plant.variables:
+        initial[variable] = evaluate(variable.initial, _reading({}))
+    events = dict.fromkeys(edge.event for location in plant.locations for edge in location.edges)
+    occurrences = [(event, *each) for event in events for each in _occurrences(event)]
+
+    def successors(values: Valuation) -> Iterator[tuple[str, Valuation]]:
+        for event, label, inputs in occurrences:
+            read = _reading({**values, **inputs})
+            for edge in values[plant].edges:
+                if edge.event is event and (edge.guard is None or evaluate(edge.guard, read)):
+                    updated = {
+                        each.variable: _saturated(evaluate(each.value, read), each.variable.type)
+                        for each in edge.updates
+                    }
+                    yield label, {**values, **updated, plant: edge.target}
+
+    found, transitions = _explored(initial, successors)
+    marked = [values[plant].marked for values in found]
+    return Automaton(frozenset(label for _, label, _ in occurrences), found, transitions, marked)
+
+
+def _requirement(followed: Sequence[Automaton], parts: Iterable[tuple[str, ex.Expression, bool]]) -> Automaton:
+    """The plants followed, side by side, and where these let each event happen of which parts say what it needs."""
+    alphabet = frozenset[str]().union(*(each.alphabet for each in followed))
+    conditions: dict[str, list[tuple[ex.Expression, bool]]] = {}
+    for label, condition, needed in parts:
+        conditions.setdefault(label, []).append((condition, needed))
+
+    def successors(state: tuple[int, ...]) -> Iterator[tuple[str, tuple[int, ...]]]:
+        values = {
+            key: value for at, each in zip(state, followed, strict=True) for key, value in each.values[at].items()
+        }
+        for label in sorted(alphabet | conditions.keys()):
+            after = tuple(
+                each.transitions.get((at, label), -1) if label in each.alphabet else at
+                for at, each in zip(state, followed, strict=True)
+            )
+            allowed = (evaluate(each, _reading(values)) == needed for each, needed in conditions.get(label, ()))
+            if -1 not in after and all(allowed):
+                yield label, after
+
+    found, transitions = _explored(tuple(0 for _ in followed), successors)
+    return Automaton(alphabet | conditions.keys(), [], transitions, [True] * len(found))
+
+
+def _explored(
+    initial: Any, successors: Callable[[Any], Iterable[tuple[str, Any]]]
+) -> tuple[list[Any], dict[tuple[int, str], int]]:
+    """All states from an initial one on, and the transitions between their numbers."""
+
+    def key(state: Any) -> Any:
+        return tuple(state.values()) if isinstance(state, dict) else state
+
+    found, number = [initial], {key(initial): 0}
+    transitions = {}
+    for at, state in enumerate(found):
+        for label, after in successors(state):
+            if key(after) not in number:
+                number[key(after)] = len(found)
+                found.append(after)
+            transitions[at, label] = number[key(after)]
+    return found, transitions
+
+
+def _occurrences(event: sct.Event) -> list[tuple[str, dict[sct.Input, Any]]]:
+    """The names and the data of what an event may be."""
+    occurrences = []
+    for values in product(*(_values(each.type) for each in event.inputs)):
+        data = ", ".join(each.name if isinstance(each, ex.EnumerationLiteral) else str(each) for each in values)
+        name = f"{event_name(event)}({data})" if values else event_name(event)
+        occurrences.append((name, dict(zip(event.inputs, values, strict=True))))
+    return occurrences
+
+
+def _values(kind: ex.Type) -> list[Any]:
+    if isinstance(kind, ex.IntegerType):
+        assert kind.minimum is not None
+        assert kind.maximum is not None
+        return list(range(kind.minimum, kind.maximum + 1))
+    return list(kind.enumeration.literals) if isinstance(kind, ex.EnumerationType) else [False, True]
+
+
+def _saturated(value: Any, kind: ex.Type) -> Any:
+    return min(max(value, kind.minimum), kind.maximum) if isinstance(kind, ex.IntegerType) else value
+
+
+def _reading(values: Mapping[Any, Any]) -> Callable[[ex.Expression], Any]:
+    def read(reference: ex.Expression) -> Any:
+        match reference:
+            case ex.EnumerationLiteralReference():
+                return reference.literal
+            case sct.LocationReference():
+                return _known(reference.location.eContainer()) is reference.location
+            case sct.VariableReference():
+                return _known(reference.variable)
+            case sct.InputReference():
+                return _known(reference.input)
+        raise TypeError(reference)
+
+    def _known(element: Any) -> Any:
+        if element not in values:
+            raise ValueError(f"{element.name} belongs to another plant")
+        return values[element]
+
+    return read
+
+
+def _parts(condition: ex.Expression, glue: type[ex.BinaryExpression]) -> Iterator[ex.Expression]:
+    if isinstance(condition, glue):
+        yield from _parts(condition.left, glue)
+        yield from _parts(condition.right, glue)
+    else:
+        yield condition
+
+
+def _plants_read(condition: ex.Expression) -> set[sct.Plant]:
+    references = (each for _, each in tree(condition))
+    return {
+        (each.location if isinstance(each, sct.LocationReference) else each.variable).eContainer()
+        for each in references
+        if isinstance(each, sct.LocationReference | sct.VariableReference)
+    }
+
+
+def faudes_states(
+    model: sct.SupervisoryControlModel, during: Callable[[str], AbstractContextManager[None]]
+) -> tuple[int, int]:
+    """How many states libFAUDES finds without requirements and under the supervisor; `during` is told its phases.
+
+    Raises ImportError where `faudes` is not installed.
+    """
+    import faudes  # noqa: PLC0415  # it may be missing
+
+    faudes.StateNamesOff()
+    never_forbidden = uncontrollable(model)
+    with during("automata"):
+        flat = plants(model)
+        plants_ = [_generator(each, never_forbidden) for each in flat.values()]
+        requirements_ = [_generator(each, never_forbidden) for each in requirements(model, flat)]
+    with during("plants"):
+        plant = _composed(plants_)
+    with during("requirements"):
+        specification = _composed(requirements_)
+        faudes.InvProject(specification, plant.Alphabet())
+    with during("supervisor"):
+        supervisor = faudes.System()
+        faudes.SupCon(plant, specification, supervisor)
+    return plant.Size(), supervisor.Size()
+
+
+def _composed(generators: list[Any]) -> Any:
+    import faudes  # noqa: PLC0415
+
+    whole = generators[0]
+    for each in generators[1:]:
+        part, whole = whole, faudes.System()
+        faudes.Parallel(part, each, whole)
+    return whole
+
+
+def _generator(automaton: Automaton, never_forbidden: set[str]) -> Any:
+    import faudes  # noqa: PLC0415
+
+    made = faudes.System()
+    events = {
+        label: (made.InsUncontrollableEvent if label in never_forbidden else made.InsControllableEvent)(label)
+        for label in sorted(automaton.alphabet)
+    }
+    states = [made.InsState() for _ in automaton.marked]
+    made.SetInitState(states[0])
+    for state, marked in zip(states, automaton.marked, strict=True):
+        if marked:
+            made.SetMarkedState(state)
+    for (at, label), after in automaton.transitions.items():
+        made.SetTransition(states[at], events[label], states[after])
+    return made
