@@ -13,7 +13,7 @@ from robosc.cli import main
 
 from .conftest import Run
 
-COMMANDS = ["check", "transform", "synthesize", "explain", "simulate", "run", "format", "rule", "diagram"]
+COMMANDS = ["check", "transform", "synthesize", "explain", "verify", "simulate", "run", "format", "rule", "diagram"]
 
 
 def loaded_by(*arguments: str) -> set[str]:

@@ -1,0 +1,67 @@
+"""Nothing is refuted of any example or listing of the thesis, nor of what is generated from it; the page shows it."""
+
+import json
+import re
+from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import pytest
+from click.testing import CliRunner
+
+from robosc.cli import main
+
+from .conftest import MODELS, SCENARIOS
+
+ROOT = Path(__file__).parents[2]
+LISTINGS = ROOT.parent / "shared" / "thesis" / "models"
+#: All but the one that has its faults on purpose.
+LISTED = [each for each in sorted(LISTINGS.glob("*.rscd")) if each.stem != "language-concepts"]
+
+
+@cache
+def answer(path: Path) -> Mapping[str, Any]:
+    done = CliRunner().invoke(main, ["verify", "--json", str(path)])
+    assert done.exit_code == 0, done.output
+    return json.loads(done.stdout)
+
+
+@pytest.mark.parametrize("path", [*MODELS.values(), *LISTED], ids=lambda path: path.stem)
+def test_all_is_proved(path: Path) -> None:
+    said = answer(path)
+    assert said["proved"]
+    assert {each["outcome"] for each in said["properties"]} == {"proved"}
+
+
+def test_the_page_shows_the_table() -> None:
+    """All of it but the seconds."""
+    page = (ROOT / "docs" / "verify.md").read_text()
+    shown = page.partition("$ robosc verify examples/line_follower/line_follower.rscd\n")[2].partition("```")[0]
+    told = CliRunner().invoke(main, ["verify", str(MODELS["line_follower"])])
+    assert _without_seconds(shown) == _without_seconds(told.stdout)
+
+
+def test_the_page_sums_up_the_examples() -> None:
+    page = (ROOT / "docs" / "verify.md").read_text()
+    for name in SCENARIOS:
+        by_name = {each["property"]: each["evidence"] for each in answer(MODELS[name])["properties"]}
+        number = len(by_name)
+        row = [name, by_name["controllability"].partition(" state")[0], str(number)]
+        row += [re.findall(r"at most (\d+)", by_name["bounded response"])[0], by_name["c-translation"]]
+        assert f"| {' | '.join(row)} |" in page, f"| {' | '.join(row)} |"
+
+
+def test_the_page_shows_what_is_refuted(tmp_path: Path) -> None:
+    page = (ROOT / "docs" / "verify.md").read_text()
+    model = re.search(r"^```\n(robot Lock .*?)^```", page, re.MULTILINE | re.DOTALL)
+    shown = page.partition("Below the table of `robosc verify lock.rscd` stands\n\n```\n")[2].partition("```")[0]
+    file = tmp_path / "lock.rscd"
+    file.write_text(model[1])
+    told = CliRunner().invoke(main, ["verify", str(file)])
+    assert told.exit_code == 1
+    assert told.stdout.endswith(f"┘\n\n{shown}")
+
+
+def _without_seconds(text: str) -> str:
+    return re.sub(r" +\d+\.\d{3} │", "", text)
