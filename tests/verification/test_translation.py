@@ -79,7 +79,7 @@ def cif_of(made: sct.SupervisoryControlModel) -> str:
 def changed(text: str, pattern: str, replacement: str) -> str:
     """The text with one place changed; the pattern fits no other."""
     made, count = re.subn(pattern, replacement, text, flags=re.MULTILINE)
-    assert count == 1, text
+    assert count == 1, pattern
     return made
 
 
@@ -122,7 +122,7 @@ def test_corners_are_translated_faithfully(corner) -> None:
 
 C_MUTANTS = {
     "a requirement is weaker": (
-        r"component_Gauge_level < 3\b",
+        r"component_Gauge_level < 3U?\b",
         "component_Gauge_level <= 3",
         ["message_level.u_response(i_response = 3)"],
         (
@@ -131,7 +131,7 @@ C_MUTANTS = {
         ),
     ),
     "a guard is flipped": (
-        r"component_Gauge_level > 2\b",
+        r"component_Gauge_level > 2U?\b",
         "component_Gauge_level <= 2",
         ["message_level.u_response(i_response = -5)"],
         (
@@ -140,7 +140,7 @@ C_MUTANTS = {
         ),
     ),
     "what synthesis added is weaker": (
-        r"component_Pump_strokes <= 1\b",
+        r"component_Pump_strokes <= 1U?\b",
         "component_Pump_strokes <= 2",
         ["component_Pump.c_tau1", "component_Pump.c_tau2"] * 2,
         (
