@@ -68,6 +68,8 @@ def find_ros1() -> Found:
         "std_srvs",
     ]
     found.missing += [f"no {each}" for each in needed if not (prefix / "share" / each / "package.xml").exists()]
+    if not (prefix / "share/std_msgs/msg").exists():
+        found.missing.append("no definitions of std_msgs (Debian: ros-std-msgs)")
     found.missing += [f"no {each}" for each in ("catkin_make", "cmake", "g++") if not _has(each, environment)]
     if not found.missing:
         build = ["catkin_make", f"-DPYTHON_EXECUTABLE={python}"]

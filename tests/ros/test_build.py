@@ -9,5 +9,7 @@ if TYPE_CHECKING:
 
 
 def test_builds_without_warnings(workspace: Workspace) -> None:
-    assert ": warning:" not in workspace.build
+    # What rosidl itself writes for the packages of message types is not ours.
+    warnings = [line for line in workspace.build.splitlines() if ": warning:" in line and "/rosidl_" not in line]
+    assert warnings == []
     assert "CMake Warning" not in workspace.build
