@@ -23,7 +23,7 @@ def loosenings(
 
     None where it does not even help to leave out all of them.
     """
-    texts = _texts(space, first)
+    texts = requirement_texts(space, first)
     if not helps(space.without(frozenset(each for text in texts for each in text))):
         return None
     found = []
@@ -34,7 +34,7 @@ def loosenings(
     return tuple(found)
 
 
-def _texts(space: Space, first: Iterable[sct.Requirement]) -> list[tuple[sct.Requirement, ...]]:
+def requirement_texts(space: Space, first: Iterable[sct.Requirement] = ()) -> list[tuple[sct.Requirement, ...]]:
     """The requirements by the place in the text that they come from; not those that say when an action is cancelled."""
     own = [each for each in space.model.requirements if space.start_of(each.event) is None]
     by_place: dict[object, list[sct.Requirement]] = {}

@@ -95,6 +95,11 @@ def check(engine: Engine, state, told: Explanation) -> None:
     assert bool(told.plants) == (told.by is Blocked.PLANT)
     assert bool(told.requirements) >= (told.by is Blocked.REQUIREMENT)
     assert all(note.details for note in told.requirements)
+    engine.state = state
+    assert [note.element for note in told.requirements] == engine.failing(name)
+    for note in told.changes:
+        here = note.element.eContainer()
+        assert here is here.eContainer().locations[engine.location(here.eContainer())]
     assert (told.trouble is not None) == (told.by is Blocked.SYNTHESIS)
     if told.trouble is not None:
         steps = [*told.situation.trace, *told.trouble.trace, *told.trouble.onwards]
