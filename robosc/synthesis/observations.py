@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from robosc.synthesis.relation import EventRelation
 
 _CALLS = (sct.PlantKind.service, sct.PlantKind.action)
-#: What the troubles of all guards may cost: images on the way, and steps of all traces together.
-_IMAGES = 2000
+#: What the troubles of all guards may cost: the way to them, in nodes looked at, and steps of all traces together.
+_EFFORT = 500_000
 _STEPS = 400
 _FOLLOWS_THE_ROBOT = (sct.EventKind.tau, sct.EventKind.reset, sct.EventKind.cancel)
 
@@ -257,7 +257,7 @@ class Observer:
             if permission.guard.synthesis is None:
                 continue
             known = self._troubles.get(event)
-            way = None if known or steps > _STEPS else self._layers.path_to(held_back(permission, self._found), _IMAGES)
+            way = None if known or steps > _STEPS else self._layers.path_to(held_back(permission, self._found), _EFFORT)
             found = known or (way and trouble(self._encoding, self._moves, self._found, permission.relation, way))
             if found:
                 steps += len(found.trace) + len(found.onwards)

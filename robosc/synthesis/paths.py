@@ -49,22 +49,25 @@ class Layers:
         self._within = within
         self._layers = [start]
         self._seen = start
+        self._effort = 0
 
-    def path_to(self, goal: Diagram, images: int | None = None) -> Path | None:
-        """A shortest path to a state of `goal`; None where there is none, or so many images of all did not find it.
+    def path_to(self, goal: Diagram, effort: int | None = None) -> Path | None:
+        """A shortest path to a state of `goal`; None where there is none, or where all layers took more effort.
 
-        Of several the same one every time: by the order of the moves, then by the states' codes.
+        Effort counts the nodes that every move looks at. Of several paths it is the same one every time: by the order
+        of the moves, then by the states' codes.
         """
         steps = 0
         while not (self._layers[steps] & goal).satisfiable():
             steps += 1
-            exhausted = images is not None and steps * len(self._moves) > images
+            exhausted = effort is not None and self._effort > effort
             if steps == len(self._layers) and (exhausted or not self._grow()):
                 return None
         return self._back(steps, goal)
 
     def _grow(self) -> bool:
         reached = self._encoding.diagrams.false
+        self._effort += self._layers[-1].node_count() * len(self._moves)
         for _, step in self._moves:
             reached |= step.image(self._layers[-1] & self._within)
         reached &= ~self._seen

@@ -285,7 +285,7 @@ def test_trouble_leads_through_what_nothing_prevents():
 def test_large_models_get_no_more_troubles_than_are_cheap():
     with patch.object(observations, "_STEPS", 10):
         assert 0 < len(synthesize(philosophers(4)).observations.troubles) < 8
-    with patch.object(observations, "_IMAGES", 10):
+    with patch.object(observations, "_EFFORT", 10):
         assert not synthesize(philosophers(4)).observations.troubles
 
 
