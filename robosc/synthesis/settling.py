@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import islice
 from typing import TYPE_CHECKING
 
 from robosc.roles import SILENT
@@ -72,6 +73,10 @@ def settling(diagrams: Diagrams, events: Sequence[SilentEvent], states: Diagram,
     """
     bound, restless = 0, diagrams.false
     for group in groups(events):
+        anywhere = _longest_anywhere(diagrams, group)
+        if anywhere is not None:
+            bound += anywhere
+            continue
         previous = states
         for longer in runs(diagrams, group, states):
             if not longer.satisfiable():
@@ -87,6 +92,17 @@ def settling(diagrams: Diagrams, events: Sequence[SilentEvent], states: Diagram,
     return Settling(None if restless.satisfiable() else bound, restless)
 
 
+def _longest_anywhere(diagrams: Diagrams, group: Sequence[SilentEvent]) -> int | None:
+    """How many can happen in a row from any state, reachable or not, unless it is more than there are events.
+
+    That is mostly so, and seen without the large diagram of the reachable states.
+    """
+    for length, longer in enumerate(islice(runs(diagrams, group, diagrams.true), len(group) + 1)):
+        if not longer.satisfiable():
+            return length
+    return None
+
+
 def runs(diagrams: Diagrams, events: Sequence[SilentEvent], states: Diagram) -> Iterator[Diagram]:
     """The states from which one event can happen, two in a row, three and so on: each set holds the next one."""
     while True:
@@ -100,13 +116,20 @@ def runs(diagrams: Diagrams, events: Sequence[SilentEvent], states: Diagram) -> 
 
 def groups(events: Sequence[SilentEvent]) -> list[list[SilentEvent]]:
     """The events so that those of one group change nothing that those of another touch."""
-    found: list[list[SilentEvent]] = []
+    changed = {element for event in events for element in event.relation.changed}
+    known: dict[Element, Element] = {}
+
+    def first(element: Element) -> Element:
+        while (before := known.setdefault(element, element)) is not element:
+            known[element] = element = known[before]
+        return element
+
     for event in events:
-        related = [each for each in found if any(_related(event, other) for other in each)]
-        apart = [each for each in found if each not in related]
-        found = [*apart, [*(other for each in related for other in each), event]]
-    return found
-
-
-def _related(first: SilentEvent, second: SilentEvent) -> bool:
-    return not (first.touched.isdisjoint(second.relation.changed) and second.touched.isdisjoint(first.relation.changed))
+        shared = [first(each) for each in event.touched & changed]
+        for each in shared:
+            known[first(each)] = first(shared[0])
+    found: dict[object, list[SilentEvent]] = {}
+    for event in events:
+        shared = [first(each) for each in event.touched & changed]
+        found.setdefault(shared[0] if shared else event, []).append(event)
+    return list(found.values())
