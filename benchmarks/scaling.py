@@ -22,7 +22,7 @@ import resource
 import subprocess
 import sys
 import tempfile
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
@@ -52,19 +52,23 @@ def main() -> int:
     results: dict[str, Any] = json.loads(kept.read_text()) if kept.exists() else {"families": {}, "transform": []}
     results |= {"machine": options.machine, "limit": options.limit}
     with ThreadPoolExecutor(options.jobs) as pool:
-        series = {
-            (name, tool): pool.submit(_series, FAMILIES[name], tool, options)
+        running = {
+            pool.submit(_series, FAMILIES[name], tool, options): (name, tool)
             for tool in _installed(options.tools)
-            for name in options.families
             if tool != "transform"
+            for name in options.families
         }
-        transforms = pool.submit(_transforms, options) if "transform" in options.tools else None
-        for (name, tool), measured in series.items():
-            results["families"].setdefault(name, {})[tool] = measured.result()
-        if transforms:
-            results["transform"] = transforms.result()
+        if "transform" in options.tools:
+            running[pool.submit(_transforms, options)] = ("", "transform")
+        for done in as_completed(running):
+            name, tool = running[done]
+            if name:
+                results["families"].setdefault(name, {})[tool] = done.result()
+            else:
+                results["transform"] = done.result()
+            kept.write_text(json.dumps(results, indent=1, sort_keys=True) + "\n")
+    results = json.loads(kept.read_text())
     docs = options.output or ROOT / "docs"
-    kept.write_text(json.dumps(results, indent=1) + "\n")
     (docs / "benchmarks.md").write_text(page(results))
     for name, text in plots(results).items() if find_spec("matplotlib") else ():
         (docs / name).write_text(text)

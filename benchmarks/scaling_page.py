@@ -17,8 +17,10 @@ Results = dict[str, Any]
 PHASES = ("parse", "link", "check", "m2m", "order", "encode", "fixpoint", "guards", "observe")
 SYNTHESIS = PHASES[4:]
 TARGETS = ("cif", "supervisor", "ros1", "ros2")
+AROUND = {*PHASES[:4], *TARGETS}
 TITLES = {"m2m": "M2M", "cif": "CIF", "supervisor": "C", "ros1": "ROS 1", "ros2": "ROS 2"}
 TOOLS = {"robosc": "RoboSC", "faudes": "libFAUDES", "definition": "by the definition"}
+EXPLICIT = ("faudes", "definition")
 
 HEAD = """\
 # Benchmarks
@@ -59,7 +61,7 @@ tests. All three find the same numbers of states, and those under the supervisor
 GROWTH = """\
 ### Growth
 
-What the largest robots of each family, at most five, say of the growth: *N^k*, or *b^N* where that fits better.
+What the four largest robots of each family say of the growth: *N^k*, or *b^N* where that fits far better.
 """
 
 PHASES_HEAD = """\
@@ -136,8 +138,13 @@ def _finished(families: Results, name: str, tool: str) -> list[Results]:
     return [each for each in families.get(name, {}).get(tool, ()) if each["finished"]]
 
 
+def _supervised(families: Results, name: str, tool: str) -> list[Results]:
+    """Those whose synthesis was finished, whatever became of the rest."""
+    return [each for each in families.get(name, {}).get(tool, ()) if "states" in each]
+
+
 def _family(tools: Results) -> str:
-    others = {tool: {each["n"]: each for each in tools.get(tool, ())} for tool in ("faudes", "definition")}
+    others = {tool: {each["n"]: each for each in tools.get(tool, ())} for tool in EXPLICIT}
     head = ["N", "lines", "reachable", "supervised", "peak nodes", "operations", "synthesis", "all", "MB"]
     head += [text for tool in others for text in (TOOLS[tool], "MB")]
     rows = []
@@ -167,34 +174,44 @@ def _took(point: Results, phases: Sequence[str]) -> str:
 
 def _growths(families: Results) -> str:
     measures: dict[str, Callable[[Results], float]] = {
-        "synthesis": lambda each: sum(each["phases"][phase][1] for phase in SYNTHESIS),
+        "synthesis": synthesis_seconds,
         "peak nodes": lambda each: each["peak_nodes"],
         "operations": lambda each: each["operations"],
-        "all": lambda each: sum(took for _, took in each["phases"].values()),
     }
-    rows = []
-    for name in families:
-        points = _finished(families, name, "robosc")
-        row = [FAMILIES[name].title, *(growth(points, measure) for measure in measures.values())]
-        for tool in ("faudes", "definition"):
-            explicit = _finished(families, name, tool)
-            row.append(growth(explicit, lambda each: sum(took for _, took in each["phases"].values())))
-        rows.append(row)
-    return _table(["family", *measures, "libFAUDES", "by the definition"], rows)
+    rows = [
+        [
+            FAMILIES[name].title,
+            *(growth(_supervised(families, name, "robosc"), measure) for measure in measures.values()),
+            growth(_finished(families, name, "robosc"), _all_seconds),
+            *(growth(_supervised(families, name, tool), _all_seconds) for tool in EXPLICIT),
+        ]
+        for name in families
+    ]
+    return _table(["family", *measures, "all", *(TOOLS[each] for each in EXPLICIT)], rows)
+
+
+def _all_seconds(point: Results) -> float:
+    return sum(took for _, took in point["phases"].values())
+
+
+def synthesis_seconds(point: Results) -> float:
+    """What synthesis took of the processor, by whichever tool."""
+    return sum(took for phase, (_, took) in point["phases"].items() if phase not in AROUND)
 
 
 def growth(points: Sequence[Results], measure: Callable[[Results], float]) -> str:
-    """The better of `N^k` and `b^N` for the last points, at most five; a dash for fewer than three."""
-    last = [(each["n"], measure(each)) for each in points if measure(each) > 0][-5:]
+    """`N^k`, or `b^N` where that leaves far less unexplained, for the last four points; a dash for fewer than three."""
+    last = [(each["n"], measure(each)) for each in points if measure(each) > 0][-4:]
     if len(last) < 3:
         return "-"
     numbers, logarithms = [number for number, _ in last], [log(value) for _, value in last]
     logged = [log(number) for number in numbers]
     if len(set(logarithms)) == 1:
         return "N^0.0"
-    if correlation(logged, logarithms) >= correlation(numbers, logarithms):
-        return f"N^{linear_regression(logged, logarithms).slope:.1f}"
-    return f"{exp(linear_regression(numbers, logarithms).slope):.2f}^N"
+    power, exponential = (1 - correlation(each, logarithms) ** 2 for each in (logged, numbers))
+    if power > 3 * exponential:
+        return f"{exp(linear_regression(numbers, logarithms).slope):.2f}^N"
+    return f"N^{linear_regression(logged, logarithms).slope:.1f}"
 
 
 def _phases(families: Results) -> str:
@@ -260,12 +277,8 @@ def plots(results: Results) -> dict[str, str]:
     for axes, name in zip(families.subplots(2, 3).flat, FAMILIES, strict=True):
         axes.set(title=FAMILIES[name].title, xlabel="N", ylabel="s", xscale="log", yscale="log")
         for tool, marker in zip(TOOLS, "os^", strict=True):
-            points = _finished(results["families"], name, tool)
-            phases = SYNTHESIS if tool == "robosc" else None
-            seconds = [
-                sum(took for phase, (_, took) in each["phases"].items() if phases is None or phase in phases)
-                for each in points
-            ]
+            points = _supervised(results["families"], name, tool)
+            seconds = [synthesis_seconds(each) for each in points]
             axes.plot([each["n"] for each in points], seconds, marker=marker, markersize=4, label=TOOLS[tool])
         axes.grid(alpha=0.3)
     families.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=3)

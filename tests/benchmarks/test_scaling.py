@@ -1,0 +1,89 @@
+"""The benchmark command runs, from the models to the page; the numbers are those of whoever asks for them."""
+
+import json
+import subprocess
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+
+from benchmarks.families import FAMILIES
+from benchmarks.scaling import disagreements
+from benchmarks.scaling_page import TARGETS, growth, page, plots
+from robosc.synthesis import Phase
+
+ROOT = Path(__file__).parent.parent.parent
+
+
+@pytest.fixture(scope="module")
+def quick(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("benchmarks")
+    command = [sys.executable, ROOT / "benchmarks" / "scaling.py", "--quick", "--families", "services"]
+    done = subprocess.run([*command, "--output", folder], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return folder
+
+
+def test_the_command_measures_every_phase(quick):
+    results = json.loads((quick / "scaling.json").read_text())
+    tools = results["families"]["services"]
+    assert set(tools) == {"robosc", "definition", *(["faudes"] if find_spec("faudes") else [])}
+    for measured in tools.values():
+        assert [each["states"] for each in measured] == [FAMILIES["services"].states(each["n"]) for each in measured]
+    for point in (*tools["robosc"], *results["transform"]):
+        assert point["finished"]
+        assert {*Phase, *TARGETS, "parse", "link", "check", "m2m"} == point["phases"].keys()
+    assert results["transform"][0]["bytes"] > 0
+
+
+def test_the_command_writes_the_page_and_the_plots(quick):
+    text = (quick / "benchmarks.md").read_text()
+    assert "measured it on two shared cores" in text
+    assert "| 4 | " in text.partition("### N services sharing a resource")[2]
+    assert (quick / "benchmarks-families.svg").exists() == bool(find_spec("matplotlib"))
+
+
+def test_a_limit_ends_a_series(tmp_path):
+    command = [sys.executable, ROOT / "benchmarks" / "scaling.py", "--families", "warehouse", "--tools", "definition"]
+    done = subprocess.run([*command, "--limit", "9", "--output", tmp_path], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    *finished, last = json.loads((tmp_path / "scaling.json").read_text())["families"]["warehouse"]["definition"]
+    assert all(each["finished"] for each in finished)
+    assert not last["finished"]
+    assert "states" not in last
+
+
+def test_the_page_in_the_documentation_is_that_of_the_results():
+    results = json.loads((ROOT / "benchmarks" / "scaling.json").read_text())
+    assert (ROOT / "docs" / "benchmarks.md").read_text() == page(results)
+    assert list(disagreements(results)) == []
+
+
+def test_plots_are_the_same_each_time():
+    pytest.importorskip("matplotlib")
+    results = json.loads((ROOT / "benchmarks" / "scaling.json").read_text())
+    assert plots(results) == plots(results)
+
+
+def test_disagreements_are_found():
+    one, other = ({"n": 2, "states": 15, "uncontrolled": each} for each in (22, 23))
+    wrong = {"n": 4, "states": 242, "uncontrolled": 484}
+    results = {"families": {"services": {"robosc": [one, wrong], "faudes": [other]}}}
+    assert list(disagreements(results)) == [
+        "services 4: robosc finds 242 states, the formula says 243",
+        "services 2: faudes reaches 23 states, robosc 22",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("values", "text"),
+    [
+        ({n: 3 * n**2 for n in (2, 4, 8, 16)}, "N^2.0"),
+        ({n: 5 * 3**n for n in (2, 3, 4, 6)}, "3.00^N"),
+        (dict.fromkeys((1, 2, 3), 7), "N^0.0"),
+        ({1: 1, 2: 2}, "-"),
+    ],
+)
+def test_growth(values, text):
+    assert growth([{"n": n, "value": value} for n, value in values.items()], lambda each: each["value"]) == text
