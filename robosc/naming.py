@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Set
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -58,17 +59,21 @@ def written(name: str) -> str:
 
 
 class Names:
-    """The names of one scope; one that is taken gets underscores."""
+    """The names of one scope; one that is taken gets underscores.
+
+    A set of taken names is not copied, so that many scopes can stand beside each other within a large one.
+    """
 
     def __init__(self, taken: Iterable[str] = ()) -> None:
-        self._taken = set(taken)
+        self._outer = taken if isinstance(taken, Set) else frozenset(taken)
+        self._taken: set[str] = set()
 
     def fresh(self, name: str) -> str:
         """The name itself where it is free, else the name with as few underscores behind it as make it so.
 
         The same names in the same order give the same result. The name is taken from then on.
         """
-        while name in self._taken:
+        while name in self._taken or name in self._outer:
             name += "_"
         self._taken.add(name)
         return name

@@ -114,11 +114,15 @@ class Scope:
 
     def communicating(self, name: str) -> list[tuple[rsc.Component, rsc.CommunicationType]]:
         """Each component that has a communication of a name, and the communication."""
-        return [
-            (each.component, found)
-            for each in self._instances
-            if (found := (self.communications(each.component) or {}).get(name))
-        ]
+        return self._communicating.get(name, [])
+
+    @cached_property
+    def _communicating(self) -> dict[str, list[tuple[rsc.Component, rsc.CommunicationType]]]:
+        found: dict[str, list[tuple[rsc.Component, rsc.CommunicationType]]] = {}
+        for each in self._instances:
+            for name, communication in (self.communications(each.component) or {}).items():
+                found.setdefault(name, []).append((each.component, communication))
+        return found
 
     def all_communications(self) -> list[str]:
         """The names of the communications of all components."""

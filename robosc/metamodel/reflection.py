@@ -1,6 +1,6 @@
 """What the metamodels declare and what models contain, always in the order of the .ecore text."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 from typing import Any
 
@@ -23,13 +23,18 @@ def is_attribute(feature: Any) -> bool:
     return isinstance(feature, EAttribute)
 
 
+@cache
+def _containments(metaclass: EClass) -> Sequence[tuple[str, bool]]:
+    """The names of the references of a class that contain, each with whether there may be many."""
+    found = features(metaclass).items()
+    return [(name, each.many) for name, each in found if not is_attribute(each) and each.containment]
+
+
 def contents(element: Any) -> Iterator[tuple[str, Any]]:
     """The elements directly inside an element, each with its step in a fragment path (`@plants.0`, `@guard`)."""
-    for name, feature in features(element.eClass).items():
-        if is_attribute(feature) or not feature.containment:
-            continue
+    for name, many in _containments(element.eClass):
         value = getattr(element, name)
-        if feature.many:
+        if many:
             yield from ((f"@{name}.{index}", child) for index, child in enumerate(value))
         elif value is not None:
             yield f"@{name}", value

@@ -22,6 +22,7 @@ from robosc.synthesis.fixpoint import reachable, supervise
 from robosc.synthesis.guards import permission
 from robosc.synthesis.observations import Observations, Observer
 from robosc.synthesis.paths import TraceStep
+from robosc.synthesis.projection import Projection
 from robosc.synthesis.relation import event_relations
 from robosc.synthesis.settling import settling, silent_events
 from robosc.synthesis.statistics import Phase, Statistics
@@ -41,7 +42,7 @@ class Synthesis:
     Either `supervisor` and `observations` are there and `reason` is None, or the supervisor is empty, and `reason` says
     why. A state is an assignment of locations and variables: `uncontrolled_states` counts those that the plants reach
     without requirements, `controlled_states` those under the supervisor. `bdd_nodes` are the nodes of the diagrams of
-    the controlled states and of the states in which each controllable event is allowed. `statistics` say what it cost.
+    the controlled states and of what says of each controllable event where it is allowed; `statistics`, what it cost.
     """
 
     supervisor: sct.Supervisor | None
@@ -113,16 +114,17 @@ def _synthesize(model: sct.SupervisoryControlModel, layout: Layout, capacity: in
         nodes = found.controlled.node_count()
         return Synthesis(None, None, reason, encoding.count(uncontrolled), 0, nodes, statistics)
     with statistics.during(Phase.GUARDS):
+        controlled = Projection(found.controlled, encoding)
         permissions = [
-            permission(each, found.controlled, encoding, restricts=len(found.rounds) > 1)
+            permission(each, controlled, encoding, restricts=len(found.rounds) > 1)
             for each in relations
             if each.event.controllable
         ]
-        permitted = {each.relation.event: each.allowed for each in permissions}
+        permitted = {each.relation.event: each.where for each in permissions}
         supervisor = sct.Supervisor(
             uncontrolledStates=encoding.count(uncontrolled),
             controlledStates=encoding.count(found.controlled),
-            bddNodes=found.controlled.node_count() + sum(each.allowed.node_count() for each in permissions),
+            bddNodes=found.controlled.node_count() + sum(each.where.node_count() for each in permissions),
             guards=[each.guard for each in permissions],
         )
         # Within the controlled states a step leads where its guard lets it, and nowhere else.
@@ -134,7 +136,9 @@ def _synthesize(model: sct.SupervisoryControlModel, layout: Layout, capacity: in
         possible = [
             each.event
             for each in relations
-            if (permitted[each.event] if each.event in permitted else found.controlled & each.enabled).satisfiable()
+            if (
+                permitted[each.event] if each.event in permitted else controlled.onto(each.concerned) & each.enabled
+            ).satisfiable()
         ]
     return Synthesis(
         supervisor,

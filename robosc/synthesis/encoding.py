@@ -224,7 +224,8 @@ class Encoding:
     def all_marked(self) -> Diagram:
         """The states in which every plant is in a marked location."""
         result = self.diagrams.true
-        for plant in self.layout.plants:
+        # From the bottom: each conjunction makes the diagram above it anew.
+        for plant in sorted(self.layout.plants, key=lambda each: self.layout.domains[each].levels, reverse=True):
             result &= self.marked(plant)
         return result
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from robosc.expressions import conjunction, copied
@@ -14,19 +15,30 @@ from robosc.synthesis.simplification import simplified
 if TYPE_CHECKING:
     from robosc.synthesis.bdd import Diagram
     from robosc.synthesis.encoding import Encoding
+    from robosc.synthesis.projection import Projection
     from robosc.synthesis.relation import EventRelation
 
 
 @dataclass(frozen=True)
 class Permission:
-    """In which of the controlled states a controllable event may happen, and how the supervisor says so."""
+    """In which of the controlled states a controllable event may happen, and how the supervisor says so.
+
+    Of the controlled states it may in those of `where`, which may lie outside of them. There are some if `where` has
+    any, or any with a condition on what the event touches.
+    """
 
     relation: EventRelation
     guard: sct.EventGuard
-    allowed: Diagram
+    controlled: Diagram
+    where: Diagram
+
+    @cached_property
+    def allowed(self) -> Diagram:
+        """The controlled states in which the event may happen."""
+        return self.controlled & self.where
 
 
-def permission(relation: EventRelation, controlled: Diagram, encoding: Encoding, *, restricts: bool) -> Permission:
+def permission(relation: EventRelation, controlled: Projection, encoding: Encoding, *, restricts: bool) -> Permission:
     """The guard of a controllable event, over the states that are reachable under the supervisor.
 
     `restricts` says whether synthesis gave up any state at all: if not, it added nothing to any event.
@@ -34,10 +46,11 @@ def permission(relation: EventRelation, controlled: Diagram, encoding: Encoding,
     In each of these states: the plants enable the event and both parts of the guard hold exactly where the event leads
     to such a state again and its requirements hold.
     """
-    enabled = controlled & relation.enabled
-    required = enabled & relation.requirement
     step = relation.step if restricts else None
-    allowed = required if step is None else required & step.preimage(controlled)
+    states = controlled.onto(relation.concerned) if step is None else controlled.states
+    enabled = states & relation.enabled
+    required = enabled & relation.requirement
+    allowed = required if step is None else required & step.preimage(states)
     guard = sct.EventGuard(event=relation.event, everEnabled=allowed.satisfiable())
     if enabled != required:
         asked = conjunction(_condition(each) for each in relation.requirements)
@@ -51,7 +64,7 @@ def permission(relation: EventRelation, controlled: Diagram, encoding: Encoding,
             else ex.BooleanLiteral(value=False)
         )
     encoding.diagrams.tidy()
-    return Permission(relation, guard, allowed)
+    return Permission(relation, guard, controlled.states, allowed)
 
 
 def _condition(requirement: sct.Requirement) -> ex.Expression:

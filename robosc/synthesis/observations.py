@@ -173,7 +173,7 @@ class Observer:
     def _never_enabled(self, uncontrolled: Diagram) -> Iterator[NeverEnabled]:
         controlled = self._found.controlled
         for event, permission in self._permissions.items():
-            if event.kind not in (sct.EventKind.trigger, sct.EventKind.tau) or permission.allowed.satisfiable():
+            if event.kind not in (sct.EventKind.trigger, sct.EventKind.tau) or permission.guard.everEnabled:
                 continue
             relation = permission.relation
             in_sight = controlled & relation.enabled
@@ -197,9 +197,9 @@ class Observer:
         for event in self._triggers:
             permission = self._permissions[event]
             step = permission.relation.step
-            if plant_of(event).kind != sct.PlantKind.action or not permission.allowed.satisfiable():
+            if plant_of(event).kind != sct.PlantKind.action or not permission.guard.everEnabled:
                 continue
-            after = permission.allowed if step is None else step.image(permission.allowed)
+            after = permission.where if step is None else step.image(permission.where)
             if not (after & permission.relation.requirement).satisfiable():
                 yield SelfCancelling(event, _broken(permission, after))
 
@@ -227,7 +227,7 @@ class Observer:
             plant, permission = plant_of(event), self._permissions[event]
             alone = all(each is plant for each in permission.relation.enabled_by)
             restricted = permission.relation.requirements or not alone
-            if plant.kind in _CALLS and not restricted and permission.allowed.satisfiable():
+            if plant.kind in _CALLS and not restricted and permission.guard.everEnabled:
                 yield event
 
     def _example(self, states: Diagram) -> Example:

@@ -121,6 +121,11 @@ class EventRelation:
                 touched.update(referenced(update.value))
         return frozenset(touched)
 
+    @cached_property
+    def concerned(self) -> frozenset[Element]:
+        """The same, and what its requirements read."""
+        return self.touched.union(*(referenced(each.condition) for each in self.requirements))
+
     def step_where(self, condition: Diagram) -> Step | None:
         """What the event does where the plants enable it and the condition holds; None where it changes nothing."""
         if not self.changed:

@@ -26,7 +26,7 @@ class CifNames:
             self._names[element] = outer.fresh(element.name)
         #: The automaton that holds what synthesis added.
         self.supervisor = outer.fresh("sup")
-        taken = [*self._names.values(), self.supervisor]
+        taken = {*self._names.values(), self.supervisor}
         for plant in model.plants:
             inner = Names(taken)
             for member in (*plant.events, *plant.inputs, *plant.variables, *plant.locations):
