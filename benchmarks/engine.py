@@ -1,165 +1,144 @@
-"""What the generated engine costs: bytes of code and memory, nanoseconds and instructions per operation.
+"""What the generated engine costs: instructions, steps, bytes of code and memory, stack. All is counted, not timed.
 
-    python benchmarks/engine.py [MODEL.rscd]
+    python benchmarks/engine.py                 measures the examples and the families of `families.py`, and writes
+                                                benchmarks/engine.json and docs/engine.md
+    python benchmarks/engine.py MODEL.rscd ...  measures these, and prints
+    python benchmarks/engine.py --page          writes the page anew from benchmarks/engine.json
 
-Sizes are of the engine without names, built with `-Os`. An operation is one incoming event (`perform`), one with
-settling and reactions (`batch`), or that with a tick behind it. Tools that are not installed leave a dash.
+Needs gcc; without arm-none-eabi-gcc and valgrind their columns are missing.
 """
 
 from __future__ import annotations
 
 import argparse
-import re
-import shutil
-import subprocess
+import json
+import sys
 import tempfile
+from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-import robosc
-from robosc.m2t.c.names import CNames
-from robosc.m2t.c.types import interval_of, number
-from robosc.models import Models
-from robosc.roles import Roles
+ROOT = Path(__file__).parent.parent
+sys.path.insert(0, str(ROOT))
+
+import robosc  # noqa: E402
+from benchmarks.engine_costs import measured  # noqa: E402
+from benchmarks.families import FAMILIES  # noqa: E402
+from robosc.m2t.c.behaviour import SMALL  # noqa: E402
 
 if TYPE_CHECKING:
-    from robosc.metamodel.sct import SupervisoryControlModel
+    from collections.abc import Iterable, Iterator, Sequence
 
-EXAMPLE = Path(__file__).parent.parent / "examples" / "line_follower" / "line_follower.rscd"
-TARGETS = {"x86-64": ["gcc"], "Cortex-M3": ["arm-none-eabi-gcc", "-mcpu=cortex-m3", "-mthumb"]}
-OPERATIONS = ("perform", "batch", "tick and batch")
-#: What the time of an operation is measured over, and the instructions.
-OFTEN, SELDOM = 5_000_000, 20_000
-
-PROGRAM = """\
-#include "{p}_supervisor.h"
-#include <stdio.h>
-#include <stdlib.h>
-#include <time.h>
-
-static {p}_supervisor robot;
-
-static void set(unsigned odd)
-{{
-    (void)odd;
-{inputs}
-}}
-
-int main(int count, char **words)
-{{
-    static const {p}_event incoming[] = {{ {incoming} }};
-    const unsigned kinds = sizeof incoming / sizeof *incoming;
-    const char operation = count == 3 ? words[1][0] : 'p';
-    const unsigned times = count == 3 ? (unsigned)atoi(words[2]) : 1U;
-    struct timespec start, end;
-    {p}_init(&robot, 0, 0);
-    {p}_tick(&robot);
-    clock_gettime(CLOCK_MONOTONIC, &start);
-    for (unsigned number = 0U; number < times; ++number) {{
-        set(number / kinds & 1U);
-        if (operation != 'p') {p}_begin(&robot);
-        {p}_perform(&robot, incoming[number % kinds]);
-        if (operation != 'p') {p}_end(&robot);
-        if (operation == 't') {p}_tick(&robot);
-    }}
-    clock_gettime(CLOCK_MONOTONIC, &end);
-    printf("%.2f %zu\\n", ((double)(end.tv_sec - start.tv_sec) * 1e9 + (double)(end.tv_nsec - start.tv_nsec)) / times,
-           sizeof robot);
-    return 0;
-}}
-"""
+RESULTS, PAGE = ROOT / "benchmarks" / "engine.json", ROOT / "docs" / "engine.md"
+EXAMPLES = [path for path in sorted((ROOT / "examples").glob("*/*.rscd")) if path.stem == path.parent.name]
+SIZES = {"cells": (1, 4, 8, 20, 64), "line": (4, 64), "sensors": (8, 64), "services": (8, 32), "philosophers": (4, 16)}
+Results = dict[str, Any]
 
 
 def main() -> None:
-    """Measures one model and prints a table in Markdown."""
+    """Measures and writes."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("model", nargs="?", type=Path, default=EXAMPLE)
-    model = robosc.to_sct(robosc.load(parser.parse_args().model))
+    parser.add_argument("models", nargs="*", type=Path, metavar="MODEL.rscd")
+    parser.add_argument("--page", action="store_true")
+    arguments = parser.parse_args()
+    if arguments.models:
+        found = [{"title": path.stem, **_costs(path)} for path in arguments.models]
+        print(_instructions(found), _bytes(found), sep="\n")
+        return
+    if not arguments.page:
+        RESULTS.write_text(json.dumps({"examples": list(_examples()), "families": list(_families())}, indent=1) + "\n")
+    PAGE.write_text(page(json.loads(RESULTS.read_text())))
+
+
+def _examples() -> Iterator[Results]:
+    for path in EXAMPLES:
+        print(path.stem, file=sys.stderr)
+        yield {"title": path.stem.replace("_", " ").capitalize(), **_costs(path)}
+
+
+def _families() -> Iterator[Results]:
+    with tempfile.TemporaryDirectory() as folder:
+        for name, numbers in SIZES.items():
+            for number in numbers:
+                print(name, number, file=sys.stderr)
+                path = Path(folder) / f"{name}.rscd"
+                path.write_text(FAMILIES[name].text(number))
+                yield {"title": FAMILIES[name].title.replace("N", str(number), 1), **_costs(path)}
+
+
+def _costs(path: Path) -> Results:
+    model = robosc.to_sct(robosc.load(path))
     robosc.synthesize(model)
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        for path, text in robosc.generate("supervisor", Models(model)).items():
-            (folder / path).write_text(text)
-        _report(model, folder)
+    with tempfile.TemporaryDirectory() as folder:
+        return asdict(measured(model, Path(folder)))
 
 
-def _report(model: SupervisoryControlModel, folder: Path) -> None:
-    roles = Roles(model)
-    print(f"{model.name}: {len(roles.events)} events, {len(roles.silent)} of them silent\n")
-    print("| `-Os` | .text | .rodata | .data | .bss |\n|---|---:|---:|---:|---:|")
-    for target, compiler in TARGETS.items():
-        sizes = _sizes(model, folder, compiler)
-        print(f"| {target} | {' | '.join(sizes)} |")
-    program = _program(model, folder)
-    memory = subprocess.run([program], capture_output=True, text=True, check=True).stdout.split()[1]
-    print(f"\nOne controller takes {memory} bytes of memory.\n")
-    print("| operation | ns | instructions |\n|---|---:|---:|")
-    for operation in OPERATIONS:
-        print(f"| {operation} | {_nanoseconds(program, operation):.1f} | {_instructions(program, operation)} |")
-
-
-def _sizes(model: SupervisoryControlModel, folder: Path, compiler: list[str]) -> list[str]:
-    sections = ("text", "rodata", "data", "bss")
-    if shutil.which(compiler[0]) is None:
-        return ["-"] * len(sections)
-    names, compiled = CNames(model), folder / "engine.o"
-    source = folder / f"{names.prefix}_supervisor.c"
-    options = ["-std=c99", "-Os", f"-D{names.macro}_NO_NAMES", "-c", str(source), "-o", str(compiled)]
-    subprocess.run([*compiler, *options], check=True)
-    size = compiler[0].replace("gcc", "size")
-    listed = subprocess.run([size, "-A", str(compiled)], capture_output=True, text=True, check=True).stdout
-    return [
-        str(sum(int(each) for each in re.findall(rf"^\.{section}\S* +(\d+)", listed, flags=re.MULTILINE)))
-        for section in sections
-    ]
-
-
-def _program(model: SupervisoryControlModel, folder: Path) -> Path:
-    names, built = CNames(model), folder / "measured"
-    inputs = [each for plant in model.plants for each in plant.inputs]
-    incoming = Roles(model).incoming or Roles(model).events
-    (folder / "main.c").write_text(
-        PROGRAM.format(
-            p=names.prefix,
-            incoming=", ".join(names.enumerator(each) for each in incoming),
-            inputs="\n".join(
-                f"    robot.inputs.{names.member(each)} = odd ? {number(values.low)} : {number(values.high)};"
-                for each in inputs
-                for values in [interval_of(each.type)]
-            ),
-        )
+def page(results: Results) -> str:
+    """The page of the documentation."""
+    text = (ROOT / "benchmarks" / "engine_page.md").read_text()
+    examples, families = results["examples"], results["families"]
+    return text.format(
+        small=SMALL,
+        instructions=_instructions(examples),
+        bytes=_bytes(examples),
+        families=_instructions(families),
+        family_bytes=_bytes(families),
     )
-    source = folder / f"{names.prefix}_supervisor.c"
-    subprocess.run([*TARGETS["x86-64"], "-std=gnu99", "-O2", folder / "main.c", source, "-o", built], check=True)
-    return built
 
 
-def _nanoseconds(program: Path, operation: str) -> float:
-    """The best of five runs."""
-    runs = [
-        subprocess.run([program, operation, str(OFTEN // 5)], capture_output=True, text=True, check=True).stdout
-        for _ in range(5)
-    ]
-    return min(float(each.split()[0]) for each in runs)
+def _instructions(found: Sequence[Results]) -> str:
+    head = (
+        "robot",
+        "events",
+        "perform: mean",
+        "most",
+        "batch: mean",
+        "most",
+        "tick: mean",
+        "most",
+        "idle",
+        "steps",
+        "bound",
+    )
+    return _table(
+        head,
+        (
+            [
+                each["title"],
+                each["events"],
+                *(number for what in ("perform", "batch", "tick") for number in _count(each[what])),
+                "-" if each["idle"] is None else each["idle"],
+                each["steps"]["most"],
+                f"{each['bound']:,}",
+            ]
+            for each in found
+        ),
+    )
 
 
-def _instructions(program: Path, operation: str) -> str:
-    """Counted by callgrind as the difference of two runs, so that starting up is left out."""
-    if shutil.which("valgrind") is None:
-        return "-"
-    counts = []
-    for times in (SELDOM, 2 * SELDOM):
-        command = [
-            "valgrind",
-            "--tool=callgrind",
-            "--callgrind-out-file=/dev/null",
-            str(program),
-            operation,
-            str(times),
-        ]
-        told = subprocess.run(command, capture_output=True, text=True, check=True).stderr
-        counts.append(int(re.findall(r"Collected : (\d+)", told)[0]))
-    return f"{(counts[1] - counts[0]) / SELDOM:.1f}"
+def _count(count: Results | None) -> list[str]:
+    return ["-", "-"] if count is None else [f"{count['mean']:.0f}", f"{count['most']:,}"]
+
+
+def _bytes(found: Sequence[Results]) -> str:
+    targets = list(dict.fromkeys(target for each in found for target in each["sizes"]))
+    columns = ("text", "rodata", "data", "bss", "controller", "stack")
+    head = (
+        "robot",
+        *(f"{target}: {columns[0]}" if not at else each for target in targets for at, each in enumerate(columns)),
+    )
+    return _table(
+        head,
+        (
+            [each["title"], *(f"{each['sizes'][target][of]:,}" for target in targets for of in columns)]
+            for each in found
+        ),
+    )
+
+
+def _table(head: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
+    lines = [head, ["---", *["---:"] * (len(head) - 1)], *rows]
+    return "\n".join(f"| {' | '.join(map(str, each))} |" for each in lines)
 
 
 if __name__ == "__main__":

@@ -108,16 +108,17 @@ class Behaviour:
             )
             added = self._context.table.added(event)
             told = self._context.table.words(event)
-            if told or self._context.ranges(All([unforced, added])).single != 1:
-                lines = self._lines(unforced, added)
+            guard = self._context.guard(event)
+            if told or self._context.ranges(guard).single != 1:
+                lines = self._lines(guard, unforced, added)
                 cases.append(_Case([self._context.names.enumerator(event)], comment(told, _INDENT), lines))
         if not self._context.events:
             cases.append(_Case([f"{self._context.names.prefix}_nothing"], "", ["false"]))
         return _merged(cases)
 
-    def _lines(self, unforced: All, added: All) -> list[str]:
-        """A condition, one part a line."""
-        operator, terms = self._shared.shown(All([unforced, added]))
+    def _lines(self, guard: All, unforced: All, added: All) -> list[str]:
+        """A guard, one part a line, with what synthesis added to the rest."""
+        operator, terms = self._shared.shown(guard)
         plain, by_synthesis = (
             {text for texts, _ in self._shared.shown(each)[1] for text in texts} for each in (unforced, added)
         )

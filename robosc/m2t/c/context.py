@@ -29,8 +29,12 @@ class Context:
         self.data = [event for events in self.roles.data for event in events]
         #: The order of the enumerators: the control loop then knows an event's role by its number.
         self.events = [*self.queued, *self.roles.silent, *self.data, *self.roles.incoming]
+        self._guards: dict[sct.Event, All] = {}
         self.located = [plant for plant in model.plants if len(plant.locations) > 1]
 
     def guard(self, event: sct.Event) -> All:
         """When the event can happen: the plants can do it, the requirements hold, and what synthesis added."""
-        return All([self.table.possible(event, self.printer), self.table.required(event), self.table.added(event)])
+        if event not in self._guards:
+            parts = (self.table.possible(event, self.printer), self.table.required(event), self.table.added(event))
+            self._guards[event] = All(parts)
+        return self._guards[event]

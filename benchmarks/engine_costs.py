@@ -1,0 +1,260 @@
+"""What a generated engine costs, counted, so that each run gives the same: instructions, steps, bytes, stack.
+
+Instructions are those of x86-64 under callgrind, in a random walk through what the robot and its controller do.
+"""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from robosc.config import ControlLoop
+from robosc.m2t.c import engine
+from robosc.m2t.c.names import CNames
+from robosc.m2t.c.types import interval_of
+from robosc.roles import Roles
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+    from pathlib import Path
+
+    from robosc.metamodel.sct import SupervisoryControlModel
+
+#: How many batches a walk has; after every fourth there is a tick.
+BATCHES = 400
+TARGETS = {"x86-64": ["gcc"], "Cortex-M3": ["arm-none-eabi-gcc", "-mcpu=cortex-m3", "-mthumb"]}
+OPTIONS = ["-std=c99", "-Os"]
+
+PROGRAM = """\
+#include "{p}_supervisor.h"
+#include <stdio.h>
+#include <stdlib.h>
+
+static {p}_supervisor robot;
+static unsigned steps;
+static uint64_t number = 1U;
+
+static uint64_t chance(void)
+{{
+    number = number * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
+    return number >> 33;
+}}
+
+static void count(void *context, {p}_event event)
+{{
+    (void)context;
+    (void)event;
+    ++steps;
+}}
+
+static void set(void)
+{{
+{inputs}
+}}
+
+/* One of the events from the robot that can happen now, at random; -1 if there is none. */
+static int choose(void)
+{{
+    static const {p}_event incoming[] = {{ {incoming} }};
+    int chosen = -1;
+    unsigned found = 0U;
+    for (unsigned each = 0U; each < sizeof incoming / sizeof *incoming; ++each) {{
+        if ({p}_enabled(&robot, incoming[each]) && chance() % ++found == 0U) chosen = (int)incoming[each];
+    }}
+    return chosen;
+}}
+
+static unsigned enabled(void)
+{{
+    unsigned found = 0U;
+    for (unsigned each = 0U; each < {queued}U; ++each) found += {p}_enabled(&robot, ({p}_event)each);
+    return found;
+}}
+
+int main(int words, char **word)
+{{
+    const {p}_hooks hooks = {{ NULL, NULL, count, NULL }};
+    const unsigned batches = (unsigned)atoi(word[1]);
+    (void)words;
+    {p}_init(&robot, NULL, word[2][0] == 's' ? &hooks : NULL);
+    {p}_tick(&robot);
+    for (unsigned batch = 1U; batch <= batches; ++batch) {{
+        const int event = choose();
+        set();
+        steps = 0U;
+        {p}_begin(&robot);
+        if (event >= 0) {p}_perform(&robot, ({p}_event)event);
+        {p}_end(&robot);
+        printf("batch %u %d\\n", steps, event);
+        if (batch % 4U == 0U) {{
+            const unsigned before = enabled();
+            steps = 0U;
+            {p}_tick(&robot);
+            printf("tick %u %u\\n", steps, before);
+        }}
+    }}
+    return 0;
+}}
+"""
+
+
+@dataclass(frozen=True)
+class Size:
+    """Bytes: sections of the object file (without names), one controller, and the stack below a call of the engine."""
+
+    text: int
+    rodata: int
+    data: int
+    bss: int
+    controller: int
+    stack: int
+
+
+@dataclass(frozen=True)
+class Count:
+    """Over the calls of one function: the mean and the most."""
+
+    mean: float
+    most: int
+
+
+@dataclass(frozen=True)
+class Costs:
+    """What one model's engine costs. `steps` are events in a tick, `bound` is how many there can be at worst.
+
+    Instructions: `perform` one event; `batch` is begin and end; `tick` one tick, and `idle` the cheapest one. None
+    where callgrind is not installed.
+    """
+
+    events: int
+    sizes: dict[str, Size]
+    steps: Count
+    bound: int
+    perform: Count | None = None
+    batch: Count | None = None
+    tick: Count | None = None
+    idle: int | None = None
+
+
+def measured(model: SupervisoryControlModel, folder: Path) -> Costs:
+    """Builds the engine of a model with its supervisor in a folder, and counts."""
+    names = CNames(model)
+    for path, text in engine.generate(model, ControlLoop()).items():
+        (folder / path).write_text(text)
+    source = folder / f"{names.prefix}_supervisor.c"
+    sizes = {target: size(source, names, command) for target, command in TARGETS.items() if shutil.which(command[0])}
+    program = _program(model, source)
+    walked = [line.split() for line in _run(program, str(BATCHES), "steps").splitlines()]
+    ticks = [int(steps) for kind, steps, _ in walked if kind == "tick"]
+    costs = Costs(len(Roles(model).events), sizes, _count(ticks), tick_bound(Roles(model)))
+    if shutil.which("valgrind") is None:
+        return costs
+    begins, performs, ends, ticked = (
+        _instructions(program, f"{names.prefix}_{each}") for each in ("begin", "perform", "end", "tick")
+    )
+    ticked = ticked[1:]  # The first one comes before the walk.
+    return replace(
+        costs,
+        perform=_count(performs),
+        batch=_count([begin + end for begin, end in zip(begins, ends, strict=True)]),
+        tick=_count(ticked),
+        idle=min(ticked),
+    )
+
+
+def tick_bound(roles: Roles) -> int:
+    """How many events can happen in one tick: the first settling, and one more after each cancel and trigger.
+
+    Settling runs at most its bound of silent events, and before each and at the end lets each data plant move once.
+    """
+    silent = roles.settling_bound if roles.silent else 0
+    settling = silent + (silent + 1) * len(roles.data)
+    return settling + (len(roles.cancels) + len(roles.triggers)) * (1 + settling)
+
+
+def size(source: Path, names: CNames, command: Sequence[str]) -> Size:
+    """The bytes of an engine, with one compiler."""
+    compiled = source.with_suffix(".o")
+    asked = [f"-D{names.macro}_NO_NAMES", "-fcallgraph-info=su", "-c", source.name, "-o", compiled.name]
+    subprocess.run([*command, *OPTIONS, *asked], cwd=source.parent, check=True)
+    listed = _run(command[0].replace("gcc", "size"), "-A", str(compiled))
+    sections = [
+        sum(int(each) for each in re.findall(rf"^\.{section}\S* +(\d+)", listed, flags=re.MULTILINE))
+        for section in ("text", "rodata", "data", "bss")
+    ]
+    probe = source.parent / "probe.c"
+    probe.write_text(f'#include "{source.stem}.h"\nchar controller[sizeof({names.prefix}_supervisor)];\n')
+    subprocess.run([*command, *OPTIONS, "-c", probe.name], cwd=source.parent, check=True)
+    symbols = _run(command[0].replace("gcc", "nm"), "-S", str(probe.with_suffix(".o")))
+    controller = int(symbols.split()[1], 16)
+    return Size(*sections, controller, stack(source.with_suffix(".ci").read_text()))
+
+
+def stack(graph: str) -> int:
+    """The deepest stack of a call graph as gcc writes it (`-fcallgraph-info=su`), without what hooks need.
+
+    Raises RecursionError where a function can call itself.
+    """
+    own = {
+        title: int(used)
+        for title, used in re.findall(r'node: \{ title: "([^"]+)" label: "[^"]*?(\d+) bytes \(static\)', graph)
+    }
+    calls: dict[str, set[str]] = {}
+    for caller, called in re.findall(r'edge: \{ sourcename: "([^"]+)" targetname: "([^"]+)"', graph):
+        calls.setdefault(caller, set()).add(called)
+
+    def below(function: str, callers: tuple[str, ...] = ()) -> int:
+        if function in callers:
+            raise RecursionError(f"{function} can call itself")
+        inner = (below(each, (*callers, function)) for each in calls.get(function, ()))
+        return own.get(function, 0) + max(inner, default=0)
+
+    return max(map(below, own))
+
+
+def _program(model: SupervisoryControlModel, source: Path) -> Path:
+    names, roles = CNames(model), Roles(model)
+    main, built = source.parent / "main.c", source.parent / "measured"
+    main.write_text(
+        PROGRAM.format(
+            p=names.prefix,
+            incoming=", ".join(names.enumerator(each) for each in roles.incoming or roles.events),
+            queued=len(roles.cancels) + len(roles.triggers),
+            inputs="\n".join(_inputs(model, names)),
+        )
+    )
+    gcc = TARGETS["x86-64"]
+    subprocess.run([*gcc, *OPTIONS, "-c", source.name, "-o", "engine.o"], cwd=source.parent, check=True)
+    subprocess.run([*gcc, "-std=gnu99", "-O1", main.name, "engine.o", "-o", built], cwd=source.parent, check=True)
+    return built
+
+
+def _inputs(model: SupervisoryControlModel, names: CNames) -> Iterator[str]:
+    """Sets each input to any of its values."""
+    for each in (each for plant in model.plants for each in plant.inputs):
+        low, high = interval_of(each.type)
+        member = f"robot.inputs.{names.member(each)}"
+        value = f"INT64_C({low}) + (int64_t)(chance() % UINT64_C({high - low + 1}))"
+        yield f"    {member} = (__typeof__({member}))({value});"
+
+
+def _instructions(program: Path, function: str) -> list[int]:
+    """How many instructions ran in each call of a function, from its first to its last."""
+    dumps = program.parent / "dumps"
+    command = ["valgrind", "--tool=callgrind", f"--callgrind-out-file={dumps}", "--combine-dumps=yes"]
+    command += [f"--dump-after={function}", f"--toggle-collect={function}"]
+    subprocess.run([*command, program, str(BATCHES), "instructions"], capture_output=True, check=True)
+    counted = [int(each) for each in re.findall(r"^totals: (\d+)", dumps.read_text(), flags=re.MULTILINE)]
+    dumps.unlink()
+    return counted[:-1]  # The last one is what ran after the last call: nothing.
+
+
+def _count(numbers: Sequence[int]) -> Count:
+    return Count(sum(numbers) / len(numbers) if numbers else 0.0, max(numbers, default=0))
+
+
+def _run(*command: str | Path) -> str:
+    return subprocess.run(command, capture_output=True, text=True, check=True).stdout

@@ -1,0 +1,59 @@
+"""MISRA C:2012, as cppcheck's add-on knows it: what it finds is what docs/engine.md lists."""
+
+import re
+import shutil
+import subprocess
+from collections.abc import Sequence
+from pathlib import Path
+
+import pytest
+
+from tests.m2t.supervisor import corners
+from tests.m2t.supervisor.driver import write
+from tests.m2t.supervisor.test_supervisor import dock, supervised
+
+ROOT = Path(__file__).parents[3]
+EXAMPLES = [path for path in sorted((ROOT / "examples").glob("*/*.rscd")) if path.stem == path.parent.name]
+#: What no example needs: wide ranges, enumerations, names that nothing bounds.
+OTHERS = (dock, corners.shared, corners.swap, corners.data, corners.incoming, corners.cancels)
+
+
+def found(sources: Sequence[Path]) -> set[str]:
+    """The rules that the add-on sees broken."""
+    if shutil.which("cppcheck") is None:
+        pytest.skip("cppcheck is not installed")
+    folder = sources[0].parent
+    done = subprocess.run(
+        ["cppcheck", "--addon=misra", "--std=c99", "--quiet", *(each.name for each in sources)],
+        cwd=folder, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "Traceback" not in done.stderr
+    return set(re.findall(r"\[misra-c2012-(\d+\.\d+)\]", done.stderr))
+
+
+def documented() -> dict[str, str]:
+    """The rules of the page, and whether each is required."""
+    return dict(re.findall(r"^\| (\d+\.\d+) \| (\w+) \| \S", (ROOT / "docs" / "engine.md").read_text(), re.MULTILINE))
+
+
+def test_it_is_what_the_page_lists(tmp_path: Path) -> None:
+    models = [supervised(path) for path in EXAMPLES]
+    assert len(models) == 8
+    folders = [tmp_path / each for each in ("examples", "others", "large")]
+    for folder in folders:
+        folder.mkdir()
+    examples = found([write(each, folders[0]) for each in models])
+    others = [
+        *found([write(make(), folders[1]) for make in OTHERS]),
+        *found([write(make(), folders[2], small=0) for make in OTHERS]),
+    ]
+    page = documented()
+    assert examples | set(others) == set(page)
+    assert {rule for rule in examples if page[rule] == "required"} == {"5.7"}
+
+
+def test_the_add_on_sees_what_is_wrong(tmp_path: Path) -> None:
+    source = tmp_path / "wrong.c"
+    source.write_text("int wrong(int x);\nint wrong(int x)\n{\n    goto end;\nend:\n    return wrong(x);\n}\n")
+    assert {"15.1", "17.2"} & found([source]) - set(documented())
