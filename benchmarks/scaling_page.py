@@ -154,22 +154,24 @@ def _family(tools: Results) -> str:
             row += [_number(point["uncontrolled"]), _number(point["states"])]
         else:
             row += ["-", "-"]
-        row += [f"{point['peak_nodes']:,}", f"{point['operations']:,}"]
-        row += [_took(point, SYNTHESIS), _took(point, [*PHASES, *TARGETS]), f"{point['memory']:.0f}"]
+        row += [f"{point[each]:,}" if each in point else "-" for each in ("peak_nodes", "operations")]
+        row += [_took(point, SYNTHESIS), _took(point), f"{point['memory']:.0f}"]
         for each in others.values():
             other = each.get(point["n"])
-            row += [_took(other, list(other["phases"])), f"{other['memory']:.0f}"] if other else ["-", "-"]
+            row += [_took(other), f"{other['memory']:.0f}"] if other else ["-", "-"]
         rows.append(row)
     return _table(head, rows)
 
 
-def _took(point: Results, phases: Sequence[str]) -> str:
-    """Seconds of phases; those that the limit ended are a lower bound."""
-    there = [point["phases"][each] for each in phases if each in point["phases"]]
-    cpu, wall = (sum(each[which] for each in there) for which in (1, 0))
-    if point["finished"] or ("states" in point and phases == SYNTHESIS):
-        return f"{cpu:.2f} ({wall:.2f})"
-    return f"over {cpu:.0f}"
+def _took(point: Results, phases: Sequence[str] = ()) -> str:
+    """Seconds of some phases, or of all; where the limit ended them, that of the process."""
+    if not point["finished"] and not (phases and "states" in point):
+        return f"over {point['cpu']:.0f}"
+    cpu, wall = (
+        sum(took[which] for each, took in point["phases"].items() if each in (phases or point["phases"]))
+        for which in (1, 0)
+    )
+    return f"{cpu:.2f} ({wall:.2f})"
 
 
 def _growths(families: Results) -> str:
