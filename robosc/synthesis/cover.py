@@ -15,7 +15,7 @@ from robosc.metamodel import sct
 from robosc.synthesis.decoding import Ranges, codes, complement, cost, is_one_of, pick
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator, Mapping, Sequence
 
     from robosc.synthesis.bdd import Diagram
     from robosc.synthesis.encoding import Domain, Element, Encoding
@@ -24,12 +24,18 @@ if TYPE_CHECKING:
 Product: TypeAlias = "dict[Domain, Ranges]"
 
 
-def separating_expression(encoding: Encoding, inside: Diagram, outside: Diagram) -> ex.Expression:
+def separating_expression(
+    encoding: Encoding, inside: Diagram, outside: Diagram, domains: Sequence[Domain]
+) -> ex.Expression:
     """An expression that is true in all states of `inside` and false in all of `outside`; both have states.
+
+    They depend on the given domains only.
 
     Either the products of `inside`, or those of `outside` negated, whichever is shorter.
     """
-    positive, negative = _shorter_covers(_Cover(encoding, inside, outside), _Cover(encoding, outside, inside))
+    positive, negative = _shorter_covers(
+        _Cover(encoding, inside, outside, domains), _Cover(encoding, outside, inside, domains)
+    )
     if positive is not None and (negative is None or _length(positive) <= _length(negative)):
         result = disjunction(_product(each) for each in positive)
     else:
@@ -41,12 +47,12 @@ def separating_expression(encoding: Encoding, inside: Diagram, outside: Diagram)
 class _Cover:
     """The products that cover `wanted` and spare `spared`, found one by one."""
 
-    def __init__(self, encoding: Encoding, wanted: Diagram, spared: Diagram) -> None:
+    def __init__(self, encoding: Encoding, wanted: Diagram, spared: Diagram, domains: Sequence[Domain]) -> None:
         self._encoding = encoding
         self._wanted = wanted
         self._spared = spared
-        self._cube = encoding.diagrams.cube(level for each in encoding.layout.state for level in each.levels)
-        self._domains = sorted(encoding.layout.state, key=_telling)
+        self._cube = encoding.diagrams.cube(level for each in domains for level in each.levels)
+        self._domains = sorted(domains, key=_telling)
 
     def products(self) -> Iterator[Product]:
         """Every product covers some state that those before it do not; after the last all are covered."""

@@ -47,7 +47,9 @@ def permission(relation: EventRelation, controlled: Projection, encoding: Encodi
     to such a state again and its requirements hold.
     """
     step = relation.step if restricts else None
-    states = controlled.onto(relation.concerned) if step is None else controlled.states
+    states, domains = controlled.factor(relation.concerned)
+    if step is None:
+        states = controlled.onto(relation.concerned)
     enabled = states & relation.enabled
     required = enabled & relation.requirement
     allowed = required if step is None else required & step.preimage(states)
@@ -59,7 +61,7 @@ def permission(relation: EventRelation, controlled: Projection, encoding: Encodi
         guard.requirements.extend(each for each, holds in relation.asked.items() if (enabled & ~holds).satisfiable())
     if allowed != required:
         guard.synthesis = (
-            separating_expression(encoding, allowed, required & ~allowed)
+            separating_expression(encoding, allowed, required & ~allowed, domains)
             if guard.everEnabled
             else ex.BooleanLiteral(value=False)
         )

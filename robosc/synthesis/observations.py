@@ -274,7 +274,7 @@ class Observer:
 def held_back(permission: Permission, found: SupervisedStates) -> Diagram:
     """The controlled states in which only synthesis forbids the event."""
     relation = permission.relation
-    return found.controlled & relation.enabled & relation.requirement & ~permission.allowed
+    return found.controlled & (relation.enabled & relation.requirement & ~permission.where)
 
 
 def trouble(

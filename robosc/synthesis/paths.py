@@ -70,6 +70,7 @@ class Layers:
         self._effort += self._layers[-1].node_count() * len(self._moves)
         for _, step in self._moves:
             reached |= step.image(self._layers[-1] & self._within)
+            self._encoding.diagrams.tidy()
         reached &= ~self._seen
         if not reached.satisfiable():
             return False

@@ -1,75 +1,112 @@
 """A large set of states, seen from a few elements.
 
 What an event is allowed to do depends on what it touches. To ask a set of all states about that means to walk through,
-and often to make anew, the part of its diagram that lies above: with n events over n components that takes n² steps. A
-projection leaves out what is above and what is below; both are found once for all events.
+and often to make anew, the part of its diagram that lies above: with n events over n components that takes n² steps. So
+what is above and what is below is left out; both are found once for all events.
 """
 
 from __future__ import annotations
 
+from bisect import bisect_left, bisect_right
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 from robosc.synthesis.bdd import split
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
 
     from robosc.synthesis.bdd import Diagram
-    from robosc.synthesis.encoding import Element, Encoding
+    from robosc.synthesis.encoding import Domain, Element, Encoding
 
 #: Up to how many different rests of the diagram are looked at below one level: with more, little is left out.
 _WIDEST = 64
 
 
 class Projection:
-    """The projections of a set of states."""
+    """A set of states and what is seen of it. Inputs are no part of a state: they don't matter.
+
+    Levels are numbered here from 0 at the top, those of the state alone.
+    """
 
     def __init__(self, states: Diagram, encoding: Encoding) -> None:
         self.states = states
         self._encoding = encoding
+        self._domains = encoding.layout.state
+        self._levels = sorted(level for each in self._domains for level in each.levels)
 
     def onto(self, elements: Iterable[Element]) -> Diagram:
-        """A superset of the states that has the same values of the given elements, and of those between them.
+        """A superset of the states that has the same values of the given elements, and of those between them."""
+        first, last = self._range(elements)
+        return self._rests[first].exists(self._cubes[last]) if first < len(self._rests) else self.states
 
-        Inputs are no part of a state, and don't matter.
+    def factor(self, elements: Iterable[Element]) -> tuple[Diagram, Sequence[Domain]]:
+        """Some domains that hold the elements, and the states as far as these are concerned.
+
+        All states are the combinations of these with what the other domains may have. As few domains as are found.
         """
-        levels = [level for each in elements for level in self._levels_of.get(each, ())]
-        if not levels:
-            return self.states
-        above, below = self._rests.get(min(levels)), self._cubes[max(levels)]
-        return self.states if above is None else above.exists(below)
+        first, last = self._range(elements)
+        first = self._waists[bisect_right(self._waists, first) - 1]
+        below = bisect_left(self._waists, last)
+        last = self._waists[below] if below < len(self._waists) else len(self._levels)
+        domains = self._domains[bisect_left(self._starts, first) : bisect_left(self._starts, last)]
+        return self._rests[first].exists(self._cubes[last]), domains
+
+    def _range(self, elements: Iterable[Element]) -> tuple[int, int]:
+        """The first level of the elements and the one after their last."""
+        ranges = [self._ranges[each] for each in elements if each in self._ranges]
+        return min((first for first, _ in ranges), default=0), max((last for _, last in ranges), default=0)
 
     @cached_property
-    def _levels_of(self) -> dict[Element, tuple[int, ...]]:
-        return {each.element: each.levels for each in self._encoding.layout.state}
+    def _ranges(self) -> dict[Element, tuple[int, int]]:
+        number = {level: index for index, level in enumerate(self._levels)}
+        return {
+            each.element: (number[each.levels[0]], number[each.levels[-1]] + 1) for each in self._domains if each.levels
+        }
 
     @cached_property
-    def _levels(self) -> list[int]:
-        """The levels of the state, from the top."""
-        return sorted(level for each in self._levels_of.values() for level in each)
+    def _starts(self) -> list[int]:
+        """The first level of each domain, in ascending order: of one without levels that of the one before."""
+        starts = [0]
+        for each in self._domains:
+            starts.append(self._ranges.get(each.element, (starts[-1],))[0])
+        return sorted(starts[1:])
 
     @cached_property
-    def _rests(self) -> dict[int, Diagram]:
-        """For each level the states without what is above it; not for those below which the diagram is wide."""
-        rests: dict[int, Diagram] = {}
-        frontier = [self.states]
+    def _frontiers(self) -> list[tuple[Diagram, ...]]:
+        """For each level what the diagram goes on with from there; not for those below which it is wide."""
+        frontiers = []
+        frontier: tuple[Diagram, ...] = (self.states,)
         for level in self._levels:
+            frontiers.append(frontier)
+            parts = dict.fromkeys(part for each in frontier for part in split(each, level))
+            frontier = tuple(part for part in parts if part.satisfiable())
+            if len(frontier) > _WIDEST:
+                break
+        return frontiers
+
+    @cached_property
+    def _rests(self) -> list[Diagram]:
+        """For each of these levels the states without what is above it."""
+        rests = []
+        for frontier in self._frontiers:
             rest = frontier[0]
             for each in frontier[1:]:
                 rest |= each
-            rests[level] = rest
-            frontier = list(dict.fromkeys(part for each in frontier for part in split(each, level)))
-            if len(frontier) > _WIDEST:
-                break
-        return rests
+            rests.append(rest)
+        return rests or [self.states]
 
     @cached_property
-    def _cubes(self) -> dict[int, Diagram]:
-        """For each level all variables of the state below it."""
-        cubes: dict[int, Diagram] = {}
-        cube = self._encoding.diagrams.true
+    def _waists(self) -> list[int]:
+        """The levels above which nothing matters for what is below, and where no domain has bits on both sides."""
+        torn = {level for first, last in self._ranges.values() for level in range(first + 1, last)}
+        alone = (level for level, frontier in enumerate(self._frontiers) if len(frontier) == 1)
+        return [level for level in alone if level not in torn] or [0]
+
+    @cached_property
+    def _cubes(self) -> list[Diagram]:
+        """For each level all variables from there on; at the end none."""
+        cubes = [self._encoding.diagrams.true]
         for level in reversed(self._levels):
-            cubes[level] = cube
-            cube = self._encoding.diagrams.variable(level) & cube
-        return cubes
+            cubes.append(self._encoding.diagrams.variable(level) & cubes[-1])
+        return cubes[::-1]

@@ -24,7 +24,14 @@ def test_it_says_of_the_elements_what_the_states_do(model, data, widest):
     elements = data.draw(st.lists(st.sampled_from(list(layout.domains)), unique=True))
     with patch.object(projection, "_WIDEST", widest):
         seen = Projection(states, encoding).onto(elements)
+        factor, domains = Projection(states, encoding).factor(elements)
     assert not (states & ~seen).satisfiable()
     others = [each for each in layout.state if each.element not in elements]
     cube = encoding.diagrams.cube(level for each in others for level in each.levels)
     assert seen.exists(cube) == states.exists(cube)
+    inside = {each.element for each in domains}
+    assert {each for each in elements if each in encoding.initial_codes} <= inside | {
+        each.element for each in layout.state if not each.levels
+    }
+    rest = states.exists(encoding.diagrams.cube(level for each in domains for level in each.levels))
+    assert factor & rest == states
