@@ -17,7 +17,6 @@ Results = dict[str, Any]
 PHASES = ("parse", "link", "check", "m2m", "order", "encode", "fixpoint", "guards", "observe")
 SYNTHESIS = PHASES[4:]
 TARGETS = ("cif", "supervisor", "ros1", "ros2")
-AROUND = {*PHASES[:4], *TARGETS}
 TITLES = {"m2m": "M2M", "cif": "CIF", "supervisor": "C", "ros1": "ROS 1", "ros2": "ROS 2"}
 TOOLS = {"robosc": "RoboSC", "faudes": "libFAUDES", "definition": "by the definition"}
 EXPLICIT = ("faudes", "definition")
@@ -176,7 +175,7 @@ def _took(point: Results, phases: Sequence[str] = ()) -> str:
 
 def _growths(families: Results) -> str:
     measures: dict[str, Callable[[Results], float]] = {
-        "synthesis": synthesis_seconds,
+        "synthesis": _synthesis_seconds,
         "peak nodes": lambda each: each["peak_nodes"],
         "operations": lambda each: each["operations"],
     }
@@ -196,9 +195,8 @@ def _all_seconds(point: Results) -> float:
     return sum(took for _, took in point["phases"].values())
 
 
-def synthesis_seconds(point: Results) -> float:
-    """What synthesis took of the processor, by whichever tool."""
-    return sum(took for phase, (_, took) in point["phases"].items() if phase not in AROUND)
+def _synthesis_seconds(point: Results) -> float:
+    return sum(point["phases"][phase][1] for phase in SYNTHESIS)
 
 
 def growth(points: Sequence[Results], measure: Callable[[Results], float]) -> str:
@@ -277,16 +275,16 @@ def plots(results: Results) -> dict[str, str]:
     mpl.rcParams |= {"svg.hashsalt": "robosc", "svg.fonttype": "none", "font.family": "sans-serif", "font.size": 9}
     families = Figure((10, 6), layout="constrained")
     for axes, name in zip(families.subplots(2, 3).flat, FAMILIES, strict=True):
-        axes.set(title=FAMILIES[name].title, xlabel="N", ylabel="s", xscale="log", yscale="log")
+        axes.set(title=FAMILIES[name].title, xlabel="N", ylabel="s", yscale="log")
         for tool, marker in zip(TOOLS, "os^", strict=True):
             points = _supervised(results["families"], name, tool)
-            seconds = [synthesis_seconds(each) for each in points]
+            seconds = [(_synthesis_seconds if tool == "robosc" else _all_seconds)(each) for each in points]
             axes.plot([each["n"] for each in points], seconds, marker=marker, markersize=4, label=TOOLS[tool])
-        axes.grid(alpha=0.3)
+        _ticked(axes)
     families.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=3)
     transform = Figure((7, 5), layout="constrained")
     axes = transform.subplots()
-    axes.set(xlabel="lines", ylabel="s", xscale="log", yscale="log")
+    axes.set(xlabel="lines", ylabel="s", yscale="log")
     for phase in (*PHASES, *TARGETS):
         points = [each for each in results["transform"] if phase in each["phases"]]
         seconds = [each["phases"][phase][1] for each in points]
@@ -299,7 +297,7 @@ def plots(results: Results) -> dict[str, str]:
         label="robosc transform",
         linewidth=2,
     )
-    axes.grid(alpha=0.3)
+    _ticked(axes)
     transform.legend(loc="outside right upper")
     drawn = {}
     for name, figure in (("families", families), ("transform", transform)):
@@ -307,3 +305,9 @@ def plots(results: Results) -> dict[str, str]:
         figure.savefig(text, format="svg", metadata={"Date": None})
         drawn[f"benchmarks-{name}.svg"] = "".join(f"{each.rstrip()}\n" for each in text.getvalue().splitlines())
     return drawn
+
+
+def _ticked(axes: Any) -> None:
+    axes.set_xscale("log", base=2)
+    axes.xaxis.set_major_formatter("{x:,.0f}")
+    axes.grid(alpha=0.3)
