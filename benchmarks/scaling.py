@@ -52,14 +52,15 @@ def main() -> int:
     results: dict[str, Any] = json.loads(kept.read_text()) if kept.exists() else {"families": {}, "transform": []}
     results |= {"machine": options.machine, "limit": options.limit}
     with ThreadPoolExecutor(options.jobs) as pool:
-        running = {
+        tools = _installed(options.tools)
+        # What takes longest goes first.
+        running = {pool.submit(_transforms, options): ("", "transform")} if "transform" in tools else {}
+        running |= {
             pool.submit(_series, FAMILIES[name], tool, options): (name, tool)
-            for tool in _installed(options.tools)
+            for tool in tools
             if tool != "transform"
             for name in options.families
         }
-        if "transform" in options.tools:
-            running[pool.submit(_transforms, options)] = ("", "transform")
         for done in as_completed(running):
             name, tool = running[done]
             if name:

@@ -79,6 +79,8 @@ def main() -> None:
 
 
 def _stop(*_: object) -> None:
+    # The signal comes again each second.
+    signal.signal(signal.SIGXCPU, signal.SIG_IGN)
     raise _LimitError
 
 
