@@ -161,16 +161,17 @@ class Scout:
         since = self.now()
         self.until(lambda: PACE in self.speeds(since), "the robot drives")
 
-    def serve(self) -> Peer:
-        """The server, started where there is none; service and action wait for what the test decides."""
+    def serve(self, succeed: bool = False) -> Peer:
+        """The server, started where there is none; all waits for what the test decides, but for goals that succeed."""
+        server = self.server or self.meet("server")
+        server.do("answer_at_once", fields=None)
+        server.do("succeed_at_once", succeed=succeed)
+        server.do("on_cancel", answer="grant")
         if self.server is None:
-            self.server = self.meet("server")
-            self.server.do("serve", name="/lamp", kind="std_srvs/SetBool")
-            self.server.do("act", name="/travel", kind="nav2_msgs/NavigateToPose")
-        self.server.do("answer_at_once", fields=None)
-        self.server.do("succeed_at_once", succeed=False)
-        self.server.do("on_cancel", answer="grant")
-        return self.server
+            server.do("serve", name="/lamp", kind="std_srvs/SetBool")
+            server.do("act", name="/travel", kind="nav2_msgs/NavigateToPose")
+        self.server = server
+        return server
 
     def dismiss_server(self) -> None:
         """Ends the server in order; afterwards there is none, nor what is left of one that was killed."""
