@@ -12,7 +12,7 @@ from robosc.metamodel import sct
 from robosc.roles import Roles, plant_of
 from robosc.synthesis.decoding import Value, pick, value
 from robosc.synthesis.explanation import never_marked, unavoidable
-from robosc.synthesis.paths import Layers, Path, TraceStep, trace
+from robosc.synthesis.paths import Layers, Path, TraceStep, deciding, trace
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -285,11 +285,13 @@ def trouble(
     assert step is not None  # else the event would change nothing, and lead to no trouble
     after = pick(step.image(encoding.state(way.states[-1])), encoding.layout.state)
     onwards = unavoidable(encoding, moves, found, after)
+    end = onwards.states[-1]
+    unmarked = [each for each in encoding.layout.plants if not each.locations[end[each]].marked]
     return Trouble(
         tuple(trace(encoding, Path([*way.states, after], [*way.moves, (relation, step)]))),
         tuple(trace(encoding, onwards)),
-        onwards.states[-1],
-        tuple(never_marked(encoding, moves, onwards.states[-1])),
+        end,
+        tuple(never_marked(encoding, deciding(moves, unmarked), end)),
     )
 
 

@@ -9,7 +9,7 @@ from robosc.roles import event_name
 from robosc.synthesis.decoding import Value, pick, text, value
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from robosc.synthesis.bdd import Diagram
     from robosc.synthesis.encoding import Element, Encoding
@@ -100,6 +100,21 @@ def shortest_path(
 ) -> Path | None:
     """A shortest path from a state of `start` to one of `goal`, as `Layers` finds it."""
     return Layers(encoding, moves, start, within).path_to(goal)
+
+
+def deciding(moves: Sequence[Move], elements: Iterable[Element]) -> list[Move]:
+    """The moves that decide what becomes of the elements: those that change them, or what these read, and so on."""
+    changing: dict[Element, list[int]] = {}
+    for number, (relation, _) in enumerate(moves):
+        for each in relation.changed:
+            changing.setdefault(each, []).append(number)
+    found: set[int] = set()
+    pending = list(elements)
+    while pending:
+        added = set(changing.pop(pending.pop(), ())) - found
+        found |= added
+        pending += (each for number in added for each in moves[number][0].concerned)
+    return [moves[number] for number in sorted(found)]
 
 
 def trace(encoding: Encoding, path: Path) -> list[TraceStep]:
