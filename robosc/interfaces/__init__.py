@@ -33,6 +33,8 @@ class Edition:
         """`ros` is `ROS 1` or `ROS 2`; of several `sources` with a type the first one counts."""
         self.name = ros
         self._sources = list(sources)
+        self._known: dict[tuple[str, str, Part], Fields | None] = {}
+        self._named: dict[tuple[str, str], list[str]] = {}
 
     def fields(self, package: str, name: str, part: Part) -> Fields | None:
         """The fields of a part of a type; None where the type is unknown.
@@ -41,6 +43,12 @@ class Edition:
         """
         if not (package.isidentifier() and name.isidentifier()):
             return None  # Names are parts of paths.
+        key = package, name, part
+        if key not in self._known:
+            self._known[key] = self._find(package, name, part)
+        return self._known[key]
+
+    def _find(self, package: str, name: str, part: Part) -> Fields | None:
         for source in self._sources:
             found = source.fields(package, name, part)
             if found is not None:
@@ -51,10 +59,13 @@ class Edition:
 
     def names(self, package: str, kind: str) -> list[str]:
         """The names of the types of a kind (`message`, `service`, `action`) that are known of a package, in order."""
-        from robosc.interfaces import type_stores
+        key = package, kind
+        if key not in self._named:
+            from robosc.interfaces import type_stores
 
-        found = chain.from_iterable(source.names(package, kind) for source in self._sources)
-        return sorted({*found, *type_stores.names(self.name, package, kind)})
+            found = chain.from_iterable(source.names(package, kind) for source in self._sources)
+            self._named[key] = sorted({*found, *type_stores.names(self.name, package, kind)})
+        return self._named[key]
 
 
 class Interfaces:

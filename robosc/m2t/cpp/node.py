@@ -11,7 +11,8 @@ from robosc.m2t.c.types import type_name
 from robosc.m2t.cpp import reports
 from robosc.m2t.cpp.expressions import CppPrinter, parts, reads_elements
 from robosc.m2t.cpp.names import CppNames
-from robosc.m2t.cpp.shutdown import message_named, reasons_of, requirements_on
+from robosc.m2t.cpp.reasons import Reasons
+from robosc.m2t.cpp.shutdown import message_named
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
 from robosc.metamodel.expression_types import is_double
@@ -175,6 +176,7 @@ class Node:
         self._graph = graph
         self._names = CppNames(graph)
         self._printer = CppPrinter(self._names)
+        self._reasons = Reasons(graph.model)
         self.robot = graph.name
         self.prefix = self._names.c.prefix
         self.enumerations = [self._enumeration(each) for each in graph.enumerations]
@@ -365,7 +367,7 @@ class Node:
             self._happening(client.error),
             self._reception(feedback) if feedback else None,
             self._names.c.enumerator(cancel) if cancel else None,
-            reasons_of(self._graph, cancel) if cancel else [],
+            self._reasons.of(cancel) if cancel else [],
             self._names.c.enumerator(client.reset),
         )
 
@@ -376,14 +378,14 @@ class Node:
         publisher, message = next(
             (topic, each) for topic in self.publishers for each in topic.messages if each.event == event
         )
-        return LastMessage(publisher, message, requirements_on(self._graph, sending.event))
+        return LastMessage(publisher, message, self._reasons.requirements(sending.event))
 
     def _message(self, sending: rosgraph.Sending) -> Message:
         plant: sct.Plant = sending.event.eContainer()
         return Message(
             self._names.c.member(plant).removeprefix(f"{plant.kind.name}_"),
             self._names.c.enumerator(sending.event),
-            reasons_of(self._graph, sending.event),
+            self._reasons.of(sending.event),
             [self._alternative(each) for each in sending.alternatives],
             any(is_double(field.value) for each in sending.alternatives for field in each.fields),
             self._happening(sending.event) if self._reactions(sending.event) else None,

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 from robosc.diagnostics import START, Diagnostic, Severity
 from robosc.m2t.c.preconditions import preconditions as engine_preconditions
-from robosc.m2t.cpp.shutdown import message_named, requirements_on
+from robosc.m2t.cpp.reasons import Reasons
+from robosc.m2t.cpp.shutdown import message_named
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph
 from robosc.metamodel.places import place
@@ -115,6 +116,7 @@ def _settings(graph: rosgraph.RosGraph, configuration: Configuration) -> Iterato
 
 def _shutdown(graph: rosgraph.RosGraph, configuration: Configuration) -> Iterator[Diagnostic]:
     """What can't be sent on shutdown; and what is sent then, requirements or not."""
+    reasons = Reasons(graph.model)
     for place_of_name, name in enumerate(configuration.on_shutdown):
         key = ("onShutdown", place_of_name)
         sending = message_named(graph, name)
@@ -123,6 +125,6 @@ def _shutdown(graph: rosgraph.RosGraph, configuration: Configuration) -> Iterato
             hint = f"messages to the robot: {', '.join(sent)}" if sent else None
             yield configuration.error(key, f'"onShutdown": {name} is no message that the node sends', hint)
             continue
-        for requirement in requirements_on(graph, sending.event):
+        for requirement in reasons.requirements(sending.event):
             finding = configuration.error(key, f'"onShutdown": {name} is sent then in spite of "{requirement}"')
             yield replace(finding, severity=Severity.WARNING)
