@@ -7,7 +7,8 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Literal, Protocol, cast
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
+    from contextlib import AbstractContextManager
 
     from robosc.config import Configuration
     from robosc.diagnostics import Diagnostic
@@ -115,3 +116,9 @@ TARGETS = {
         Target("xmi", "the models between the steps"),
     )
 }
+
+
+def together() -> AbstractContextManager[None]:
+    """While it lasts, what several targets have in common is made once; nobody changes the models meanwhile."""
+    shared: Callable[[], AbstractContextManager[None]] = import_module("robosc.m2t.c.engine").shared
+    return shared()

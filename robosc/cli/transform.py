@@ -15,7 +15,7 @@ from robosc.cli.reading import read_models
 from robosc.cli.report import Report
 from robosc.output import OutputError, write
 from robosc.supervision import supervise
-from robosc.targets import TARGETS, Target
+from robosc.targets import TARGETS, Target, together
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -91,11 +91,12 @@ def command(
         report.stop_on_errors()
         folder = Path(output or f"build/{models.sct.name}")
         files = {}
-        for target in targets:
-            with progress(f"generating {target.name}"):
-                files[target] = target.files(
-                    models, configuration, with_tests=with_tests, interface_paths=interface_paths
-                )
+        with together():
+            for target in targets:
+                with progress(f"generating {target.name}"):
+                    files[target] = target.files(
+                        models, configuration, with_tests=with_tests, interface_paths=interface_paths
+                    )
         trees = _trees(folder, Path(model).parent, files, models, configuration)
         try:
             changed = write(trees)
