@@ -1,4 +1,4 @@
-"""Packages with tests: `rostest` plays traces against compiled nodes; over ROS 2 the player does it by itself."""
+"""Packages with tests: `rostest` and `launch_testing` play traces against nodes, or the player does it by itself."""
 
 from __future__ import annotations
 
@@ -93,6 +93,65 @@ def test_the_node_run_over_ros_2_follows_its_trace(run_ros2: Runner, package: st
 def test_the_compiled_node_of_ros_2_follows_its_trace(ros2_workspace: Workspace, package: str, tmp_path: Path) -> None:
     test = ros2_workspace.folder / "src" / package / "test"
     play(ros2_workspace, ros2_workspace.node(package, *parameters(test, tmp_path)), test, tmp_path)
+
+
+@pytest.mark.parametrize("package", [*MODELS, "managed_porter"])
+def test_launch_testing_plays_the_trace(ros2_workspace: Workspace, package: str, tmp_path: Path) -> None:
+    test = ros2_workspace.folder / "src" / package / "test" / "test_trace.py"
+    status, said = launch_test(ros2_workspace, test, tmp_path)
+    assert (status, said.count("OK")) == (0, 2), said
+
+
+def test_launch_testing_fails_where_the_node_leaves_the_trace(ros2_workspace: Workspace, tmp_path: Path) -> None:
+    package = ros2_workspace.folder / "src" / "line_follower_controller" / "test"
+    lines = (package / "traces" / "random_walk.jsonl").read_text(encoding="utf-8").splitlines()
+    sent = next(number for number, line in enumerate(lines) if json.loads(line)["direction"] == "out")
+    trace = tmp_path / "wrong.jsonl"
+    trace.write_text("\n".join(lines[:sent] + lines[sent + 1 :]), encoding="utf-8")
+    status, said = launch_test(ros2_workspace, package / "test_trace.py", tmp_path, trace)
+    assert status != 0
+    assert f"wrong.jsonl: line {sent + 1}: the trace says" in said
+
+
+@pytest.mark.parametrize("package", MODELS)
+def test_colcon_knows_the_tests(ros2_workspace: Workspace, package: str, tmp_path: Path) -> None:
+    with_launch_testing(ros2_workspace)
+    messages = ";".join(str(each) for each in (ros2_workspace.folder / "install").iterdir())
+    package_folder = (ros2_workspace.folder / "src" / package).resolve()
+    cmake = ["cmake", "-DBUILD_TESTING=ON", f"-DCMAKE_PREFIX_PATH={messages}", package_folder]
+    environment = ros2_workspace.environment()
+    subprocess.run(cmake, cwd=tmp_path, env=environment, check=True, capture_output=True)
+    listed = subprocess.run(["ctest", "-N"], cwd=tmp_path, env=environment, check=True, capture_output=True, text=True)
+    assert "play_random_walk" in listed.stdout
+
+
+def with_launch_testing(workspace: Workspace) -> None:
+    """Skips where it is not installed."""
+    found = subprocess.run(
+        [workspace.ros.python, "-c", "import launch_ros, launch_testing"],
+        env=workspace.environment(),
+        check=False,
+        capture_output=True,
+    )
+    if found.returncode != 0:
+        pytest.skip("no launch_testing")
+
+
+def launch_test(workspace: Workspace, test: Path, folder: Path, trace: Path | None = None) -> tuple[int, str]:
+    """The exit status of `launch_test`, and what it printed."""
+    with_launch_testing(workspace)
+    with middleware(workspace, folder / "run") as processes:
+        # The domain, which only this run has.
+        done = subprocess.run(
+            ["launch_test", test, *([f"trace:={trace}"] if trace else [])],
+            env=processes.environment,
+            capture_output=True,
+            text=True,
+            timeout=600,
+            check=False,
+            cwd=folder,
+        )
+    return done.returncode, done.stdout + done.stderr
 
 
 def parameters(test: Path, folder: Path) -> list[str]:

@@ -87,7 +87,7 @@ ROS1_PACKAGES = [
 ]
 ROS2_PACKAGES = [
     *_packages("ros2"),
-    Package("managed_porter", CPP / "porter.rscd", "ros2", CPP / "managed-porter-config.json"),
+    Package("managed_porter", CPP / "porter.rscd", "ros2", CPP / "managed-porter-config.json", with_tests=True),
 ]
 
 
