@@ -25,7 +25,7 @@ from tests.synthesis.test_against_oracle import RANDOM_MODELS
 from tests.synthesis.test_explanation import Replay, is_blocked, is_never_marked
 from tests.synthesis.test_observations import Definitions
 
-SOME_MODELS = settings(RANDOM_MODELS, max_examples=40)
+SOME_MODELS = settings(RANDOM_MODELS, max_examples=25)
 
 
 def supervised(model: sct.SupervisoryControlModel) -> Engine:

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from tests.ros.running import Runner, run_ros1, run_ros2, runner
-from tests.ros.workspaces import Workspace, middleware, ros1_workspace, ros2_workspace
+from tests.ros.workspaces import Workspace, begin_ros1_workspace, middleware, ros1_workspace, ros2_workspace
 
 __all__ = ["ros1_workspace", "ros2_workspace", "run_ros1", "run_ros2", "runner"]
 
@@ -58,6 +58,14 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     if "nodes" in metafunc.fixturenames:
         kinds = ["ros1", "ros2", "run-ros1", "run-ros2"]
         metafunc.parametrize("nodes", kinds, indirect=True, scope="session")
+
+
+def pytest_collection_finish(session: pytest.Session) -> None:
+    compiled = any(
+        "[ros1" in item.name or "ros1_workspace" in getattr(item, "fixturenames", ()) for item in session.items
+    )
+    if compiled and not session.config.option.collectonly:
+        begin_ros1_workspace(session.config)
 
 
 @pytest.fixture(scope="session")

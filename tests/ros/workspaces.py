@@ -6,9 +6,11 @@ import os
 import random
 import subprocess
 import sys
+from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 import pytest
@@ -126,16 +128,35 @@ class Workspace:
         }
 
 
+_ROS1 = pytest.StashKey[Future[Workspace]]()
+
+
+def begin_ros1_workspace(config: pytest.Config) -> None:
+    """Has `ros1_workspace` built while the tests before its own run: they leave a core idle, and it takes minutes."""
+    ros = find_ros1().ros
+    if ros is None:
+        return
+    kept = os.environ.get("ROBOSC_ROS1_WORKSPACE")
+    if kept:
+        folder = Path(kept)
+    else:
+        temporary = TemporaryDirectory(prefix="ros1-", ignore_cleanup_errors=True)
+        config.add_cleanup(temporary.cleanup)
+        folder = Path(temporary.name)
+    others = [*sorted((HERE / "interfaces" / "ros1").iterdir()), DRIVER, TWO_IN_ONE]
+    config.stash[_ROS1] = ThreadPoolExecutor(1).submit(build, ros, folder, ROS1_PACKAGES, others)
+
+
 @pytest.fixture(scope="session")
-def ros1_workspace(tmp_path_factory: pytest.TempPathFactory) -> Workspace:
+def ros1_workspace(pytestconfig: pytest.Config) -> Workspace:
     """The packages of `ROS1_PACKAGES` and `interfaces/ros1`.
 
     `ROBOSC_ROS1_WORKSPACE` names a folder that is kept: what has not changed is not built again.
     """
-    ros = found_or_skipped(1)
-    kept = os.environ.get("ROBOSC_ROS1_WORKSPACE")
-    folder = Path(kept) if kept else tmp_path_factory.mktemp("ros1")
-    return build(ros, folder, ROS1_PACKAGES, [*sorted((HERE / "interfaces" / "ros1").iterdir()), DRIVER, TWO_IN_ONE])
+    found_or_skipped(1)
+    if _ROS1 not in pytestconfig.stash:
+        begin_ros1_workspace(pytestconfig)
+    return pytestconfig.stash[_ROS1].result()
 
 
 @pytest.fixture(scope="session")

@@ -12,7 +12,7 @@ from tests.random_sct import sct_models
 from tests.synthesis.oracle import Oracle
 
 RANDOM_MODELS = settings(
-    max_examples=100, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
+    max_examples=70, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
 )
 
 
