@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from typing import TYPE_CHECKING
 
 from robosc.metamodel import rosgraph, sct
@@ -16,6 +17,9 @@ if TYPE_CHECKING:
     from robosc.runtime.node_data import NodeData
     from robosc.runtime.port import Reporting
 
+#: Of so many events a report tells, the last ones. Where simulated time stands still there is none for long.
+TRANSITIONS_KEPT = 5000
+
 
 class StateReporter:
     """Publishes the state on every change, and to everyone who begins to listen; does nothing while nobody listens."""
@@ -29,7 +33,7 @@ class StateReporter:
         self._port = port
         self._publishes = configuration.publish_state_information
         self._listeners = 0
-        self._transitions: list[str] = []
+        self._transitions: deque[str] = deque(maxlen=TRANSITIONS_KEPT)
         self._components: list[tuple[str, sct.Plant, Sequence[rosgraph.NodeVariable]]] = [
             (plant.origin or plant.name, plant, [each for each in graph.variables if each.component == plant.origin])
             for plant in graph.model.plants
@@ -56,11 +60,11 @@ class StateReporter:
                 "robot": self._robot,
                 "time": time,
                 "components": self.components(),
-                "transitions": self._transitions,
+                "transitions": list(self._transitions),
             }
             self._port.tell("state", json_text(report))
         self._listeners = listeners
-        self._transitions = []
+        self._transitions.clear()
 
     def components(self) -> dict[str, Json]:
         """The state and the variables of each component."""

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from robosc.runtime.state import TRANSITIONS_KEPT
 from tests.ros.faults.conftest import scouting
 
 if TYPE_CHECKING:
@@ -53,6 +54,23 @@ def test_clock_stands_still(simulated: Scout) -> None:
     simulated.until_event(since, "message_halt.c_trigger")
     simulated.world.do("clock", seconds=3 * START)
     simulated.rest()
+
+
+def test_events_while_the_clock_stands_still(simulated: Scout) -> None:
+    """They are reported when it goes on, the last ones of very many."""
+    simulated.world.do("clock", seconds=None)
+    simulated.nothing(0.3)
+    since = simulated.now()
+    simulated.world.do("flood", topic="/pulse", hz=2000, seconds=6)
+    pulse = "message_pulse.u_response"
+    simulated.until(lambda: len(simulated.events(since, pulse)) > TRANSITIONS_KEPT, "so many arrive", seconds=60)
+    simulated.world.do("clock", seconds=6 * START)
+    simulated.until(lambda: simulated.states(since), "the node reports")
+    told = simulated.states(since)[0]["transitions"]
+    assert len(told) == TRANSITIONS_KEPT
+    assert told.count(pulse) > TRANSITIONS_KEPT / 2
+    assert MOVE in told, "the last ones are kept"
+    simulated.world.wait("sent", since.world, seconds=60)
 
 
 @pytest.mark.parametrize("seconds", [9 * START, 4 * START], ids=["forwards", "backwards"])

@@ -9,10 +9,10 @@
 
 #include <chrono>
 #include <cstddef>
+#include <deque>
 #include <exception>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include <nav2_msgs/NavigateToPoseAction.h>
 #include <ros/callback_queue.h>
@@ -298,6 +298,8 @@ class Layer {
     }
     log_.write(seconds(), direction, usher_event_name(event));
     transitions_.push_back(event);
+    // Where simulated time stands still, nobody is told for long.
+    if (transitions_.size() > kTransitionsKept) transitions_.pop_front();
   }
 
   // On every change, at most once in a period, and to everyone who begins to listen.
@@ -360,7 +362,8 @@ class Layer {
   } data_;
 
   EventLog log_;
-  std::vector<usher_event> transitions_;
+  static constexpr std::size_t kTransitionsKept = 5000;
+  std::deque<usher_event> transitions_;
   std::size_t listeners_ = 0;
 
   ros::Publisher blocked_report_;

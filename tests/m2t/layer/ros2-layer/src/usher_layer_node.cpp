@@ -9,9 +9,9 @@
 
 #include <chrono>
 #include <cstddef>
+#include <deque>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include <nav2_msgs/action/navigate_to_pose.hpp>
 #include <rclcpp/rclcpp.hpp>
@@ -305,6 +305,8 @@ class Layer : public rclcpp::Node {
     }
     log_.write(seconds(), direction, usher_event_name(event));
     transitions_.push_back(event);
+    // Where simulated time stands still, nobody is told for long.
+    if (transitions_.size() > kTransitionsKept) transitions_.pop_front();
   }
 
   // On every change, at most once in a period, and to everyone who begins to listen.
@@ -358,7 +360,8 @@ class Layer : public rclcpp::Node {
   } data_;
 
   EventLog log_;
-  std::vector<usher_event> transitions_;
+  static constexpr std::size_t kTransitionsKept = 5000;
+  std::deque<usher_event> transitions_;
   std::size_t listeners_ = 0;
 
   rclcpp::Publisher<std_msgs::msg::String>::SharedPtr blocked_report_;

@@ -6,12 +6,13 @@
 // in becomes events, and an event that sends something becomes a message.
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include <geometry_msgs/msg/pose_stamped.hpp>
 #include <rclcpp/rclcpp.hpp>
@@ -306,6 +307,8 @@ class Controller : public rclcpp::Node {
     }
     log_.write(seconds(), direction, courier_event_name(event));
     transitions_.push_back(event);
+    // Where simulated time stands still, nobody is told for long.
+    if (transitions_.size() > kTransitionsKept) transitions_.pop_front();
   }
 
   void tick() {
@@ -489,7 +492,8 @@ class Controller : public rclcpp::Node {
   bool stopping_ = false;
   bool watchdog_stops_ = false;
   EventLog log_;
-  std::vector<courier_event> transitions_;
+  static constexpr std::size_t kTransitionsKept = 5000;
+  std::deque<courier_event> transitions_;
   std::size_t listeners_ = 0;
 
   rclcpp::Publisher<geometry_msgs::msg::PoseStamped>::SharedPtr target_publisher_;

@@ -6,12 +6,13 @@
 // becomes events, and an event that sends something becomes a message.
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include <geometry_msgs/msg/twist.hpp>
 #include <nav2_msgs/action/navigate_to_pose.hpp>
@@ -282,6 +283,8 @@ class Controller : public rclcpp::Node {
     }
     log_.write(seconds(), direction, porter_event_name(event));
     transitions_.push_back(event);
+    // Where simulated time stands still, nobody is told for long.
+    if (transitions_.size() > kTransitionsKept) transitions_.pop_front();
   }
 
   void tick() {
@@ -475,7 +478,8 @@ class Controller : public rclcpp::Node {
   bool stopping_ = false;
   bool watchdog_stops_ = false;
   EventLog log_;
-  std::vector<porter_event> transitions_;
+  static constexpr std::size_t kTransitionsKept = 5000;
+  std::deque<porter_event> transitions_;
   std::size_t listeners_ = 0;
 
   rclcpp::Publisher<geometry_msgs::msg::Twist>::SharedPtr cmd_vel_publisher_;
