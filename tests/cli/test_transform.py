@@ -118,6 +118,14 @@ def test_targets_one_by_one(run: Run, door: Path) -> None:
     assert tree(Path("one")) == tree(Path("two"))
 
 
+def test_targets_together_and_each_alone(run: Run, door: Path) -> None:
+    targets = "supervisor", "ros1", "ros2"
+    run("transform", door, "--to", ",".join(targets), "-o", "together")
+    for target in targets:
+        run("transform", door, "--to", target, "-o", "alone")
+    assert tree(Path("together")) == tree(Path("alone"))
+
+
 def test_a_name_for_a_controller_and_its_layer(run: Run, door: Path) -> None:
     Path("named.json").write_text('{"package": {"name": "gate"}}')
     answer = run("transform", door, "--to", "ros1,ros1-layer", "--config", "named.json")
