@@ -118,10 +118,10 @@ def _transforms(options: argparse.Namespace) -> list[dict[str, Any]]:
     for components in COMPONENTS[: 1 if options.quick else None]:
         text = cells(components // 2)
         with tempfile.TemporaryDirectory() as folder:
-            command = _measured(["-m", "robosc", *COMMAND, "-o", folder], text, 2 * options.limit)
+            command = _measured(["-m", "robosc", *COMMAND, "-o", folder], text, 3 * options.limit)
             files = [each for each in Path(folder).rglob("*") if each.is_file()]
             written = sum(each.stat().st_size for each in files)
-        phases = _measured([str(RUN), "robosc"], text, 2 * options.limit).get("phases", {})
+        phases = _measured([str(RUN), "robosc"], text, 3 * options.limit).get("phases", {})
         point = {"components": components, "lines": text.count("\n"), **command, "bytes": written, "phases": phases}
         measured.append(point)
         _say(f"transform of {components} components: {command['cpu']:.1f} s")

@@ -87,7 +87,7 @@ def page(results: Results) -> str:
         parts += [f"### {FAMILIES[name].title[0].upper()}{FAMILIES[name].title[1:]}\n", _family(tools)]
     parts += [GROWTH, _growths(families), PHASES_HEAD, _phases(families)]
     if results["transform"]:
-        parts += [TRANSFORM.format(limit=2 * results["limit"]), _transform(results["transform"])]
+        parts += [TRANSFORM.format(limit=3 * results["limit"]), _transform(results["transform"])]
     return "\n".join(parts)
 
 
