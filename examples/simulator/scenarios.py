@@ -100,6 +100,7 @@ class LineFollower(Scenario):
         simulation.happens("the line is uncovered")
         yield lambda: self._at_end(world)
         yield 1.0
+        yield lambda: self.reached(simulation)
 
     def reached(self, simulation):
         """At the line's end, with the robot at rest."""
