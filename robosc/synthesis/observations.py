@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 _CALLS = (sct.PlantKind.service, sct.PlantKind.action)
 #: What the troubles of all guards may cost: the way to them, in nodes looked at, and steps of all traces together.
-_EFFORT = 500_000
+_EFFORT = 1_000_000
 _STEPS = 400
 _FOLLOWS_THE_ROBOT = (sct.EventKind.tau, sct.EventKind.reset, sct.EventKind.cancel)
 

@@ -52,7 +52,7 @@ class Layers:
         self._effort = 0
 
     def path_to(self, goal: Diagram, effort: int | None = None) -> Path | None:
-        """A shortest path to a state of `goal`; None where there is none, or where all layers took more effort.
+        """A shortest path to a state of `goal`; None where there is none, or where all layers would take more effort.
 
         Effort counts the nodes that every move looks at. Of several paths it is the same one every time: by the order
         of the moves, then by the states' codes.
@@ -60,14 +60,16 @@ class Layers:
         steps = 0
         while not (self._layers[steps] & goal).satisfiable():
             steps += 1
-            exhausted = effort is not None and self._effort > effort
-            if steps == len(self._layers) and (exhausted or not self._grow()):
+            if steps == len(self._layers) and not self._grow(effort):
                 return None
         return self._back(steps, goal)
 
-    def _grow(self) -> bool:
+    def _grow(self, most: int | None) -> bool:
+        effort = self._effort + self._layers[-1].node_count() * len(self._moves)
+        if most is not None and effort > most:
+            return False
+        self._effort = effort
         reached = self._encoding.diagrams.false
-        self._effort += self._layers[-1].node_count() * len(self._moves)
         for _, step in self._moves:
             reached |= step.image(self._layers[-1] & self._within)
             self._encoding.diagrams.tidy()
