@@ -310,3 +310,22 @@ def test_an_example_is_settled_where_that_is_possible(where, example, settled):
     ).observations.shared_topic_conflicts
     assert conflict.example.state == {sensor.element: example, one.element: "ready", other.element: "ready"}
     assert conflict.example.settled == settled
+
+
+def test_what_can_still_be_marked_after_trouble():
+    """The lamp can, once its bulb is in; the gate opens at a machine at rest only."""
+    machine = plant(
+        "M",
+        {"rest": [edge("c_tau1", to="slope")], "slope": [edge("u_fall", to="ground")], "ground": []},
+        controllable=["c_tau1"],
+        uncontrollable=["u_fall"],
+    )
+    gate = plant("G", {"shut": [edge("c_tau2", to="open")], "open": []}, controllable=["c_tau2"], marked=["open"])
+    lamp = plant("L", {"dark": [edge("c_tau3", to="lit")], "lit": []}, controllable=["c_tau3"], marked=["lit"])
+    bulb = plant(
+        "B", {"out": [edge("u_in", to="inserted")], "inserted": []}, uncontrollable=["u_in"], marked=["out", "inserted"]
+    )
+    made = model([machine, gate, lamp, bulb], [needs("c_tau2", "M.rest"), needs("c_tau3", "B.inserted")])
+    [restricted] = synthesize(made).observations.silent_restricted
+    assert [each.event for each in restricted.trouble.trace] == ["M.c_tau1"]
+    assert restricted.trouble.unmarked == (machine.element, gate.element)
