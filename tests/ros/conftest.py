@@ -61,9 +61,8 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
 
 
 def pytest_collection_finish(session: pytest.Session) -> None:
-    compiled = any(
-        "[ros1" in item.name or "ros1_workspace" in getattr(item, "fixturenames", ()) for item in session.items
-    )
+    here = [item for item in session.items if HERE in item.path.parents]
+    compiled = any("[ros1" in item.name or "ros1_workspace" in getattr(item, "fixturenames", ()) for item in here)
     if compiled and not session.config.option.collectonly:
         begin_ros1_workspace(session.config)
 

@@ -126,7 +126,7 @@ def test_colcon_knows_the_tests(ros2_workspace: Workspace, package: str, tmp_pat
 
 
 def with_launch_testing(workspace: Workspace) -> None:
-    """Skips where it is not installed."""
+    """Skips where it is not installed: it does not come with rclcpp."""
     found = subprocess.run(
         [workspace.ros.python, "-c", "import launch_ros, launch_testing"],
         env=workspace.environment(),
@@ -134,7 +134,7 @@ def with_launch_testing(workspace: Workspace) -> None:
         capture_output=True,
     )
     if found.returncode != 0:
-        pytest.skip("no launch_testing")
+        pytest.skip("no launch_testing, or no launch_ros, beside rclcpp")
 
 
 def launch_test(workspace: Workspace, test: Path, folder: Path, trace: Path | None = None) -> tuple[int, str]:
