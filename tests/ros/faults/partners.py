@@ -233,17 +233,22 @@ class Scout:
         heard = self.world.all("heard", since.world)
         return [json.loads(each["data"]["data"]) for each in heard if each["heard"] == STATE]
 
+    def until_reported(self) -> None:
+        """Waits for a report on all that has happened until now; what comes first may have been on its way already."""
+        last = self.log()[-1]["time"]
+        self.until(lambda: self._last_report()["time"] >= last, "the state is reported")
+
     def state(self, component: str) -> Any:
         """The state of a component, as last reported."""
-        return self._last_report(component)["state"]
+        return self._last_report()["components"][component]["state"]
 
     def variable(self, component: str, name: str) -> Any:
         """The value of a variable, as last reported."""
-        return self._last_report(component)["variables"][name]
+        return self._last_report()["components"][component]["variables"][name]
 
-    def _last_report(self, component: str) -> Any:
+    def _last_report(self) -> Any:
         last = next(each for each in reversed(self.world.said) if each.get("heard") == STATE)
-        return json.loads(last["data"]["data"])["components"][component]
+        return json.loads(last["data"]["data"])
 
     @staticmethod
     def nothing(seconds: float) -> None:

@@ -57,21 +57,26 @@ class Peer:
         publisher.publish(fill(kind(), fields))
 
     def repeat(self, topic, fields, hz):
-        """Publishes a message again and again, in the place of the one before."""
-        started = topic in self.repeating
-        self.repeating[topic] = (fields, 1 / hz)
-        if not started:
-            threading.Thread(target=self._repeat, args=[topic], daemon=True).start()
+        """Publishes a message again and again, in the place of the one before; returns when it is the last one sent."""
+        self.silence(topic)
+        stop, sent = threading.Event(), threading.Event()
+        thread = threading.Thread(target=self._repeat, args=[topic, fields, 1 / hz, stop, sent], daemon=True)
+        self.repeating[topic] = (stop, thread)
+        thread.start()
+        sent.wait()
 
-    def _repeat(self, topic):
-        while topic in self.repeating:
-            fields, period = self.repeating[topic]
+    def _repeat(self, topic, fields, period, stop, sent):
+        while not stop.is_set():
             self.publish(topic, fields)
-            time.sleep(period)
+            sent.set()
+            stop.wait(period)
 
     def silence(self, topic):
-        del self.repeating[topic]
-        time.sleep(0.2)
+        """Publishes a message no more; returns when the last one is sent."""
+        if topic in self.repeating:
+            stop, thread = self.repeating.pop(topic)
+            stop.set()
+            thread.join()
 
     def flood(self, topic, hz, seconds):
         """Publishes numbers that count from 1; says when it is done how many they were."""
