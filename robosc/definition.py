@@ -10,6 +10,9 @@ from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
 from robosc.roles import event_name
 
+#: A report on `~/state` tells the last so many events. Where simulated time stands still there is none for long.
+TRANSITIONS_KEPT = 5000
+
 
 def definition(graph: rosgraph.RosGraph) -> dict[str, Any]:
     """The definition as JSON data: components with states, variables and transitions, communication, requirements."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import deque
 from typing import TYPE_CHECKING
 
+from robosc.definition import TRANSITIONS_KEPT
 from robosc.metamodel import rosgraph, sct
 from robosc.runtime.json_text import Json, json_text
 from robosc.runtime.reports import shown
@@ -16,9 +17,6 @@ if TYPE_CHECKING:
     from robosc.engine import Engine
     from robosc.runtime.node_data import NodeData
     from robosc.runtime.port import Reporting
-
-#: Of so many events a report tells, the last ones. Where simulated time stands still there is none for long.
-TRANSITIONS_KEPT = 5000
 
 
 class StateReporter:

@@ -9,6 +9,7 @@ from xml.sax.saxutils import escape, quoteattr
 
 from jinja2 import ChoiceLoader
 
+from robosc.definition import TRANSITIONS_KEPT
 from robosc.m2t.c.comments import comment_text, string_literal
 from robosc.m2t.templates import environment
 
@@ -33,6 +34,7 @@ def node_environment(target: str, *shared: str) -> Environment:
         xml=xml_text,
         attribute=xml_attribute,
     )
+    templates.globals["transitions_kept"] = TRANSITIONS_KEPT
     return templates
 
 

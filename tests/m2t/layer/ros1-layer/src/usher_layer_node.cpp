@@ -298,7 +298,7 @@ class Layer {
     }
     log_.write(seconds(), direction, usher_event_name(event));
     transitions_.push_back(event);
-    // Where simulated time stands still, nobody is told for long.
+    // Where the period is long, many come before the next report.
     if (transitions_.size() > kTransitionsKept) transitions_.pop_front();
   }
 
