@@ -80,7 +80,8 @@ TICKS = """\
 
 How long the control loop takes at each tick, in microseconds: table 6.8 of the thesis, whose machine was another.
 *Node* is all that happens in a tick, messages published included; *engine* the supervisor's C alone, the same tick done
-again with nobody to tell. The supervisory layer has no ticks.
+again with nobody to tell. The supervisory layer has no ticks. The cores are shared: a maximum of milliseconds is a
+moment at which the processor was somebody else's, and one such among 3,000 ticks moves a mean.
 """
 
 
