@@ -10,6 +10,13 @@ from unittest.mock import patch
 
 
 @dataclass(frozen=True)
+class Context:
+    """What a launch file is evaluated in."""
+
+    launch_configurations: dict[str, str]
+
+
+@dataclass(frozen=True)
 class Made:
     """An action or a substitution: what it is, and what it was made of."""
 
@@ -17,9 +24,9 @@ class Made:
     positional: tuple[Any, ...] = ()
     named: dict[str, Any] = field(default_factory=dict)
 
-    def perform(self, context: dict[str, str]) -> str:
+    def perform(self, context: Context) -> str:
         """The value of a launch configuration."""
-        return context[self.positional[0]]
+        return context.launch_configurations[self.positional[0]]
 
 
 @dataclass(frozen=True)
@@ -36,7 +43,13 @@ class Launched:
 
 _MODULES = {
     "launch": ["LaunchDescription"],
-    "launch.actions": ["DeclareLaunchArgument", "GroupAction", "IncludeLaunchDescription", "OpaqueFunction"],
+    "launch.actions": [
+        "DeclareLaunchArgument",
+        "GroupAction",
+        "IncludeLaunchDescription",
+        "OpaqueFunction",
+        "UnsetLaunchConfiguration",
+    ],
     "launch.launch_description_sources": ["AnyLaunchDescriptionSource"],
     "launch.substitutions": ["LaunchConfiguration", "PathJoinSubstitution"],
     "launch_ros": [],
@@ -68,7 +81,7 @@ def _maker(kind: str) -> Any:
 def _unfolded(entity: Made, values: dict[str, str]) -> list[Made]:
     match entity.kind:
         case "OpaqueFunction":
-            inner = entity.named["function"](values)
+            inner = entity.named["function"](Context(values))
         case "GroupAction":
             inner = entity.positional[0]
         case _:

@@ -119,6 +119,20 @@ def test_the_launch_file_of_ros2_re_maps_everything(usher: robosc.Models, settin
     assert driver.named["remappings"] == [(each, f"/usher_layer/controller/{each.lstrip('/')}") for each in names]
     moved = launched(text, namespace="/left/", name="gate").of("Node")[1]
     assert moved.named["remappings"][0] == ("/stop", "/left/gate/controller/stop")
+    # Where another launch file has pushed a namespace, the layer is below it, but for an absolute one of its own.
+    for namespace, layer in {"": "/hall/usher_layer", "left": "/hall/left/usher_layer", "/": "/usher_layer"}.items():
+        pushed = launched(text, ros_namespace="/hall", namespace=namespace).of("Node")[1]
+        assert pushed.named["remappings"][0] == ("/stop", f"{layer}/controller/stop")
+
+
+def test_the_clock_of_the_launch_file_of_ros2(usher: robosc.Models, settings: Configuration) -> None:
+    text = robosc.generate("ros2-layer", usher, settings)["launch/usher_layer.launch.py"]
+    layer, driver = launched(text).of("Node")
+    assert [*layer.named["parameters"][0]] == ["event_log"]
+    assert driver.named["parameters"] == [], "what is set elsewhere holds"
+    layer, driver = launched(text, use_sim_time="true").of("Node")
+    assert layer.named["parameters"][0] == driver.named["parameters"][0]
+    assert driver.named["parameters"][0]["use_sim_time"].named == {"value_type": bool}
 
 
 def test_a_controller_with_a_launch_file_of_its_own(usher: robosc.Models) -> None:
@@ -136,6 +150,9 @@ def test_a_controller_with_a_launch_file_of_its_own(usher: robosc.Models) -> Non
     (path,) = include.positional[0].positional
     assert [path.positional[0][0].positional, path.positional[0][1]] == [("my_robot",), "launch/drive.launch"]
     assert there.actions.index(include) > there.actions.index(remaps[-1])
+    hidden = there.of("UnsetLaunchConfiguration")
+    assert [each.positional[0] for each in hidden] == ["name", "namespace", "log_level", "event_log", "use_sim_time"]
+    assert there.actions.index(include) > there.actions.index(hidden[-1])
 
 
 def test_a_layer_alone(usher: robosc.Models) -> None:

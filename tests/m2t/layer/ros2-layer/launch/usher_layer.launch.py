@@ -24,22 +24,35 @@ NAMES = [
 
 
 def remappings(context):
-    namespace = LaunchConfiguration("namespace").perform(context).strip("/")
-    layer = "/".join(filter(None, [namespace, LaunchConfiguration("name").perform(context)]))
+    name, namespace = (LaunchConfiguration(each).perform(context) for each in ("name", "namespace"))
+    # What this file is included into may have pushed a namespace; an absolute one does not care.
+    pushed = "" if namespace.startswith("/") else context.launch_configurations.get("ros_namespace", "")
+    layer = "/".join(filter(None, (each.strip("/") for each in (pushed, namespace, name))))
     return [(each, f"/{layer}/controller/{each.lstrip('/')}") for each in NAMES]
 
 
-def controller(context):
-    return [
-        Node(
-            package="usher_driver",
-            executable="driver.py",
-            name="driver",
-            parameters=[{"use_sim_time": ParameterValue(LaunchConfiguration("use_sim_time"), value_type=bool)}],
-            remappings=remappings(context),
-            output="screen",
-        )
-    ]
+def start(context):
+    clock = []
+    if LaunchConfiguration("use_sim_time").perform(context):
+        clock = [{"use_sim_time": ParameterValue(LaunchConfiguration("use_sim_time"), value_type=bool)}]
+    layer = Node(
+        package="usher_layer",
+        executable="usher_layer",
+        name=LaunchConfiguration("name"),
+        namespace=LaunchConfiguration("namespace"),
+        parameters=[*clock, {"event_log": ParameterValue(LaunchConfiguration("event_log"), value_type=str)}],
+        arguments=["--ros-args", "--log-level", LaunchConfiguration("log_level")],
+        output="screen",
+    )
+    controller = Node(
+        package="usher_driver",
+        executable="driver.py",
+        name="driver",
+        parameters=clock,
+        remappings=remappings(context),
+        output="screen",
+    )
+    return [layer, controller]
 
 
 def generate_launch_description():
@@ -48,24 +61,12 @@ def generate_launch_description():
             DeclareLaunchArgument("name", default_value="usher_layer", description="Name of the layer's node"),
             DeclareLaunchArgument("namespace", default_value="", description="Namespace of the layer's node"),
             DeclareLaunchArgument("log_level", default_value="info", description="debug, info, warn, error or fatal"),
-            DeclareLaunchArgument("use_sim_time", default_value="false", description="Whether /clock gives the time"),
+            DeclareLaunchArgument(
+                "use_sim_time", default_value="", description="Whether /clock gives the time; empty: as set elsewhere"
+            ),
             DeclareLaunchArgument(
                 "event_log", default_value="", description="A file that gets a line of JSON for each event"
             ),
-            Node(
-                package="usher_layer",
-                executable="usher_layer",
-                name=LaunchConfiguration("name"),
-                namespace=LaunchConfiguration("namespace"),
-                parameters=[
-                    {
-                        "use_sim_time": ParameterValue(LaunchConfiguration("use_sim_time"), value_type=bool),
-                        "event_log": ParameterValue(LaunchConfiguration("event_log"), value_type=str),
-                    }
-                ],
-                arguments=["--ros-args", "--log-level", LaunchConfiguration("log_level")],
-                output="screen",
-            ),
-            OpaqueFunction(function=controller),
+            OpaqueFunction(function=start),
         ]
     )

@@ -13,15 +13,15 @@ PACKAGE = "courier_controller"
 def start(context):
     """The node; its remappings are one text until here."""
     remappings = LaunchConfiguration("remappings").perform(context).split()
+    parameters = [LaunchConfiguration("params_file")]
+    if LaunchConfiguration("use_sim_time").perform(context):
+        parameters.append({"use_sim_time": ParameterValue(LaunchConfiguration("use_sim_time"), value_type=bool)})
     node = Node(
         package=PACKAGE,
         executable=PACKAGE,
         name=LaunchConfiguration("name"),
         namespace=LaunchConfiguration("namespace"),
-        parameters=[
-            LaunchConfiguration("params_file"),
-            {"use_sim_time": ParameterValue(LaunchConfiguration("use_sim_time"), value_type=bool)},
-        ],
+        parameters=parameters,
         remappings=[tuple(each.split(":=", 1)) for each in remappings],
         arguments=["--ros-args", "--log-level", LaunchConfiguration("log_level")],
         output="screen",
@@ -37,7 +37,9 @@ def generate_launch_description():
             DeclareLaunchArgument("namespace", default_value="", description="Namespace of the node"),
             DeclareLaunchArgument("params_file", default_value=parameters, description="Parameters, as YAML"),
             DeclareLaunchArgument("log_level", default_value="info", description="debug, info, warn, error or fatal"),
-            DeclareLaunchArgument("use_sim_time", default_value="false", description="Whether /clock gives the time"),
+            DeclareLaunchArgument(
+                "use_sim_time", default_value="", description="Whether /clock gives the time; empty: as set elsewhere"
+            ),
             DeclareLaunchArgument(
                 "remappings", default_value="", description="Other names, such as '/scan:=/front/scan stop:=/stop'"
             ),
