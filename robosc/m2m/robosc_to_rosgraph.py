@@ -118,19 +118,21 @@ class _Transformation:
     def message(self, occurrence: Occurrence, message: robosc.Message) -> None:
         topic = occurrence.instance.topic(message)
         interface = self.interface(message, message.type, rosgraph.InterfaceKind.message)
+        # Written with a slash or without, it is one topic, and what comes on it one batch.
+        key = topic.removeprefix("/"), interface
         where = source(message, occurrence.instance.home)
         if message.direction == robosc.MessageDirection.outgoing:
-            subscription = self.subscriptions.get((topic, interface))
+            subscription = self.subscriptions.get(key)
             if subscription is None:
                 subscription = rosgraph.Subscription(topic=topic, interface=interface, source=where)
-                self.subscriptions[topic, interface] = subscription
+                self.subscriptions[key] = subscription
                 self.graph.subscriptions.append(subscription)
             subscription.receptions.append(self.reception(occurrence, robosc.ResultType.response))
         else:
-            publisher = self.publishers.get((topic, interface))
+            publisher = self.publishers.get(key)
             if publisher is None:
                 publisher = rosgraph.Publisher(topic=topic, interface=interface, source=where)
-                self.publishers[topic, interface] = publisher
+                self.publishers[key] = publisher
                 self.graph.publishers.append(publisher)
             publisher.sendings.append(self.sending(occurrence))
 

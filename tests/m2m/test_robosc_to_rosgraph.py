@@ -22,7 +22,7 @@ robot R {
   datatype enum Level from double to { value > 1.0 -> high default -> low }
   component Lidar {
     outgoing message front with identifier: "/scan", type: Front links laser
-    outgoing message side with identifier: "/scan", type: Side links laser
+    outgoing message side with identifier: "scan", type: Side links laser
     outgoing message battery with type: Level
     outgoing message offset with type: double
     behaviour {
@@ -40,7 +40,7 @@ robot R {
   }
   component Base {
     incoming message go with identifier: "cmd_vel", type: Twist links twist
-    incoming message stop with identifier: "cmd_vel", type: Twist links twist
+    incoming message stop with identifier: "/cmd_vel", type: Twist links twist
     incoming message blink with type: integer
   }
   requirement go needs Lidar.f = open and Lidar.a
@@ -57,7 +57,7 @@ def graph(robot: Callable) -> rosgraph.RosGraph:
     return robosc_to_rosgraph.transform(trace)
 
 
-def test_one_topic_of_one_type_is_one_subscription(graph):
+def test_one_topic_of_one_type_is_one_subscription_with_a_slash_or_without(graph):
     shown = [(each.topic, each.interface.type, [part.name for part in each.receptions]) for each in graph.subscriptions]
     assert shown == [
         ("/scan", "LaserScan", ["front", "side"]),

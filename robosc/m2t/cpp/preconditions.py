@@ -47,7 +47,7 @@ def graph_preconditions(models: Models) -> list[Diagnostic]:
     if graph is None:
         message = "there is no ROS graph beside this model: generate from the .rscd or the .rosgraph.xmi"
         return [Diagnostic(models.sct.name, START, Severity.ERROR, RULE, message)]
-    return [*engine_preconditions(models.sct), *_names(graph)]
+    return [*engine_preconditions(models.sct), *_names(graph), *_types(graph)]
 
 
 def package_preconditions(graph: rosgraph.RosGraph, configuration: Configuration, name: str) -> Iterator[Diagnostic]:
@@ -84,6 +84,17 @@ def _names(graph: rosgraph.RosGraph) -> Iterator[Diagnostic]:
     for element, name in _fields(graph):
         if not _FIELD.fullmatch(name):
             yield _error(element, f'"{name}" is no name of a field in ROS')
+
+
+def _types(graph: rosgraph.RosGraph) -> Iterator[Diagnostic]:
+    """Topics with more than one type: a node of ROS 1 that speaks of such a one ends when it starts."""
+    types: dict[str, str] = {}
+    for each in (*graph.subscriptions, *graph.publishers):
+        kind = f"{each.interface.package}/{each.interface.type}"
+        first = types.setdefault(each.topic.removeprefix("/"), kind)
+        if kind != first:
+            hint = "give it another topic, or one type to all that is on this topic"
+            yield _error(each, f'"{each.topic}" is a topic of {first} already, and can\'t be one of {kind}', hint)
 
 
 def _fields(graph: rosgraph.RosGraph) -> Iterator[tuple[ex.Located, str]]:

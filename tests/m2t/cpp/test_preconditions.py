@@ -77,6 +77,10 @@ def test_nothing_against_a_good_model(tmp_path: Path) -> None:
             {"more": 'service reset with identifier: "re-set", request: none, response: none'},
             'cart.rscd:7: "re-set" is no name of a ROS service',
         ),
+        (
+            {"more": 'incoming message tell with identifier: "base/odometry", type: boolean'},
+            'cart.rscd:7: "base/odometry" is a topic of nav_msgs/Odometry already, and can\'t be one of std_msgs/Bool',
+        ),
     ],
 )
 def test_names_and_kinds(tmp_path: Path, changes: dict[str, str], expected: str) -> None:
