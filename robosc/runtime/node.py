@@ -37,7 +37,7 @@ def run_controller(
     name = configuration.package_name(graph)
     port = _port(version, name, graph, configuration, arguments)
     try:
-        log = default_log(name) if configuration.write_events_to_log else ""
+        log = default_log(port.full_name, name) if configuration.write_events_to_log else ""
         settings = Settings(port.parameters(controller_parameters(graph, configuration, log)), configuration)
         controller = _opened(lambda: Controller(graph, settings, port, port.agenda, last))
         port.open_reports(["state", "definition"] if configuration.publish_state_information else [])
@@ -61,7 +61,7 @@ def run_layer(graph: rosgraph.RosGraph, configuration: Configuration, version: i
         from robosc.runtime.ros2_layer import Ros2Layer as Node  # type: ignore[assignment]  # noqa: PLC0415
     port = Node(name, graph, configuration, arguments)
     try:
-        log = default_log(name) if configuration.write_events_to_log else ""
+        log = default_log(port.full_name, name) if configuration.write_events_to_log else ""
         settings = Settings(port.parameters(layer_parameters(graph, configuration, log)), configuration)
         layer = _opened(lambda: Layer(graph, settings, port, port.agenda))
         reports = ["state", "definition"] if configuration.publish_state_information else []

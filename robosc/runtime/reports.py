@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from contextlib import suppress
 from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
@@ -22,14 +23,21 @@ if TYPE_CHECKING:
 _Path = tuple[str, ...]
 
 
-def default_log(node: str) -> str:
-    """Where a log goes that nobody named: the folder of ROS's own logs."""
+def default_log(node: str, package: str) -> str:
+    """Where a log goes that nobody named: the folder of ROS's own logs.
+
+    `node` is the node's full name, such as `/left/base`; where it was renamed, its package is told, too.
+    """
     folder = os.environ.get("ROS_LOG_DIR")
     if not folder:
         home = os.environ.get("ROS_HOME")
         folder = str(Path(home) / "log" if home else Path.home() / ".ros" / "log")
-    Path(folder).mkdir(parents=True, exist_ok=True)
-    return str(Path(folder) / f"{node}-events.jsonl")
+    with suppress(OSError):  # the log itself complains
+        Path(folder).mkdir(parents=True, exist_ok=True)
+    parts = node.strip("/").split("/")
+    if parts[-1] != package:
+        parts.append(package)
+    return str(Path(folder) / f"{'.'.join(parts)}-events.jsonl")
 
 
 class EventLog:

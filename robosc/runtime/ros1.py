@@ -117,6 +117,10 @@ class Ros1Node:
 
         threading.Thread(target=ask, daemon=True).start()
 
+    @property
+    def full_name(self) -> str:
+        return str(rospy.get_name())
+
     def now(self) -> float:
         return float(rospy.get_time())
 

@@ -131,6 +131,10 @@ class Ros2Node:
         self._pending[client] = connected.call_async(request)
         self._pending[client].add_done_callback(lambda future: _answer(future, handlers.answered, handlers.failed))
 
+    @property
+    def full_name(self) -> str:
+        return str(self.node.get_fully_qualified_name())
+
     def now(self) -> float:
         return self._simulated_time()
 

@@ -89,7 +89,8 @@ def _names(graph: rosgraph.RosGraph) -> Iterator[Diagnostic]:
 def _types(graph: rosgraph.RosGraph) -> Iterator[Diagnostic]:
     """Topics with more than one type: a node of ROS 1 that speaks of such a one ends when it starts."""
     types: dict[str, str] = {}
-    for each in (*graph.subscriptions, *graph.publishers):
+    ends: list[rosgraph.Subscription | rosgraph.Publisher] = [*graph.subscriptions, *graph.publishers]
+    for each in ends:
         kind = f"{each.interface.package}/{each.interface.type}"
         first = types.setdefault(each.topic.removeprefix("/"), kind)
         if kind != first:

@@ -1,6 +1,7 @@
 // Checks of the headers that come with every node. Prints what does not hold; the exit status says how much that is.
 #include <array>
 #include <cstdint>
+#include <cstdlib>
 #include <iostream>
 #include <limits>
 #include <string>
@@ -44,6 +45,13 @@ void whole_numbers_saturate() {
   CHECK(Integer(300).to<std::uint8_t>() == 255 && Integer(-1).to<std::uint8_t>() == 0);
   CHECK(Integer(-40000).to<std::int16_t>() == -32768 && Integer(kMost).to<std::uint64_t>() == 9223372036854775807u);
   CHECK(static_cast<double>(Integer(-3)) == -3.0);
+}
+
+void logs_are_named_by_their_nodes() {
+  setenv("ROS_LOG_DIR", "/tmp", 1);
+  CHECK(default_log("/base", "base") == "/tmp/base-events.jsonl");
+  CHECK(default_log("/hall/left/base", "base") == "/tmp/hall.left.base-events.jsonl");
+  CHECK(default_log("/left/wheels", "base") == "/tmp/left.wheels.base-events.jsonl");
 }
 
 void comparisons_with_nan_are_false() {
@@ -129,6 +137,7 @@ void json_is_json() {
 
 int main() {
   whole_numbers_saturate();
+  logs_are_named_by_their_nodes();
   comparisons_with_nan_are_false();
   elements_that_are_not_there_are_noticed();
   fields_take_what_fits();

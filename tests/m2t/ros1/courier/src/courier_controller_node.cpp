@@ -91,7 +91,9 @@ class Controller {
   // All that happens comes through the queue of `node`, which one thread serves. The parameters are described in
   // config/courier_controller.yaml.
   explicit Controller(const ros::NodeHandle& node)
-      : node_(node), log_(parameter<std::string>(private_, "event_log", default_log("courier_controller"))) {
+      : node_(node),
+          log_(parameter<std::string>(private_, "event_log",
+          default_log(ros::this_node::getName(), "courier_controller"))) {
     courier_settings settings = courier_default_settings;
     settings.events_per_tick =
         static_cast<std::uint16_t>(parameter(private_, "events_per_tick", settings.events_per_tick, 0, 65535));

@@ -372,7 +372,8 @@ class Controller : public rclcpp::Node {
   // Connects the node to everything that the model names.
   void configure() {
     log_ =
-        EventLog(parameter<std::string>(*this, "event_log", default_log("courier_controller"),
+        EventLog(parameter<std::string>(*this, "event_log",
+        default_log(get_fully_qualified_name(), "courier_controller"),
         "A file that gets a line of JSON for each event; empty: none."));
     courier_settings settings = courier_default_settings;
     settings.events_per_tick = static_cast<std::uint16_t>(parameter(

@@ -12,6 +12,7 @@
 #include <fstream>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 
 #include "courier_controller/data.hpp"
 
@@ -143,8 +144,9 @@ class JsonTree {
   std::string open_;
 };
 
-/// Where a log goes that nobody named: the folder of ROS's own logs.
-inline std::string default_log(const std::string& node) {
+/// Where a log goes that nobody named: the folder of ROS's own logs. `node` is the node's full name, such as `/left/base`;
+/// where it was renamed, its package is told, too.
+inline std::string default_log(std::string node, const std::string& package) {
   const auto variable = [](const char* name) {
     const char* value = std::getenv(name);
     return std::string(value == nullptr ? "" : value);
@@ -152,7 +154,11 @@ inline std::string default_log(const std::string& node) {
   std::filesystem::path folder = variable("ROS_LOG_DIR");
   if (folder.empty() && !variable("ROS_HOME").empty()) folder = std::filesystem::path(variable("ROS_HOME")) / "log";
   if (folder.empty()) folder = std::filesystem::path(variable("HOME")) / ".ros" / "log";
-  std::filesystem::create_directories(folder);
+  std::error_code failed;  // the log itself complains
+  std::filesystem::create_directories(folder, failed);
+  node.erase(0, node.find_first_not_of('/'));
+  if (node.substr(node.rfind('/') + 1) != package) node += "/" + package;
+  std::replace(node.begin(), node.end(), '/', '.');
   return folder / (node + "-events.jsonl");
 }
 
