@@ -1,0 +1,28 @@
+"""Includes a launch file, in a namespace that is pushed or on a clock that is set around it.
+
+python3 launch_ros2.py FILE plain|pushed|simulated [ARGUMENT=VALUE ...]
+"""
+
+import sys
+
+from launch import LaunchDescription, LaunchService
+from launch.actions import GroupAction, IncludeLaunchDescription
+from launch.launch_description_sources import AnyLaunchDescriptionSource
+from launch_ros.actions import PushRosNamespace, SetParameter
+
+
+def main(file, how, *arguments):
+    around = {
+        "plain": [],
+        "pushed": [PushRosNamespace("hall")],
+        "simulated": [SetParameter("use_sim_time", value=True)],
+    }
+    pairs = [tuple(each.split("=", 1)) for each in arguments]
+    include = IncludeLaunchDescription(AnyLaunchDescriptionSource(file), launch_arguments=pairs)
+    service = LaunchService()
+    service.include_launch_description(LaunchDescription([GroupAction([*around[how], include])]))
+    return service.run()
+
+
+if __name__ == "__main__":
+    sys.exit(main(*sys.argv[1:]))

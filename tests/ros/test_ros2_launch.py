@@ -1,0 +1,106 @@
+"""The launch files of ROS 2 in its own launch system, wherever that is installed: what they start, and with what."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+
+import robosc
+from robosc.config import Configuration
+from tests.ros.installations import Ros, find_ros2
+
+HERE = Path(__file__).parent
+ROBOT = "supervised_line_follower"
+LAYER, CONTROLLER = f"{ROBOT}_layer", f"{ROBOT}_controller"
+#: Instead of a node: tells its arguments, and what is in the files with parameters.
+NODE = """\
+#!/bin/sh
+echo "started ${0##*/} $*"
+for each; do case $each in /tmp/*) cat "$each" ;; esac; done
+"""
+
+
+@pytest.fixture(scope="module")
+def ros() -> Ros:
+    found = find_ros2()
+    if found.ros is None:
+        pytest.skip(f"ros2: {', '.join(found.missing)}")
+    there = subprocess.run([found.ros.python, "-c", "import launch_ros"], env=found.ros.environment, check=False)
+    if there.returncode:
+        pytest.skip("ros2: no launch_ros")
+    return found.ros
+
+
+@pytest.fixture(scope="module")
+def prefix(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with a layer and its controller, installed, whose nodes are stand-ins."""
+    folder = tmp_path_factory.mktemp("prefix")
+    controller = {"launch": {"packageName": CONTROLLER, "file": f"{CONTROLLER}.launch.py"}}
+    settings = Configuration.model_validate({"supervisor": {"controller": controller}})
+    robot = robosc.load(HERE.parents[1] / "examples" / ROBOT / f"{ROBOT}.rscd")
+    models = robosc.Models(robosc.to_sct(robot), robosc.to_rosgraph(robot), robot)
+    robosc.synthesize(models.sct)
+    for target, package in {"ros2-layer": LAYER, "ros2": CONTROLLER}.items():
+        index = folder / "share/ament_index/resource_index/packages" / package
+        index.parent.mkdir(parents=True, exist_ok=True)
+        index.touch()
+        for path, text in robosc.generate(target, models, settings).items():
+            if path.startswith(("launch/", "config/")):
+                file = folder / "share" / package / path
+                file.parent.mkdir(parents=True, exist_ok=True)
+                file.write_text(text, encoding="utf-8")
+        node = folder / "lib" / package / package
+        node.parent.mkdir(parents=True)
+        node.write_text(NODE, encoding="utf-8")
+        node.chmod(0o755)
+    return folder
+
+
+def started(ros: Ros, prefix: Path, how: str, *arguments: str) -> dict[str, str]:
+    """What the layer and its controller were started with, and said, by their packages."""
+    file = prefix / "share" / LAYER / "launch" / f"{LAYER}.launch.py"
+    done = subprocess.run(
+        [ros.python, HERE / "launch_ros2.py", file, how, *arguments],
+        env={**ros.environment, "AMENT_PREFIX_PATH": f"{prefix}:{ros.environment['AMENT_PREFIX_PATH']}"},
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    lines = [re.match(r"\[(\w+)-\d+\] (.*)", each) for each in done.stdout.splitlines()]
+    said = {name: "\n".join(each[2] for each in lines if each and each[1] == name) for name in (LAYER, CONTROLLER)}
+    assert all(said.values()), done.stdout + done.stderr
+    return said
+
+
+def test_the_controller_has_a_name_and_a_log_of_its_own(ros: Ros, prefix: Path) -> None:
+    said = started(ros, prefix, "plain", "name=gate", "namespace=left", "event_log=/tmp/gate.jsonl")
+    assert "__node:=gate -r __ns:=/left " in said[LAYER]
+    assert "event_log: /tmp/gate.jsonl" in said[LAYER]
+    assert f"__node:={CONTROLLER} -r __ns:=/ " in said[CONTROLLER]
+    assert "/correction:=/left/gate/controller/correction" in said[CONTROLLER]
+    assert "gate.jsonl" not in said[CONTROLLER]
+
+
+def test_a_namespace_around_the_file_holds_for_both(ros: Ros, prefix: Path) -> None:
+    said = started(ros, prefix, "pushed")
+    assert f"__node:={LAYER} -r __ns:=/hall " in said[LAYER]
+    assert f"__node:={CONTROLLER} -r __ns:=/hall " in said[CONTROLLER]
+    assert f"/correction:=/hall/{LAYER}/controller/correction" in said[CONTROLLER]
+
+
+def test_a_clock_around_the_file_holds_for_both(ros: Ros, prefix: Path) -> None:
+    for text in started(ros, prefix, "simulated").values():
+        assert "use_sim_time:=True" in text
+        assert "use_sim_time: false" not in text
+
+
+def test_a_clock_that_is_asked_for_holds_for_both(ros: Ros, prefix: Path) -> None:
+    for text in started(ros, prefix, "plain", "use_sim_time=true").values():
+        assert "use_sim_time: true" in text
+    for text in started(ros, prefix, "plain").values():
+        assert "use_sim_time" not in text
