@@ -1,5 +1,6 @@
 """What all tests share: golden files, kept beside their inputs and accepted anew with `pytest --accept`."""
 
+import signal
 from collections.abc import Callable
 from pathlib import Path
 
@@ -9,6 +10,8 @@ from hypothesis import settings
 # Time is measured in benchmarks; a busy machine fails no test.
 settings.register_profile("robosc", deadline=None)
 settings.load_profile("robosc")
+# Whoever runs the tests in the background of a script ignores interrupts; the programs that they start don't.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

@@ -8,8 +8,10 @@ from __future__ import annotations
 
 import json
 from itertools import pairwise
+from statistics import median
 from typing import TYPE_CHECKING, Any
 
+import pytest
 from jsonschema import Draft202012Validator
 
 from robosc.resources import locate
@@ -19,7 +21,7 @@ if TYPE_CHECKING:
     from tests.ros.conftest import Drive
 
 #: Seconds for a message on its way and for the ticks that answer it.
-TRANSPORT = 0.5
+TRANSPORT = 0.8
 OBSTACLE, CLEAR = "an obstacle is put on the line", "the obstacle is taken away"
 STOP, CONTINUE = "stop is pressed", "continue is pressed"
 COVER, UNCOVER = "the line is covered", "the line is uncovered"
@@ -74,8 +76,12 @@ def test_what_is_received_is_what_was_decided(drive: Drive) -> None:
 
 
 def test_answers_in_every_tick(drive: Drive) -> None:
-    times = [each["time"] for each in drive.log if each["direction"] == "out"]
-    assert max(later - earlier for earlier, later in pairwise(times)) < 0.25
+    sent = {each["event"] for each in drive.log if each["direction"] == "out"}
+    # A report is the end of a tick.
+    ticks = [each["data"] for each in drive.reports if each["topic"] == "state"]
+    assert all(sent & set(each["transitions"]) for each in ticks[1:])
+    periods = [later["time"] - earlier["time"] for earlier, later in pairwise(ticks)]
+    assert median(periods) == pytest.approx(0.1, abs=0.03)
 
 
 def test_reports_state_and_definition(drive: Drive) -> None:
