@@ -311,6 +311,9 @@ class _ActionProxy:
         """Sends the goal as soon as there is a server; then watches that it is accepted and stays."""
         if self._goal is not goal:
             return
+        if goal.cancelled and not goal.sent:
+            self._fail("cancelled before it was sent")
+            return
         now = self._port.agenda.clock()
         if not goal.sent and self._goals.service_is_ready():
             goal.sent = True

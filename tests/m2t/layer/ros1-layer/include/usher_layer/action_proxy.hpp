@@ -119,6 +119,7 @@ class ActionProxy {
   void on_status(const actionlib_msgs::GoalStatusArray& message) {
     actionlib_msgs::GoalStatusArray known;
     known.header = message.header;
+    bool listed = false;
     for (const Status& each : message.status_list) {
       if (!ended_.empty() && each.goal_id.id == ended_) {
         known.status_list.push_back(each);
@@ -129,7 +130,13 @@ class ActionProxy {
         }
         known.status_list.push_back(each);
         known.status_list.back().status = goal_->status;
+        listed = true;
       }
+    }
+    if (goal_ && !goal_->accepted && !listed) {
+      // One that the robot has not heard of yet is not lost.
+      known.status_list.emplace_back();
+      known.status_list.back().goal_id = goal_->message.goal_id;
     }
     status_publisher_.publish(known);
   }
@@ -159,7 +166,9 @@ class ActionProxy {
     if (!goal_) return;
     const bool there = goal_publisher_.getNumSubscribers() > 0 && cancel_publisher_.getNumSubscribers() > 0 &&
                        result_subscription_.getNumPublishers() > 0;
-    if (!goal_->sent && there) {
+    if (goal_->cancelled && !goal_->sent) {
+      give_up("cancelled before it was sent");
+    } else if (!goal_->sent && there) {
       goal_->sent = true;
       goal_publisher_.publish(goal_->message);
       for (const auto& each : goal_->cancels_before) cancel_publisher_.publish(each);
@@ -171,15 +180,18 @@ class ActionProxy {
         handlers_.refused("the server refuses to cancel the goal");
       }
     } else if (deadline_.over()) {
-      const std::string why =
-          goal_->accepted ? "the server is gone" : (goal_->sent ? "not accepted" : "no server") + within_;
-      const actionlib_msgs::GoalID id = goal_->message.goal_id;
-      if (goal_->sent) cancel_publisher_.publish(id);  // nobody waits for it
-      if (!goal_->cancelled) handlers_.error(why);
-      const bool accepted = goal_->accepted;
-      finish();
-      publish_result(id, accepted ? Status::ABORTED : Status::REJECTED, why);
+      give_up(goal_->accepted ? "the server is gone" : (goal_->sent ? "not accepted" : "no server") + within_);
     }
+  }
+
+  // Nobody waits for the goal any more: a robot that has it, or gets it yet, is told to cancel it.
+  void give_up(const std::string& why) {
+    const actionlib_msgs::GoalID id = goal_->message.goal_id;
+    if (goal_->sent) send_cancel(id);
+    if (!goal_->cancelled) handlers_.error(why);
+    const bool accepted = goal_->accepted;
+    finish();
+    publish_result(id, accepted ? Status::ABORTED : Status::REJECTED, why);
   }
 
   void accept() {

@@ -213,6 +213,10 @@ class ActionProxy {
       timer_->cancel();
       return;
     }
+    if (goal_->cancelled && !goal_->sent) {
+      fail("cancelled before it was sent");
+      return;
+    }
     if (!goal_->sent && goal_client_->service_is_ready()) {
       goal_->sent = true;
       const Id id = goal_->id;
