@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 from concurrent.futures import Future
 from typing import TYPE_CHECKING, Any
 
@@ -24,6 +23,7 @@ if TYPE_CHECKING:
 _DEPTH = 10
 _LOOK = 0.05
 _CANCELLED = (GoalStatus.PREEMPTED, GoalStatus.RECALLED)
+_UNDER_WAY = (GoalStatus.PENDING, GoalStatus.ACTIVE, GoalStatus.PREEMPTING, GoalStatus.RECALLING)
 
 
 class Ros1Layer(Ros1Node):
@@ -67,13 +67,13 @@ class Ros1Layer(Ros1Node):
         publishers[False] = _publisher(target, kind)
         self.hear(source, kind, forward)
 
-    def hear(self, name: str, kind: Any, act: Callable[[Message], None], most: int | None = _DEPTH) -> None:
+    def hear(self, name: str, kind: Any, act: Callable[[Message], None], most: int | None = _DEPTH) -> Any:
         """Subscribes; what comes is dealt with by the thread that works."""
 
         def post(message: Message) -> None:
             self.agenda.post(lambda: act(message), None if most is None else name, most or 0)
 
-        rospy.Subscriber(name, kind, post, queue_size=most, tcp_nodelay=True)
+        return rospy.Subscriber(name, kind, post, queue_size=most, tcp_nodelay=True)
 
 
 def _publisher(name: str, kind: Any, *, latch: bool = False) -> Any:
@@ -129,9 +129,13 @@ class _ServiceProxy:
 class _Running:
     """The goal at hand."""
 
-    def __init__(self, identifier: str) -> None:
-        self.identifier = identifier
-        self.accepted = self.cancelled = False
+    def __init__(self, message: Message) -> None:
+        self.message = message
+        self.identifier: str = message.goal_id.id
+        self.status = GoalStatus(goal_id=message.goal_id, status=GoalStatus.PENDING)
+        self.sent = self.accepted = self.cancelled = self.refused = False
+        #: What the controller has asked to cancel before the goal was sent.
+        self.cancels: list[Message] = []
 
 
 class _ActionProxy:
@@ -143,8 +147,8 @@ class _ActionProxy:
         self._layer = layer
         self._timeout = timeout
         self._goal: _Running | None = None
+        self._ended = ""
         self._deadline = 0.0
-        self._blocked: list[GoalStatus] = []
         made = kind()
         goal, result, feedback = (type(each) for each in (made.action_goal, made.action_result, made.action_feedback))
         self._result_type = result
@@ -154,99 +158,142 @@ class _ActionProxy:
         self._results = _publisher(f"{inside}/result", result)
         self._feedback = _publisher(f"{inside}/feedback", feedback)
         self._statuses = _publisher(f"{inside}/status", GoalStatusArray)
-        port.hear(f"{outside}/result", result, self._on_result, None)
+        self._heard = port.hear(f"{outside}/result", result, self._on_result, None)
         port.hear(f"{outside}/feedback", feedback, self._on_feedback)
         port.hear(f"{outside}/status", GoalStatusArray, self._on_status)
         port.hear(f"{inside}/goal", goal, self._on_goal, None)
         port.hear(f"{inside}/cancel", GoalID, self._on_cancel, None)
 
     def cancel(self) -> None:
-        """Cancels the goal at hand."""
+        """Cancels the goal at hand, before the robot has accepted it as soon as it does."""
         goal = self._goal
         if goal is not None and not goal.cancelled:
             goal.cancelled = True
-            self._cancels.publish(GoalID(id=goal.identifier))
+            if goal.accepted:
+                self._send_cancel(goal)
 
     # From the controller
 
     def _on_goal(self, message: Message) -> None:
-        if not message.goal_id.id:
-            message.goal_id.id = f"{rospy.get_name()}-{rospy.get_time()}"
         if self._goal is not None:
             self._layer.turn_away(self._action.request)
             self._end(message.goal_id, GoalStatus.REJECTED, "blocked: another goal has not ended")
-        elif self._layer.passes(self._action.request):
-            self._goal = _Running(message.goal_id.id)
+            return
+        if not message.goal_id.id:
+            # The server would name it, and the layer would not know it again.
+            message.goal_id.id = f"{rospy.get_name()}-{rospy.get_time()}"
+        self._goal = _Running(message)
+        if self._layer.passes(self._action.request):
             self._deadline = self._port.agenda.clock() + self._timeout
-            self._look(self._goal, message)
+            self._look(self._goal)
         else:
+            self._goal = None
             self._end(message.goal_id, GoalStatus.REJECTED, "blocked by the supervisor")
 
     def _on_cancel(self, message: Message) -> None:
         """The controller's own requests always pass."""
-        self._cancels.publish(message)
+        if self._goal is not None and not self._goal.sent:
+            self._goal.cancels.append(message)
+        else:
+            self._cancels.publish(message)
 
     # From the robot
 
     def _on_feedback(self, message: Message) -> None:
-        goal = self._goal
-        if goal is not None and message.status.goal_id.id == goal.identifier:
-            goal.accepted = True
+        goal = self._at_hand(message.status)
+        if goal is not None:
             if not goal.cancelled:
                 self._layer.feed_back(self._action, message.feedback)
-        self._feedback.publish(message)
+            self._feedback.publish(message)
 
     def _on_result(self, message: Message) -> None:
-        goal, status = self._goal, message.status.status
-        if goal is not None and message.status.goal_id.id == goal.identifier:
-            self._goal = None
-            if not goal.cancelled:
-                if status == GoalStatus.SUCCEEDED:
-                    self._layer.respond(self._action, message.result)
-                else:
-                    rejected = "rejected" if status == GoalStatus.REJECTED else "aborted"
-                    self._layer.fail(self._action, "cancelled by someone else" if status in _CANCELLED else rejected)
+        goal, status = self._at_hand(message.status), message.status.status
+        if goal is None:
+            return
+        if not goal.cancelled:
+            if status == GoalStatus.SUCCEEDED:
+                self._layer.respond(self._action, message.result)
+            else:
+                rejected = "rejected" if status == GoalStatus.REJECTED else "aborted"
+                self._layer.fail(self._action, "cancelled by someone else" if status in _CANCELLED else rejected)
+        self._finish(goal)
         self._results.publish(message)
 
     def _on_status(self, message: Message) -> None:
         """That a goal has ended is told with its result, not before: the supervisor knows first."""
+        told = GoalStatusArray(header=message.header)
+        told.status_list = [each for each in message.status_list if each.goal_id.id == self._ended]
+        mine = [each for each in message.status_list if self._at_hand(each)]
         goal = self._goal
-        told = copy.deepcopy(message)
-        for each in told.status_list:
-            if goal is not None and each.goal_id.id == goal.identifier:
-                goal.accepted = goal.accepted or each.status not in (GoalStatus.PENDING, GoalStatus.RECALLING)
-                if each.status in (GoalStatus.SUCCEEDED, GoalStatus.ABORTED, *_CANCELLED):
-                    each.status = GoalStatus.ACTIVE
-        told.status_list += self._blocked
+        for each in mine:
+            assert goal is not None
+            goal.status.text = each.text
+            if each.status in _UNDER_WAY:
+                goal.status.status = each.status
+            if each.status not in (GoalStatus.PENDING, GoalStatus.RECALLING, GoalStatus.REJECTED):
+                self._accept(goal)
+        if goal is not None and (mine or not goal.accepted):
+            told.status_list.append(goal.status)  # one that the robot has not heard of yet is not lost
         self._statuses.publish(told)
+
+    def _at_hand(self, status: GoalStatus) -> _Running | None:
+        """The goal at hand, if that is the one."""
+        goal = self._goal
+        return goal if goal is not None and goal.identifier == status.goal_id.id else None
 
     # Waiting
 
-    def _look(self, goal: _Running, message: Message | None) -> None:
+    def _look(self, goal: _Running) -> None:
         """Sends the goal as soon as there is a server; then watches that it is accepted and stays."""
         if self._goal is not goal:
             return
         now = self._port.agenda.clock()
-        served = self._goals.get_num_connections() > 0
-        if message is not None and served:
-            self._goals.publish(message)
-            message = None
-        if goal.accepted and served:
-            self._deadline = now + self._timeout
-        if now >= self._deadline:
-            self._goal = None
-            within = f" within {round(self._timeout * 1000)} ms"
-            why = "the server is gone" if goal.accepted else ("no server" if message else "not accepted") + within
+        ends: tuple[Any, ...] = (self._goals, self._cancels, self._heard)
+        served = all(each.get_num_connections() > 0 for each in ends)
+        if goal.cancelled and not goal.sent:
+            self._give_up(goal, "cancelled before it was sent")
+        elif served and not goal.sent:
+            goal.sent = True
+            for publisher, message in [(self._goals, goal.message), *((self._cancels, each) for each in goal.cancels)]:
+                publisher.publish(message)
+        elif served and goal.accepted:
             if not goal.cancelled:
-                self._layer.fail(self._action, why)
-            self._end(GoalID(id=goal.identifier), GoalStatus.ABORTED, why)
-        else:
-            self._port.agenda.after(_LOOK, lambda: self._look(goal, message))
+                self._deadline = now + self._timeout
+            elif now >= self._deadline and not goal.refused and goal.status.status == GoalStatus.ACTIVE:
+                goal.refused = True
+                self._port.warn(f"{self._action.identifier}: the server refuses to cancel the goal")
+        elif now >= self._deadline:
+            within = f" within {round(self._timeout * 1000)} ms"
+            missing = ("not accepted" if goal.sent else "no server") + within
+            self._give_up(goal, "the server is gone" if goal.accepted else missing)
+        if self._goal is goal:
+            self._port.agenda.after(_LOOK, lambda: self._look(goal))
+
+    def _accept(self, goal: _Running) -> None:
+        if not goal.accepted:
+            goal.accepted = True
+            self._deadline = self._port.agenda.clock() + self._timeout
+            if goal.cancelled:
+                self._send_cancel(goal)
+
+    def _send_cancel(self, goal: _Running) -> None:
+        self._deadline = self._port.agenda.clock() + self._timeout
+        self._cancels.publish(GoalID(id=goal.identifier))  # without a time, which would cancel other goals, too
+
+    def _give_up(self, goal: _Running, why: str) -> None:
+        """Nobody waits for the goal any more: a robot that has it, or gets it yet, is told to cancel it."""
+        if goal.sent:
+            self._cancels.publish(GoalID(id=goal.identifier))
+        if not goal.cancelled:
+            self._layer.fail(self._action, why)
+        self._finish(goal)
+        self._end(goal.message.goal_id, GoalStatus.ABORTED if goal.accepted else GoalStatus.REJECTED, why)
+
+    def _finish(self, goal: _Running) -> None:
+        self._goal, self._ended = None, goal.identifier
 
     def _end(self, identifier: GoalID, status: int, text: str) -> None:
         """Tells the controller of the end of a goal that the robot says nothing of."""
-        ended = GoalStatus(goal_id=identifier, status=status, text=text)
-        self._blocked = [*self._blocked[-9:], ended]
-        message = self._result_type(status=ended)
+        message = self._result_type(status=GoalStatus(goal_id=identifier, status=status, text=text))
         message.header.stamp = rospy.Time.now()
         self._results.publish(message)

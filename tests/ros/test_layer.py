@@ -168,6 +168,32 @@ def test_the_layer_cancels_a_goal_whose_requirement_has_fallen(trial: Trial) -> 
     assert trial.controller("the next goal") == [["go_to", "SUCCEEDED"]]
 
 
+def test_a_goal_that_is_cancelled_before_there_is_a_server_is_never_sent(trial: Trial) -> None:
+    step = "cancelled before there is a server"
+    assert trial.robot(step) == []
+    assert ["go_to", "REJECTED"] in trial.controller(step)
+    assert events(trial, step)[-3:] == ["message_stop.u_response", "action_go_to.c_cancel", "message_resume.u_response"]
+
+
+def test_the_controller_may_cancel_before_there_is_a_server(trial: Trial) -> None:
+    if trial.ros == "ros1":
+        # The goal and the request to cancel it come on two topics: a server may hear of the request first.
+        told = trial.controller("cancelled by the controller before there is a server")
+        assert told in ([["go_to", "CANCELED"]], [["go_to", "RECALLED"]])
+
+
+def test_a_goal_that_is_accepted_too_late_is_cancelled(trial: Trial) -> None:
+    assert trial.robot("accepted too late") == [["go_to", 10.0], ["cancel", True]]
+    assert trial.controller("accepted too late") == [["go_to", "REJECTED"]]
+    assert "/go_to: not accepted within 2000 ms" in trial.output
+
+
+def test_a_cancel_that_the_robot_refuses_is_told(trial: Trial) -> None:
+    assert trial.robot("a cancel that the robot refuses") == [["go_to", 11.0], ["cancel", True]]
+    assert ["go_to", "SUCCEEDED"] in trial.controller("a cancel that the robot refuses")
+    assert "/go_to: the server refuses to cancel the goal" in trial.output
+
+
 def test_a_late_answer_is_none(trial: Trial) -> None:
     assert trial.controller("late") == [["light", FAILED[trial.ros]]]
     assert "/lamp/light: no answer within 2000 ms" in trial.output

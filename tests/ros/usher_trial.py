@@ -25,6 +25,9 @@ class Robot:
         self.answering = threading.Event()
         self.answering.set()
         self.accepts = True
+        self.deciding = threading.Event()  # whether it accepts a goal
+        self.deciding.set()
+        self.deaf = False  # whether it goes on with a goal that it shall cancel
         self.ending = None  # how the goal at hand ends; None: not yet
         self.lock = threading.Lock()
 
@@ -50,10 +53,19 @@ class Ros1Robot(Robot):
         self.service = rospy.Service("/lamp/light", SetBool, lambda call: SetBoolResponse(self.light(call.data), ""))
         self.goal = None
         self.action = actionlib.ActionServer("/go_to", NavigateToPoseAction, self.on_goal, self.on_cancel, False)
+        hear = self.action.internal_cancel_callback
+        self.action.internal_cancel_callback = lambda goal: self.note("cancel", True) if self.deaf else hear(goal)
+        self.serve()
+
+    def serve(self):
         self.action.start()
+
+    def leave(self):
+        self.action.stop()
 
     def on_goal(self, goal):
         self.note("go_to", goal.get_goal().pose.pose.position.x)
+        self.deciding.wait(20)
         if not self.accepts:
             goal.set_rejected()
             return
@@ -84,23 +96,31 @@ class Ros2Robot(Robot):
         from std_srvs.srv import SetBool
 
         self.type, self.accept, self.reject = NavigateToPose, GoalResponse.ACCEPT, GoalResponse.REJECT
-        self.cancel = CancelResponse.ACCEPT
-        node = rclpy.create_node("robot")
-        group = ReentrantCallbackGroup()
-        node.create_service(SetBool, "/lamp/light", self.on_call, callback_group=group)
+        self.cancel, self.refuse = CancelResponse.ACCEPT, CancelResponse.REJECT
+        self.server = ActionServer
+        self.node = rclpy.create_node("robot")
+        self.group = ReentrantCallbackGroup()
+        self.node.create_service(SetBool, "/lamp/light", self.on_call, callback_group=self.group)
         self.goal = None
-        self.action = ActionServer(
-            node,
-            NavigateToPose,
+        self.serve()
+        self.executor = MultiThreadedExecutor(8)
+        self.executor.add_node(self.node)
+        threading.Thread(target=self.executor.spin, daemon=True).start()
+
+    def serve(self):
+        self.action = self.server(
+            self.node,
+            self.type,
             "/go_to",
             self.execute,
-            callback_group=group,
+            callback_group=self.group,
             goal_callback=self.on_goal,
             cancel_callback=self.on_cancel,
         )
-        executor = MultiThreadedExecutor(8)
-        executor.add_node(node)
-        threading.Thread(target=executor.spin, daemon=True).start()
+
+    def leave(self):
+        self.action.destroy()
+        self.executor.wake()  # it still holds the server
 
     def on_call(self, request, response):
         response.success = self.light(request.data)
@@ -108,11 +128,12 @@ class Ros2Robot(Robot):
 
     def on_goal(self, goal):
         self.note("go_to", goal.pose.pose.position.x)
+        self.deciding.wait(20)
         return self.accept if self.accepts else self.reject
 
     def on_cancel(self, goal):  # noqa: ARG002
         self.note("cancel", True)
-        return self.cancel
+        return self.refuse if self.deaf else self.cancel
 
     def execute(self, goal):
         self.ending, self.goal = None, goal
@@ -172,6 +193,10 @@ class Trial:
         """Waits until something of that name was blocked so often."""
         self.wait(lambda: sum(each["name"] == name for each in self.blocked) >= count, f"{name} is blocked")
 
+    def happened(self, event):
+        """Waits until the layer has told of an event."""
+        self.wait(lambda: any(event in each["transitions"] for each in self.states), f"{event} happens")
+
     def ask(self, what, value=True):
         self.do(data=json.dumps([what, value]))
 
@@ -192,7 +217,7 @@ class Trial:
         self.ros.receive(1.0)
         self.ros.listen("label", "std_msgs/String", lambda message: self.labels.append(message.data), latched=True)
         self.step("start")
-        for step in (self.messages, self.services, self.goals, self.cancels, self.failures):
+        for step in (self.messages, self.services, self.goals, self.cancels, self.failures, self.late_servers):
             step()
         self.wait(lambda: self.labels, "what was sent before anyone listened")
         self.steps["labels"] = self.labels
@@ -297,6 +322,53 @@ class Trial:
         self.ask("light", False)
         self.heard("light", True)
         self.step("the next call")
+
+    def late_servers(self):
+        self.leave_with(8.0)
+        self.stop()
+        self.happened("action_go_to.c_cancel")
+        self.robot.serve()
+        self.was_blocked("Drive.speed")
+        self.resume()
+        self.heard("resume", True)
+        self.ended()
+        self.ros.receive(1.0)
+        self.step("cancelled before there is a server")
+        if isinstance(self.robot, Ros1Robot):  # in ROS 2 only what was accepted can be cancelled
+            self.leave_with(9.0)
+            self.ask("cancel")
+            self.ros.receive(0.2)
+            self.robot.serve()
+            self.ended()
+            self.step("cancelled by the controller before there is a server")
+        self.robot.deciding.clear()
+        self.ask("go_to", 10.0)
+        self.ended()
+        self.robot.deciding.set()
+        self.got("cancel", True)
+        self.step("accepted too late")
+        self.robot.deaf = True
+        self.start(11.0)
+        self.stop()
+        self.got("cancel", True)
+        self.was_blocked("Drive.speed")
+        self.resume()
+        self.heard("resume", True)
+        self.ros.receive(2.5)
+        self.robot.end("SUCCEEDED")
+        self.ended()
+        self.step("a cancel that the robot refuses")
+
+    def leave_with(self, place):
+        """The robot's action server goes, and then the controller sends a goal."""
+        self.robot.leave()
+        self.ros.receive(0.5)
+        self.ask("go_to", place)
+        self.happened("action_go_to.c_trigger")
+
+    def ended(self):
+        """Waits until the controller knows the end of its goal."""
+        self.wait(lambda: "go_to" in [what for what, _ in self.told], "the goal ends")
 
     def start(self, place):
         self.robot.goal = None
