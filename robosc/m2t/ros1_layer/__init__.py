@@ -50,8 +50,8 @@ def generate(models: Models, configuration: Configuration) -> dict[str, str]:
         launched = configuration.supervisor.controller.launch
         return {
             "headers": _headers(layer, configuration),
-            "dependencies": sorted({"roscpp", *types}),
-            "started": sorted(controller_package(configuration) - {"roscpp", *types}),
+            "dependencies": sorted({"rosconsole", "roscpp", *types}),
+            "started": sorted(controller_package(configuration) - {"rosconsole", "roscpp", *types}),
             "names": [(each, below_layer(each)) for each in remapped(layer, _PARTS)],
             "launch_path": ""
             if launched is None

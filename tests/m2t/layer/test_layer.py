@@ -66,8 +66,10 @@ def test_packages_list_what_is_used(usher: robosc.Models, settings: Configuratio
     ros1 = parse_package_string(robosc.generate("ros1-layer", usher, settings)["package.xml"])
     ros1.validate()
     assert ros1.name == "usher_layer"
-    assert {each.name for each in ros1.build_depends} == {"roscpp", "actionlib_msgs", *messages}
-    assert {each.name for each in ros1.exec_depends} == {"roscpp", "actionlib_msgs", "usher_driver", *messages}
+    needed = {"rosconsole", "roscpp", "actionlib_msgs", *messages}
+    assert {each.name for each in ros1.build_depends} == needed
+    assert {each.name for each in ros1.exec_depends} == {*needed, "usher_driver"}
+    assert "Threads::Threads" in robosc.generate("ros1-layer", usher, settings)["CMakeLists.txt"]
     text = robosc.generate("ros2-layer", usher, settings)["package.xml"]
     ros2 = parse_package_string(text)
     ros2.validate()
@@ -168,6 +170,7 @@ def test_leaves_out_what_is_not_asked_for(usher: robosc.Models, tmp_path: Path) 
         silent = robosc.generate(target, usher, Configuration(publish_state_information=False))
         assert "include/usher_layer/definition.hpp" not in silent
         assert "state_report_" not in silent["src/usher_layer_node.cpp"]
+        assert "Threads" not in robosc.generate(target, models_of(ear))["CMakeLists.txt"]
         headers = {path for path in robosc.generate(target, models_of(ear)) if path.startswith("include")}
         names = {"data", "definition", "json", "message_relay", "parameters"}
         assert headers == {f"include/ear_layer/{each}.hpp" for each in names}
