@@ -8,6 +8,7 @@
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <rclcpp/rclcpp.hpp>
 
@@ -35,7 +36,12 @@ class MessageRelay {
     } else if (!graph_->check_and_clear()) {
       return;
     }
-    const auto publishers = node_.get_publishers_info_by_topic(from_);
+    std::vector<rclcpp::TopicEndpointInfo> publishers;
+    try {
+      publishers = node_.get_publishers_info_by_topic(from_);
+    } catch (const rclcpp::exceptions::RCLError&) {
+      return;  // The context is closed: the node is at its end.
+    }
     if (publishers.empty()) return;
     const bool lasting = std::all_of(publishers.begin(), publishers.end(), [](const rclcpp::TopicEndpointInfo& each) {
       return each.qos_profile().durability() == rclcpp::DurabilityPolicy::TransientLocal;
