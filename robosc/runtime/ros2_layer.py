@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from action_msgs.msg import GoalStatus
 from rclpy.clock import Clock, ClockType
-from rclpy.qos import DurabilityPolicy, QoSProfile, qos_profile_sensor_data
+from rclpy.qos import DurabilityPolicy, QoSProfile, qos_profile_sensor_data, qos_profile_services_default
 
 from robosc.runtime.clients import Answers, ServiceClient
 from robosc.runtime.layer import below_layer, hearing, passing
@@ -30,25 +30,34 @@ class Ros2Layer(Ros2Node):
 
     def connect(self, layer: Layer, settings: Settings) -> None:
         """Stands between the controller and the robot from now on."""
-        usual = QoSProfile(depth=_DEPTH)
         for topic in self._graph.subscriptions:
-            sensor = topic.interface.package == "sensor_msgs"
-            received = self._quality(topic.topic, qos_profile_sensor_data if sensor else usual)
-            kind = self._types[topic.interface]
-            route = _Route(kind, topic.topic, below_layer(topic.topic), received, usual)
-            _Relay(self, route, hearing(layer, topic))
+            _Relay(self, self._route(topic, topic.topic, below_layer(topic.topic)), hearing(layer, topic))
         for publisher in self._graph.publishers:
             (sending,) = publisher.sendings
-            sent = self._quality(publisher.topic, usual)
-            kind, inside = self._types[publisher.interface], below_layer(publisher.topic)
-            _Relay(self, _Route(kind, inside, publisher.topic, usual, sent), passing(layer, sending))
+            route = self._route(publisher, below_layer(publisher.topic), publisher.topic)
+            _Relay(self, route, passing(layer, sending))
         for service in self._graph.serviceClients:
-            self._clients[service] = self.node.create_client(self._types[service.interface], service.identifier)
+            quality = self._quality(service.identifier, qos_profile_services_default)
+            kind = self._types[service.interface]
+            self._clients[service] = self.node.create_client(kind, service.identifier, qos_profile=quality)
             _ServiceProxy(self, self._types[service.interface], service, layer, settings.seconds("service_timeout_ms"))
         for action in self._graph.actionClients:
             timeout = settings.seconds("action_timeout_ms")
             proxy = _ActionProxy(self, self._types[action.interface], action, layer, timeout)
             layer.cancels[action.cancel] = proxy.cancel
+
+    def _route(self, element: rosgraph.Subscription | rosgraph.Publisher, source: str, target: str) -> _Route:
+        sensor = element.interface.package == "sensor_msgs"
+        usual = QoSProfile(depth=_DEPTH)
+        received = self._quality(element.topic, qos_profile_sensor_data if sensor else usual)
+        # What is sent on is reliable, whatever is received.
+        chosen = self._configuration.qos.get(element.topic.removeprefix("/"))
+        sent = QoSProfile(depth=chosen.depth) if chosen and chosen.depth else usual
+        return _Route(self._types[element.interface], source, target, received, sent)
+
+    def feedback_quality(self, action: rosgraph.ActionClient) -> Any:
+        """How the robot's feedback is received."""
+        return self._quality(action.identifier, QoSProfile(depth=_DEPTH))
 
 
 @dataclass(frozen=True)
@@ -208,9 +217,10 @@ class _ActionProxy:
         self._goals = node.create_client(self._types.SendGoalService, f"{outside}/send_goal")
         self._results = node.create_client(self._types.GetResultService, f"{outside}/get_result")
         self._cancels = node.create_client(self._types.CancelGoalService, f"{outside}/cancel_goal")
-        self._feedback = node.create_publisher(self._types.FeedbackMessage, f"{inside}/feedback", _DEPTH)
+        quality = port.feedback_quality(action)
+        self._feedback = node.create_publisher(self._types.FeedbackMessage, f"{inside}/feedback", quality.depth)
         self._status = node.create_publisher(self._types.GoalStatusMessage, f"{inside}/status", lasting)
-        node.create_subscription(self._types.FeedbackMessage, f"{outside}/feedback", self._on_feedback, _DEPTH)
+        node.create_subscription(self._types.FeedbackMessage, f"{outside}/feedback", self._on_feedback, quality)
         node.create_subscription(self._types.GoalStatusMessage, f"{outside}/status", self._on_status, lasting)
         _serve(port, self._types.SendGoalService, f"{inside}/send_goal", self._on_goal)
         _serve(port, self._types.GetResultService, f"{inside}/get_result", self._on_result_wanted)

@@ -221,7 +221,26 @@ class Trial:
             step()
         self.wait(lambda: self.labels, "what was sent before anyone listened")
         self.steps["labels"] = self.labels
+        if isinstance(self.robot, Ros2Robot):
+            self.steps["qualities"] = self.qualities()
         Path(self.results).write_text(json.dumps(self.steps))
+
+    def qualities(self):
+        """How reliably the layer hears what the configuration says something of, and how it hands it on."""
+        inside, feedback = f"{LAYER}/controller", "/go_to/_action/feedback"
+        ends = {
+            "hears": (self.ros.node.get_subscriptions_info_by_topic, [f"{inside}/speed", "/resume", feedback]),
+            "sends": (self.ros.node.get_publishers_info_by_topic, ["/speed", f"{inside}/resume", inside + feedback]),
+        }
+        return {
+            what: [
+                each.qos_profile.reliability.name
+                for topic in topics
+                for each in found(topic)
+                if each.node_name == LAYER[1:]
+            ]
+            for what, (found, topics) in ends.items()
+        }
 
     def messages(self):
         self.ask("speed", 0.5)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from robosc.config import QualityOfService
 from robosc.m2t.layer.names import below_layer, remapped
 from robosc.m2t.layer.packages import Target, controller_package, package, type_packages
 from robosc.m2t.layer.preconditions import preconditions
@@ -11,7 +12,7 @@ from robosc.m2t.rclcpp import header
 
 if TYPE_CHECKING:
     from robosc.config import Configuration
-    from robosc.m2t.layer.node import Inward, LayerNode, Outward
+    from robosc.m2t.layer.node import Call, Inward, LayerNode, Outward
     from robosc.models import Models
 
 __all__ = ["generate", "preconditions"]
@@ -42,8 +43,10 @@ def generate(models: Models, configuration: Configuration) -> dict[str, str]:
             "names": remapped(layer, _PARTS),
             "launch_path": launched if "/" in launched else f"launch/{launched}",
             "controller_side": lambda name: f"~/{below_layer(name)}",
-            "received_qos": lambda each: _quality(each, configuration, sensor=each.interface.package == "sensor_msgs"),
-            "sent_qos": lambda each: _quality(each, configuration),
+            "received_qos": lambda each: _received(each, configuration),
+            "sent_qos": lambda each: f"rclcpp::QoS({_chosen(each.topic, configuration).depth or _DEPTH})",
+            "service_qos": lambda each: _called("rclcpp::ServicesQoS()", each, configuration),
+            "action_qos": lambda each: _called(f"rclcpp::QoS({_DEPTH})", each, configuration),
         }
 
     return package(_TARGET, models, configuration, values)
@@ -55,14 +58,25 @@ def _headers(layer: LayerNode, configuration: Configuration) -> list[str]:
     return sorted({header(each) for each in layer.node.interfaces} | reports | own)
 
 
-def _quality(topic: Inward | Outward, configuration: Configuration, *, sensor: bool = False) -> str:
-    """The quality of service in which messages are received, or (reliable) handed on, as C++.
+def _chosen(name: str, configuration: Configuration) -> QualityOfService:
+    """What the configuration says of a topic, service or action."""
+    return configuration.qos.get(name.removeprefix("/")) or QualityOfService()
 
-    Durability is taken over from who publishes; the configuration says the rest, if it does.
-    """
-    text = "rclcpp::SensorDataQoS()" if sensor else f"rclcpp::QoS({_DEPTH})"
-    chosen = configuration.qos.get(topic.topic.removeprefix("/"))
-    if chosen is None:
-        return text
+
+def _received(topic: Inward | Outward, configuration: Configuration) -> str:
+    """The quality of service in which messages are received, as C++; their durability is that of who publishes."""
+    chosen = _chosen(topic.topic, configuration)
+    sensor = topic.interface.package == "sensor_msgs"
+    return _changed("rclcpp::SensorDataQoS()" if sensor else f"rclcpp::QoS({_DEPTH})", chosen)
+
+
+def _called(usual: str, call: Call, configuration: Configuration) -> str:
+    """The quality of service towards the robot's service or action, as C++."""
+    chosen = _chosen(call.name, configuration)
+    durability = {None: "", "volatile": ".durability_volatile()", "transient_local": ".transient_local()"}
+    return _changed(usual, chosen) + durability[chosen.durability]
+
+
+def _changed(usual: str, chosen: QualityOfService) -> str:
     depth = f".keep_last({chosen.depth})" if chosen.depth else ""
-    return text + depth + (f".{chosen.reliability}()" if chosen.reliability else "")
+    return usual + depth + (f".{chosen.reliability}()" if chosen.reliability else "")

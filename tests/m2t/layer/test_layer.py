@@ -176,6 +176,25 @@ def test_leaves_out_what_is_not_asked_for(usher: robosc.Models, tmp_path: Path) 
         assert headers == {f"include/ear_layer/{each}.hpp" for each in names}
 
 
+def test_quality_of_service(usher: robosc.Models) -> None:
+    chosen = {
+        "speed": {"reliability": "best_effort", "depth": 3},
+        "/stop": {"reliability": "best_effort"},
+        "/battery": {"depth": 7, "durability": "transient_local"},
+        "/lamp/light": {"depth": 4, "durability": "volatile"},
+        "go_to": {"reliability": "best_effort", "depth": 5},
+    }
+    settings = Configuration.model_validate({"qos": chosen})
+    assert TARGETS["ros2-layer"].findings(usher, settings) == []
+    node = " ".join(robosc.generate("ros2-layer", usher, settings)["src/usher_layer_node.cpp"].split())
+    # Received as the configuration says, handed on reliably.
+    assert '"~/controller/speed", "/speed", rclcpp::QoS(10).keep_last(3).best_effort(), rclcpp::QoS(3),' in node
+    assert '"~/controller/stop", rclcpp::QoS(10).best_effort(), rclcpp::QoS(10),' in node
+    assert '"~/controller/battery", rclcpp::QoS(10).keep_last(7), rclcpp::QoS(7),' in node
+    assert '"/lamp/light", rclcpp::ServicesQoS().keep_last(4).durability_volatile(), service_timeout' in node
+    assert '"/go_to", rclcpp::QoS(10).keep_last(5).best_effort(), action_timeout' in node
+
+
 def test_the_platform_s_linter_is_content(usher: robosc.Models, settings: Configuration, tmp_path: Path) -> None:
     package = tmp_path / "usher_layer"
     for path, text in robosc.generate("ros1-layer", usher, settings).items():

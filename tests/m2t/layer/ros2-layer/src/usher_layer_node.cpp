@@ -98,13 +98,13 @@ class Layer : public rclcpp::Node {
         *this, "/stop", "~/controller/stop", rclcpp::QoS(10), rclcpp::QoS(10),
         [this](const auto& message) { return on_message_stop(message); });
     message_resume_ = std::make_unique<MessageRelay<std_msgs::msg::Empty>>(
-        *this, "/resume", "~/controller/resume", rclcpp::QoS(10), rclcpp::QoS(10),
+        *this, "/resume", "~/controller/resume", rclcpp::QoS(10).best_effort(), rclcpp::QoS(10),
         [this](const auto& message) { return on_message_resume(message); });
     message_battery_ = std::make_unique<MessageRelay<std_msgs::msg::Int16>>(
         *this, "battery", "~/controller/battery", rclcpp::QoS(10), rclcpp::QoS(10),
         [this](const auto& message) { return on_message_battery(message); });
     message_speed_ = std::make_unique<MessageRelay<std_msgs::msg::Float32>>(
-        *this, "~/controller/speed", "/speed", rclcpp::QoS(10), rclcpp::QoS(10),
+        *this, "~/controller/speed", "/speed", rclcpp::QoS(10).keep_last(20).best_effort(), rclcpp::QoS(20),
         [this](const auto&) { return pass_message_speed(); });
     message_label_ = std::make_unique<MessageRelay<std_msgs::msg::String>>(
         *this, "~/controller/label", "label", rclcpp::QoS(10), rclcpp::QoS(10),
@@ -116,7 +116,8 @@ class Layer : public rclcpp::Node {
     service_light.response = [this](const auto& message) { on_service_light_response(message); };
     service_light.error = [this](const std::string& why) { on_service_light_error(why); };
     service_light_ = std::make_unique<ServiceProxy<service_light_type>>(
-        *this, "~/controller/lamp/light", "/lamp/light", service_timeout, service_light);
+        *this, "~/controller/lamp/light", "/lamp/light",
+        rclcpp::ServicesQoS().keep_last(20), service_timeout, service_light);
     using action_go_to_type = nav2_msgs::action::NavigateToPose;
     ActionProxy<action_go_to_type>::Handlers action_go_to;
     action_go_to.goal = [this](const auto&) { return pass_action_go_to(); };
@@ -128,7 +129,8 @@ class Layer : public rclcpp::Node {
       RCLCPP_WARN(get_logger(), "%s: %s", "/go_to", why.c_str());
     };
     action_go_to_ = std::make_unique<ActionProxy<action_go_to_type>>(
-        *this, "~/controller/go_to", "/go_to", action_timeout, action_go_to);
+        *this, "~/controller/go_to", "/go_to",
+        rclcpp::QoS(10).keep_last(20).best_effort(), action_timeout, action_go_to);
     timer_ = create_wall_timer(period, [this] { publish_state(); });
   }
 

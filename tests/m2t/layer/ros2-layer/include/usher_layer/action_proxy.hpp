@@ -39,8 +39,9 @@ class ActionProxy {
     std::function<void(const std::string&)> refused;  ///< The robot does not cancel it.
   };
 
+  /// `quality`: of the feedback that the robot sends.
   ActionProxy(rclcpp::Node& node, const std::string& controller_side, const std::string& robot_side,
-              std::chrono::milliseconds timeout, Handlers handlers)
+              const rclcpp::QoS& quality, std::chrono::milliseconds timeout, Handlers handlers)
       : clock_(waiting_clock(node)),
         timeout_(timeout),
         within_(" within " + std::to_string(timeout.count()) + " ms"),
@@ -51,11 +52,12 @@ class ActionProxy {
     goal_client_ = node.create_client<SendGoal>(outside + "send_goal");
     result_client_ = node.create_client<GetResult>(outside + "get_result");
     cancel_client_ = node.create_client<CancelGoal>(outside + "cancel_goal");
-    feedback_publisher_ = node.create_publisher<FeedbackMessage>(inside + "feedback", 10);
+    feedback_publisher_ = node.create_publisher<FeedbackMessage>(inside + "feedback", rclcpp::QoS(quality.depth()));
     status_publisher_ = node.create_publisher<StatusArray>(inside + "status", lasting);
 
     feedback_subscription_ = node.create_subscription<FeedbackMessage>(
-        outside + "feedback", 10, [this](std::shared_ptr<const FeedbackMessage> message) { on_feedback(*message); });
+        outside + "feedback", quality,
+        [this](std::shared_ptr<const FeedbackMessage> message) { on_feedback(*message); });
     status_subscription_ = node.create_subscription<StatusArray>(
         outside + "status", lasting, [this](std::shared_ptr<const StatusArray> message) { on_status(*message); });
     goal_service_ = node.create_service<SendGoal>(

@@ -31,10 +31,11 @@ class ServiceProxy {
     std::function<void(const std::string&)> error;   ///< It has not, and why.
   };
 
+  /// `quality`: of calls of the robot's service.
   ServiceProxy(rclcpp::Node& node, const std::string& controller_side, const std::string& robot_side,
-               std::chrono::milliseconds timeout, Handlers handlers)
+               const rclcpp::QoS& quality, std::chrono::milliseconds timeout, Handlers handlers)
       : handlers_(std::move(handlers)),
-        robot_(node, robot_side, rclcpp::ServicesQoS(), timeout,
+        robot_(node, robot_side, quality, timeout,
                {
                    [this](const Response& response) {
                      handlers_.response(response);
