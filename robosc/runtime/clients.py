@@ -130,16 +130,24 @@ class ActionClient:
         self._cancelling = False
         self._asked = False
         self._deadline: Appointment | None = None
+        self._until = 0.0
 
     @property
     def busy(self) -> bool:
         """Whether a goal has not ended yet; until then no other may start."""
         return self._phase is not _Phase.IDLE
 
+    @property
+    def unanswered(self) -> float:
+        """Seconds that are left for the goal to be accepted or rejected; 0 where none was sent."""
+        left = self._until - self._agenda.clock() if self._phase is _Phase.SENT else 0.0
+        return min(max(0.0, left), self._timeout)
+
     def start(self, goal: Message) -> None:
         """Sends a goal as soon as there is a server. A goal that has not ended is given up."""
         self.give_up()
         self._phase = _Phase.LOOKING
+        self._until = self._agenda.clock() + self._timeout
         self._wait_for(self._expire)
         self._look(self._number, goal)
 
@@ -158,8 +166,9 @@ class ActionClient:
             self._ask_to_cancel()
 
     def give_up(self) -> None:
-        """Nothing follows of the goal; a server that has it is told to cancel it."""
-        if self._phase is _Phase.ACCEPTED and not self._asked and self._goal is not None:
+        """Nothing follows of the goal; a server that has it, or may have it, is told to cancel it."""
+        unasked = self._phase is _Phase.ACCEPTED and not self._asked
+        if (unasked or self._phase is _Phase.SENT) and self._goal is not None:
             self._goal.cancel()
         self._forget()
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from dataclasses import dataclass
 from functools import reduce
 from typing import TYPE_CHECKING
@@ -34,6 +35,8 @@ if TYPE_CHECKING:
     from robosc.runtime.settings import Settings
 
 _Client = rosgraph.ServiceClient | rosgraph.ActionClient
+#: Seconds that the end of the node waits for goals which it has cancelled.
+_FAREWELL = 0.5
 
 
 @dataclass
@@ -92,6 +95,7 @@ class Controller:
         self._wiring = Wiring(port, agenda)
         self._watchdogs: dict[rosgraph.Subscription, Watchdog] = {}
         self._stopping = False
+        self._patience = self._farewell = 0.0
         roles = Roles(graph.model)
         self._events = {event_name(each): each for each in roles.events}
         self._incoming = set(roles.incoming)
@@ -170,14 +174,24 @@ class Controller:
         if not self._stopping:
             self._stopping = True
             self._halt()
+            self._patience = time.monotonic() + max((each.unanswered for each in self._cancels.values()), default=0.0)
+            self._farewell = time.monotonic() + _FAREWELL
 
     @property
     def busy(self) -> bool:
-        """Whether a goal has not ended yet."""
-        return any(each.busy for each in self._cancels.values())
+        """Whether the end has to wait: until a goal that was sent is accepted and cancelled, then a little for its end.
+
+        What is left of the timeout bounds it, on the steady clock: simulated time may stand still.
+        """
+        now = time.monotonic()
+        if now < self._patience and any(each.unanswered for each in self._cancels.values()):
+            self._farewell = now + _FAREWELL
+        return now < self._farewell and any(each.busy for each in self._cancels.values())
 
     def close(self) -> None:
         """Nothing more will happen."""
+        for client in self._cancels.values():
+            client.give_up()
         self._log.close()
 
     def _watch(self, topic: str, seconds: float, *, stops: bool) -> Watchdog:

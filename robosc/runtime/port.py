@@ -54,7 +54,7 @@ class Goal(Protocol):
     """A goal that was sent."""
 
     def cancel(self) -> None:
-        """Asks the server to cancel it; the server has accepted it."""
+        """Asks the server to cancel it; a server that does not know it yet may take no notice (ROS 2)."""
 
 
 class Acting(Protocol):

@@ -48,6 +48,8 @@ _HINT = (
 _DEPTH = 10
 _LONGEST_WAIT = 0.1
 _FAREWELL = 0.5
+#: Nothing tells when a message has left the node.
+_DELIVERY = 0.2
 
 
 class Ros1Node:
@@ -159,6 +161,7 @@ class Ros1Node:
         while acting.busy and time.monotonic() < until:
             self._spin_once()
         acting.close()
+        time.sleep(_DELIVERY)
         self.close()
 
     def _spin_once(self) -> None:

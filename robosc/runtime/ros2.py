@@ -5,6 +5,7 @@ from __future__ import annotations
 import signal
 import time
 from typing import TYPE_CHECKING, Any
+from uuid import uuid4
 
 from robosc.metamodel import rosgraph
 from robosc.runtime.agenda import Agenda
@@ -15,6 +16,7 @@ from robosc.runtime.starting import StartError, interface_class
 try:
     import rclpy
     import rclpy.action
+    import rclpy.action.client
     import rclpy.exceptions
     from action_msgs.msg import GoalStatus
     from rcl_interfaces.msg import IntegerRange, ParameterDescriptor
@@ -31,6 +33,7 @@ try:
     from rclpy.signals import SignalHandlerOptions
     from rclpy.type_support import NoTypeSupportImportedException, check_for_type_support
     from std_msgs.msg import String
+    from unique_identifier_msgs.msg import UUID
 except ImportError as error:
     raise StartError(
         f"ROS 2 is not there for this Python: {error}",
@@ -164,8 +167,10 @@ class Ros2Node:
         while not interrupted and rclpy.ok():
             self._spin_once()
         acting.stop()
-        self._take_leave(lambda: acting.busy)
+        while acting.busy:
+            self._spin_once()
         acting.close()
+        self._take_leave()
         self.close()
 
     def _spin_once(self) -> None:
@@ -173,11 +178,9 @@ class Ros2Node:
         wait = _LONGEST_WAIT if left is None or self.simulated else min(left, _LONGEST_WAIT)
         self.executor.spin_once(timeout_sec=wait)
 
-    def _take_leave(self, busy: Callable[[], bool]) -> None:
+    def _take_leave(self) -> None:
         """Lets what was sent last arrive, as far as that is soon."""
         until = time.monotonic() + _FAREWELL
-        while busy() and time.monotonic() < until:
-            self._spin_once()
         for each in self._publishers.values():
             each.wait_for_all_acked(rclpy.duration.Duration(seconds=max(0.0, until - time.monotonic())))
 
@@ -298,18 +301,14 @@ class _Goal:
 
     def __init__(self, client: Any, goal: Message, handlers: GoalHandlers) -> None:
         self._handlers = handlers
-        self._handle: Any = None
-        self._to_cancel = False
-        sent = client.send_goal_async(goal, feedback_callback=lambda message: handlers.feedback(message.feedback))
+        identifier = UUID(uuid=list(uuid4().bytes))
+        self._handle = rclpy.action.client.ClientGoalHandle(client, identifier, None)
+        sent = client.send_goal_async(goal, lambda message: handlers.feedback(message.feedback), identifier)
         sent.add_done_callback(lambda future: _answer(future, self._decided, self._failed))
 
     def cancel(self) -> None:
-        self._to_cancel = True
-        if self._handle is not None:
-            answer = self._handle.cancel_goal_async()
-            answer.add_done_callback(
-                lambda future: _answer(future, self._cancelling, lambda _: self._handlers.refused())
-            )
+        answer = self._handle.cancel_goal_async()
+        answer.add_done_callback(lambda future: _answer(future, self._cancelling, lambda _: self._handlers.refused()))
 
     def _decided(self, handle: Any) -> None:
         if not handle.accepted:
@@ -317,8 +316,6 @@ class _Goal:
             return
         self._handle = handle
         self._handlers.accepted()
-        if self._to_cancel:
-            self.cancel()
         handle.get_result_async().add_done_callback(lambda future: _answer(future, self._ended, self._failed))
 
     def _ended(self, answer: Any) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -184,6 +185,29 @@ def test_stopping_cancels_goals_then_sends_the_last_messages_and_nothing_more(ma
     assert not world.controller.busy
     assert len(world.port.sent) == count + 1
     assert [each["event"] for each in events(world) if each["direction"] == "outside"] == ["message_halt.c_trigger"]
+
+
+@pytest.mark.parametrize(("accepted", "ended"), [(True, 4.5), (False, 5.5)])
+def test_the_end_waits_for_the_answer_to_a_goal_and_cancels_it(
+    make: Callable[..., World], monkeypatch: pytest.MonkeyPatch, accepted: bool, ended: float
+) -> None:
+    world = make()
+    monkeypatch.setattr("robosc.runtime.controller.time", SimpleNamespace(monotonic=lambda: world.port.time))
+    world.port.types = {}
+    world.hear("scan", ranges=[3.0, 0.3])
+    world.hear("travel_order", data=True)
+    world.wait(0.1)
+    (goal,) = world.port.goals
+    start = world.port.time
+    world.controller.stop()
+    while world.controller.busy:
+        if accepted and world.port.time >= start + 4.0:
+            goal.handlers.accepted()
+        world.wait(0.125)
+    assert world.port.time - start == pytest.approx(ended, abs=0.2)
+    assert goal.cancels == accepted
+    world.controller.close()
+    assert goal.cancels == 1
 
 
 def test_wiring_is_reported_by_name_and_once(make: Callable[..., World]) -> None:

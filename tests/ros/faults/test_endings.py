@@ -41,6 +41,20 @@ def test_shutdown_while_driving(guarded: Scout, number: signal.Signals) -> None:
     assert "Traceback" not in guarded.output()
 
 
+def test_shutdown_before_acceptance(guarded: Scout) -> None:
+    guarded.rest()
+    server = guarded.serve()
+    heard = len(server.said)
+    guarded.send("/travel_order", data=True)
+    goal = server.wait("goal", heard)["goal"]
+    os.kill(guarded.process.pid, signal.SIGINT)
+    guarded.nothing(0.6)
+    server.do("decide", number=goal, accept=True)
+    server.wait("cancel", heard, value=goal)
+    assert guarded.process.wait(10) == 0
+    assert "Traceback" not in guarded.output()
+
+
 def test_killed_and_restarted(guarded: Scout) -> None:
     server, _ = under_way(guarded)
     guarded.process.kill()
