@@ -28,6 +28,7 @@ try:
         ReliabilityPolicy,
         qos_check_compatible,
         qos_profile_sensor_data,
+        qos_profile_services_default,
     )
     from rclpy.qos_overriding_options import QoSOverridingOptions
     from rclpy.signals import SignalHandlerOptions
@@ -110,9 +111,9 @@ class Ros2Node:
             quality = latched if name == "definition" else QoSProfile(depth=_DEPTH)
             self._reports[name] = self.node.create_publisher(String, f"~/{name}", quality)
 
-    def _quality(self, topic: str, usual: Any) -> Any:
-        """What the configuration says of a topic goes first."""
-        chosen = self._configuration.qos.get(topic.removeprefix("/"))
+    def _quality(self, name: str, usual: Any) -> Any:
+        """What the configuration says of a topic, service or action goes first."""
+        chosen = self._configuration.qos.get(name.removeprefix("/"))
         if chosen is None:
             return usual
         made = QoSProfile(depth=chosen.depth or usual.depth, reliability=usual.reliability, durability=usual.durability)
@@ -219,10 +220,18 @@ class Ros2Port(Ros2Node):
                 kind, publisher.topic, quality, qos_overriding_options=overriding
             )
         for service in self._graph.serviceClients:
-            self._clients[service] = self.node.create_client(self._types[service.interface], service.identifier)
+            self._clients[service] = self.node.create_client(
+                self._types[service.interface],
+                service.identifier,
+                qos_profile=self._quality(service.identifier, qos_profile_services_default),
+            )
         for action in self._graph.actionClients:
-            kind = self._types[action.interface]
-            self._clients[action] = rclpy.action.ActionClient(self.node, kind, action.identifier)
+            self._clients[action] = rclpy.action.ActionClient(
+                self.node,
+                self._types[action.interface],
+                action.identifier,
+                feedback_sub_qos_profile=self._quality(action.identifier, QoSProfile(depth=_DEPTH)),
+            )
         for subscription in self._graph.subscriptions:
             self._listen(subscription, controller, overriding)
 

@@ -52,6 +52,10 @@ class Peer:
     def listeners(self, topic):
         return self.ros.listeners(self.publishers[topic][1])
 
+    def asked_for(self, topic):
+        """How reliably the topic's listeners want it (ROS 2)."""
+        return self.ros.asked_for(topic)
+
     def publish(self, topic, fields):
         kind, publisher = self.publishers[topic]
         publisher.publish(fill(kind(), fields))

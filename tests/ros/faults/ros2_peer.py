@@ -63,6 +63,9 @@ class Ros:
     def listeners(self, publisher):
         return publisher.get_subscription_count()
 
+    def asked_for(self, topic):
+        return [each.qos_profile.reliability.name for each in self.node.get_subscriptions_info_by_topic(topic)]
+
     def time(self, seconds):
         return Time(nanoseconds=int(seconds * 1e9)).to_msg()
 

@@ -81,3 +81,9 @@ def test_best_effort_sensor_is_received(scout: Scout, stranger: Peer) -> None:
     assert "/scan: /stranger" not in scout.output()
     stranger.do("silence", topic="/scan")
     stranger.do("withdraw", topic="/scan")
+
+
+def test_quality_of_service_of_feedback(scout: Scout) -> None:
+    if scout.version == 1:
+        pytest.skip("ROS 1 has no quality of service")
+    assert set(scout.world.do("asked_for", topic="/travel/_action/feedback")) == {"BEST_EFFORT"}
