@@ -128,13 +128,14 @@ class Port(Reporting, Calling, Protocol):
         """Sends a goal; the handlers are not called from inside."""
 
     def wiring(self) -> Mapping[rosgraph.Subscription | rosgraph.Publisher, list[Endpoint]]:
-        """Who else publishes on the node's topics."""
+        """Who else publishes on the node's topics; in ROS 2 who listens to what it publishes, too."""
 
 
 @dataclass(frozen=True)
 class Endpoint:
-    """A publisher on a topic: its node, its type as its ROS writes it, and what keeps it from being heard."""
+    """Who publishes on a topic, or listens: its node, its type as its ROS writes it, what keeps it and us apart."""
 
     node: str
     type: str
     incompatible: str | None = None
+    listens: bool = False

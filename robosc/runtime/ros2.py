@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import signal
 import time
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 from uuid import uuid4
 
@@ -20,6 +21,7 @@ try:
     import rclpy.exceptions
     from action_msgs.msg import GoalStatus
     from rcl_interfaces.msg import IntegerRange, ParameterDescriptor
+    from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
     from rclpy.executors import SingleThreadedExecutor
     from rclpy.qos import (
         DurabilityPolicy,
@@ -199,7 +201,7 @@ class Ros2Port(Ros2Node):
         self, name: str, graph: rosgraph.RosGraph, configuration: Configuration, arguments: Sequence[str]
     ) -> None:
         super().__init__(name, graph, configuration, arguments)
-        self._qualities: dict[rosgraph.Subscription, Any] = {}
+        self._qualities: dict[rosgraph.Subscription | rosgraph.Publisher, Any] = {}
 
     def connect(self, controller: Controller) -> None:
         """Makes what the controller sends with, then what it listens to. Raises StartError where ROS refuses a name."""
@@ -215,9 +217,14 @@ class Ros2Port(Ros2Node):
     def _connect(self, controller: Controller) -> None:
         overriding = QoSOverridingOptions.with_default_policies()
         for publisher in self._graph.publishers:
-            kind, quality = self._types[publisher.interface], self._quality(publisher.topic, QoSProfile(depth=_DEPTH))
+            self._qualities[publisher] = self._quality(publisher.topic, QoSProfile(depth=_DEPTH))
             self._publishers[publisher] = self.node.create_publisher(
-                kind, publisher.topic, quality, qos_overriding_options=overriding
+                self._types[publisher.interface],
+                publisher.topic,
+                self._qualities[publisher],
+                qos_overriding_options=overriding,
+                # The wiring says what does not fit.
+                event_callbacks=PublisherEventCallbacks(use_default_callbacks=False),
             )
         for service in self._graph.serviceClients:
             self._clients[service] = self.node.create_client(
@@ -246,6 +253,7 @@ class Ros2Port(Ros2Node):
             lambda message: controller.receive(subscription, message),
             quality,
             qos_overriding_options=overriding,
+            event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
         )
 
     # What the core asks
@@ -281,19 +289,24 @@ class Ros2Port(Ros2Node):
         return {each: self._endpoints(each) for each in elements}
 
     def _endpoints(self, element: rosgraph.Subscription | rosgraph.Publisher) -> list[Endpoint]:
-        found = []
-        own = _full_name(self.node.get_namespace(), self.node.get_name())
-        for each in self.node.get_publishers_info_by_topic(element.topic):
-            name = _full_name(each.node_namespace, each.node_name)
-            if name != own and "UNKNOWN" not in name:
-                found.append(Endpoint(name, each.topic_type, self._incompatible(element, each.qos_profile)))
-        return found
+        own = self._qualities[element]
+        found = [
+            self._endpoint(each, each.qos_profile, own)
+            for each in self.node.get_publishers_info_by_topic(element.topic)
+        ]
+        if isinstance(element, rosgraph.Publisher):
+            found += [
+                replace(self._endpoint(each, own, each.qos_profile), listens=True)
+                for each in self.node.get_subscriptions_info_by_topic(element.topic)
+            ]
+        myself = _full_name(self.node.get_namespace(), self.node.get_name())
+        return [each for each in found if each.node != myself and "UNKNOWN" not in each.node]
 
-    def _incompatible(self, element: rosgraph.Subscription | rosgraph.Publisher, offered: Any) -> str | None:
-        if not isinstance(element, rosgraph.Subscription):
-            return None
-        compatibility, reason = qos_check_compatible(offered, self._qualities[element])
-        return reason.strip(";: ") if compatibility == QoSCompatibility.ERROR else None
+    @staticmethod
+    def _endpoint(other: Any, offered: Any, asked: Any) -> Endpoint:
+        compatibility, reason = qos_check_compatible(offered, asked)
+        fault = reason.strip(";: ") if compatibility == QoSCompatibility.ERROR else None
+        return Endpoint(_full_name(other.node_namespace, other.node_name), other.topic_type, fault)
 
 
 def _executor() -> Any:

@@ -15,10 +15,10 @@ _PATIENCE = 5
 
 
 class Wiring:
-    """Looks every second who else publishes on the node's topics.
+    """Looks every second who else is on the node's topics.
 
-    Reported are another type, a quality of service that does not fit, nobody for five seconds, and somebody beside the
-    controller on a topic that it commands.
+    Reported are another type, a quality of service that does not fit, nobody who publishes for five seconds, and
+    somebody who publishes beside the controller on a topic that it commands.
     """
 
     def __init__(self, port: Port, agenda: Agenda) -> None:
@@ -48,20 +48,21 @@ class Wiring:
         elif topic not in self._heard and self._looks >= _PATIENCE:
             self._report(f"{topic}: nobody publishes it after {_PATIENCE} s")
         for each in endpoints:
-            if not self._differs(topic, each, subscription.interface) and each.incompatible:
-                self._report(f"{topic}: {each.node} offers a quality of service that does not fit: {each.incompatible}")
+            self._compare(subscription, each, "publishes", "offers")
 
     def _commanded(self, publisher: rosgraph.Publisher, endpoints: list[Endpoint]) -> None:
         for each in endpoints:
-            if not self._differs(publisher.topic, each, publisher.interface):
+            if each.listens:
+                self._compare(publisher, each, "expects", "asks for")
+            else:
                 self._report(f"{publisher.topic}: {each.node} publishes it, too")
 
-    def _differs(self, topic: str, endpoint: Endpoint, interface: rosgraph.Interface) -> bool:
-        expected = self._port.type_name(interface)
-        if endpoint.type == expected:
-            return False
-        self._report(f"{topic}: {endpoint.node} publishes {endpoint.type}, not {expected}")
-        return True
+    def _compare(self, own: rosgraph.Subscription | rosgraph.Publisher, other: Endpoint, does: str, has: str) -> None:
+        topic, expected = own.topic, self._port.type_name(own.interface)
+        if other.type != expected:
+            self._report(f"{topic}: {other.node} {does} {other.type}, not {expected}")
+        elif other.incompatible:
+            self._report(f"{topic}: {other.node} {has} a quality of service that does not fit: {other.incompatible}")
 
     def _report(self, text: str) -> None:
         if text not in self._reported:

@@ -216,7 +216,11 @@ def test_wiring_is_reported_by_name_and_once(make: Callable[..., World]) -> None
     fits = Endpoint("/camera", world.port.type_name(scan.interface), "it is best effort")
     world.port.endpoints = {
         scan: [Endpoint("/lidar", "std_msgs/Empty"), fits],
-        other: [Endpoint("/teleop", world.port.type_name(other.interface))],
+        other: [
+            Endpoint("/teleop", world.port.type_name(other.interface)),
+            Endpoint("/wheels", "std_msgs/Empty", listens=True),
+            Endpoint("/logger", world.port.type_name(other.interface), "it is volatile", listens=True),
+        ],
         world.graph.subscriptions[1]: [],
     }
     world.wait(10)
@@ -225,6 +229,8 @@ def test_wiring_is_reported_by_name_and_once(make: Callable[..., World]) -> None
         f"{scan.topic}: /lidar publishes std_msgs/Empty, not {expected}",
         f"{scan.topic}: /camera offers a quality of service that does not fit: it is best effort",
         f"{other.topic}: /teleop publishes it, too",
+        f"{other.topic}: /wheels expects std_msgs/Empty, not {world.port.type_name(other.interface)}",
+        f"{other.topic}: /logger asks for a quality of service that does not fit: it is volatile",
         f"{world.graph.subscriptions[1].topic}: nobody publishes it after 5 s",
     ]
 

@@ -69,6 +69,19 @@ def test_incompatible_quality_of_service(scout: Scout, stranger: Peer) -> None:
     stranger.do("withdraw", topic="/charge")
 
 
+def test_listener_that_can_not_hear(scout: Scout, stranger: Peer) -> None:
+    if scout.version == 1:
+        pytest.skip("ROS 1 itself tells of listeners")
+    since = scout.now()
+    logger = scout.meet("logger")
+    logger.do("listen", topic="/cmd_vel", kind="std_msgs/String")
+    once(scout, since, "/cmd_vel: /logger expects std_msgs/…String, not geometry_msgs/…Twist")
+    logger.process.kill()
+    stranger.do("listen", topic="/cmd_vel", kind="geometry_msgs/Twist", latched=True)
+    once(scout, since, "/cmd_vel: /stranger asks for a quality of service that does not fit: …")
+    assert len(re.findall("quality of service|QoS", scout.output(since))) == 1
+
+
 def test_best_effort_sensor_is_received(scout: Scout, stranger: Peer) -> None:
     if scout.version == 1:
         pytest.skip("ROS 1 has no quality of service")
