@@ -67,8 +67,12 @@ class Ros2Node:
         self._graph = graph
         self._configuration = configuration
         self._types = {each: self._type(each) for each in graph.interfaces}
-        rclpy.init(args=["robosc", *arguments], signal_handler_options=SignalHandlerOptions.NO)
-        self.node = rclpy.create_node(name)
+        try:
+            rclpy.init(args=["robosc", *arguments], signal_handler_options=SignalHandlerOptions.NO)
+            self.node = rclpy.create_node(name)
+        except (RuntimeError, rclpy.exceptions.ParameterException) as error:
+            # Of an argument, a file or a folder, the log's too; where in rcl it was found helps nobody.
+            raise StartError(f"ROS 2 does not start: {str(error).partition(', at /')[0]}") from None
         self.executor = _executor()
         self.executor.add_node(self.node)
         self._clock = self.node.get_clock()

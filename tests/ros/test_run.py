@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 HERE = Path(__file__).parent
 PACKAGE = "courier_controller"
+LINE_FOLLOWER = HERE.parents[1] / "examples" / "line_follower" / "line_follower.rscd"
 NAVIGATION = HERE.parents[1] / "examples" / "simple_navigation" / "simple_navigation.rscd"
 
 
@@ -53,11 +54,18 @@ def test_a_package_that_is_not_built_is_named(runner: Runner) -> None:
     assert "Traceback" not in done.stderr
 
 
+def test_a_log_folder_that_can_not_be_written_is_named(run_ros2: Runner) -> None:
+    environment = {**run_ros2.environment(), "ROS_LOG_DIR": "/proc/log"}
+    done = subprocess.run(run_ros2.command(LINE_FOLLOWER), env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert "Failed to create log directory '/proc/log'" in done.stderr
+    assert "Traceback" not in done.stderr
+
+
 @pytest.mark.parametrize("parameter", ["period_ms:=0", "period_ms:=often"])
 def test_a_parameter_out_of_range_is_named(runner: Runner, parameter: str, tmp_path: Path) -> None:
-    model = HERE.parents[1] / "examples" / "line_follower" / "line_follower.rscd"
     with middleware(runner, tmp_path / "run") as processes:
-        node = processes.start("node", runner.command(model, parameter))
+        node = processes.start("node", runner.command(LINE_FOLLOWER, parameter))
         processes.wait_until(lambda: node.poll() is not None, "the node gives up")
         assert node.returncode == 2
         text = processes.logs()
