@@ -9,8 +9,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <exception>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -61,14 +63,20 @@ class Controller : public rclcpp_lifecycle::LifecycleNode {
       } else if (wiring_) {
         wiring_->stop();
       }
-    });
+    }, [this] { return waits(travel_client_); });
   }
 
   using CallbackReturn = rclcpp_lifecycle::node_interfaces::LifecycleNodeInterface::CallbackReturn;
 
   CallbackReturn on_configure(const rclcpp_lifecycle::State&) override {
-    configure();
-    return CallbackReturn::SUCCESS;
+    try {
+      configure();
+      return CallbackReturn::SUCCESS;
+    } catch (const std::exception& error) {
+      RCLCPP_ERROR(get_logger(), "not configured: %s", error.what());
+      release();
+      return CallbackReturn::FAILURE;
+    }
   }
 
   CallbackReturn on_activate(const rclcpp_lifecycle::State& state) override {
@@ -388,8 +396,14 @@ class Controller : public rclcpp_lifecycle::LifecycleNode {
         .add("transitions", transitions);
   }
 
+  template <typename Client>
+  static bool waits(const std::optional<Client>& client) {
+    return client && client->waits();
+  }
+
   // Connects the node to everything that the model names.
   void configure() {
+    if (waits(travel_client_)) throw std::runtime_error("/travel: its server has not answered the last goal");
     log_ =
         EventLog(parameter<std::string>(*this, "event_log", "",
         "A file that gets a line of JSON for each event; empty: none."));
@@ -444,7 +458,7 @@ class Controller : public rclcpp_lifecycle::LifecycleNode {
         [this](const nav2_msgs::action::NavigateToPose::Feedback& message) { on_travel_feedback(message); },
         [this](const nav2_msgs::action::NavigateToPose::Result& message) { on_travel_response(message); },
         [this](const std::string& why) { on_travel_error(why); },
-        [this] { wake(); }});
+        [this] { if (timer_) wake(); }});
     travel_retry_.emplace(*this, retry, [this] { wake(); });
 
     rclcpp::PublisherOptions reporting;
@@ -497,6 +511,7 @@ class Controller : public rclcpp_lifecycle::LifecycleNode {
     stop_watchdog_->stop();
   }
 
+  // Connected to nothing, with nothing kept; but a goal that waits for its acceptance is still to be cancelled.
   void release() {
     timer_.reset();
     order_subscription_.reset();
@@ -505,12 +520,22 @@ class Controller : public rclcpp_lifecycle::LifecycleNode {
     stop_watchdog_.reset();
     grip_retry_.reset();
     grip_client_.reset();
+    grip_fault_.clear();
     release_retry_.reset();
     release_client_.reset();
+    release_fault_.clear();
     travel_retry_.reset();
-    travel_client_.reset();
+    if (waits(travel_client_)) {
+      travel_client_->cancel();
+    } else {
+      travel_client_.reset();
+    }
+    travel_fault_.clear();
     definition_report_.reset();
     state_report_.reset();
+    transitions_.clear();
+    listeners_ = 0;
+    if (cmd_vel_publisher_) flush(*cmd_vel_publisher_);
     cmd_vel_publisher_.reset();
     wiring_.reset();
   }

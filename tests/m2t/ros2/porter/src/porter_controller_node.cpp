@@ -57,7 +57,7 @@ class Controller : public rclcpp::Node {
     activate();
     shutdown_hook_.emplace(*this, [this] {
       if (active_) stop();
-    });
+    }, [this] { return waits(travel_client_); });
   }
 
  private:
@@ -352,6 +352,11 @@ class Controller : public rclcpp::Node {
         .add("time", seconds())
         .add("components", components)
         .add("transitions", transitions);
+  }
+
+  template <typename Client>
+  static bool waits(const std::optional<Client>& client) {
+    return client && client->waits();
   }
 
   // Connects the node to everything that the model names.

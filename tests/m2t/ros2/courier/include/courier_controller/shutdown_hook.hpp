@@ -14,20 +14,30 @@
 
 namespace courier_controller {
 
-/// Calls a function once before the context closes, or when the node goes: while it can still send.
+/// Calls a function once before the context closes, or when the node goes: while it can still send. The context stays
+/// open while the node `waits`; a node that goes before its context does not wait.
 ///
 /// The context closes in a thread of its own, so the function is handed to the executor of the node; only where none
 /// is running for a second does that thread call it.
 class ShutdownHook {
  public:
   template <typename Node>
-  ShutdownHook(Node& node, std::function<void()> function)
+  ShutdownHook(Node& node, std::function<void()> function, std::function<bool()> waits = [] { return false; })
       : function_(std::move(function)), context_(node.get_node_base_interface()->get_context()) {
-    timer_ = node.create_wall_timer(std::chrono::milliseconds(1), [this] { run(); });
+    timer_ = node.create_wall_timer(std::chrono::milliseconds(1), [this, waits = std::move(waits)] {
+      served_ = true;
+      run();
+      if (waits()) return;
+      timer_->cancel();
+      done_.set_value();
+    });
     timer_->cancel();
     handle_ = context_->add_pre_shutdown_callback([this] {
+      const std::future<void> done = done_.get_future();
       timer_->reset();
-      if (done_.get_future().wait_for(std::chrono::seconds(1)) != std::future_status::ready) run();
+      while (done.wait_for(std::chrono::seconds(1)) != std::future_status::ready) {
+        if (!served_.exchange(false)) return run();
+      }
     });
   }
 
@@ -41,14 +51,12 @@ class ShutdownHook {
 
  private:
   void run() {
-    timer_->cancel();
     if (started_.exchange(true)) return;
     try {
       function_();
     } catch (const std::exception& error) {
       RCLCPP_ERROR(rclcpp::get_logger("courier_controller"), "while it ends: %s", error.what());
     }
-    done_.set_value();
   }
 
   std::function<void()> function_;
@@ -56,6 +64,7 @@ class ShutdownHook {
   rclcpp::PreShutdownCallbackHandle handle_;
   rclcpp::TimerBase::SharedPtr timer_;
   std::atomic<bool> started_{false};
+  std::atomic<bool> served_{false};
   std::promise<void> done_;
 };
 

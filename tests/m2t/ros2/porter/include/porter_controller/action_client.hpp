@@ -45,6 +45,7 @@ class ActionClient {
       : handlers_(std::move(handlers)),
         name_(name),
         logger_(node.get_logger()),
+        timeout_(timeout),
         client_(rclcpp_action::create_client<Type>(&node, name, nullptr, options(quality))),
         heard_(node.template create_subscription<FeedbackMessage>(
             name + "/_action/feedback", quality,
@@ -65,6 +66,7 @@ class ActionClient {
     matters_ = true;
     to_cancel_ = false;
     fault_ = "no server";
+    patience_ = std::chrono::steady_clock::now() + timeout_;
     deadline_.start();
     send();
   }
@@ -83,6 +85,11 @@ class ActionClient {
 
   /// Whether a goal has not ended: one that was given up, too, and one that its server might still accept.
   bool busy() const { return phase_ != Phase::idle; }
+
+  /// Whether the server may still accept the goal in time; where simulated time stands still, the steady clock bounds it.
+  bool waits() const {
+    return phase_ == Phase::asked && deadline_.running() && std::chrono::steady_clock::now() < patience_;
+  }
 
  private:
   using Client = rclcpp_action::Client<Type>;
@@ -248,6 +255,8 @@ class ActionClient {
   Handlers handlers_;
   std::string name_;
   rclcpp::Logger logger_;
+  std::chrono::milliseconds timeout_;
+  std::chrono::steady_clock::time_point patience_;
   typename Client::SharedPtr client_;
   typename rclcpp::Subscription<FeedbackMessage>::SharedPtr heard_;
   std::deque<FeedbackMessage> early_;
