@@ -36,6 +36,8 @@ def _remapped_twice(base: rsc.Base) -> Iterator[Finding]:
             continue
         firsts: dict[rsc.CommunicationType, rsc.TopicRemapping] = {}
         for second in component.type.remappings:
+            if second.communicationType is None:
+                continue  # a name that is nothing, and that may be meant to be any other
             first = firsts.setdefault(second.communicationType, second)
             if first is not second:
                 yield Finding(

@@ -251,6 +251,27 @@ def test_unresolved_types_and_interfaces_draw_nothing_further(tmp_path: Path) ->
 
 
 @pytest.mark.parametrize(
+    "imported",
+    [
+        'Stop from Nowhere import Stop with { stop: "/a", go: "/b" }',
+        'Stop from Safety import Stopp with { stop: "/a", go: "/b" }',
+        'Stop from Safety import Stop with { stopp: "/a", goo: "/b" }',
+    ],
+)
+def test_unresolved_topics_are_not_one_and_the_same(tmp_path: Path, imported: str) -> None:
+    safety = """
+        library Safety {
+          component Stop {
+            outgoing message stop with type: none
+            outgoing message go with type: none
+          }
+        }
+    """
+    findings = found(tmp_path, f"robot House {{\n  component {imported}\n}}\n", safety=safety)
+    assert {each.rule for each in findings} == {"unresolved-reference"}
+
+
+@pytest.mark.parametrize(
     "damaged",
     [
         "component Door { behaviour { state closed { on response } initial marked state open { } } }",
