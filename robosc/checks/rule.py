@@ -11,7 +11,7 @@ from robosc.metamodel.places import place
 from robosc.metamodel.reflection import tree
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Callable, Iterator, Sequence
 
     from robosc.diagnostics import Diagnostic, Span
     from robosc.interfaces import Interfaces
@@ -32,8 +32,12 @@ class Finding:
     relies_on: ex.Located | None = None
     relies_on_names: tuple[type[ex.Located], ...] = ()
 
-    def can_be_false(self, findings: Iterable[Diagnostic]) -> bool:
+    def can_be_false(self, findings: Sequence[Diagnostic]) -> bool:
         """Whether what reading the text found makes it doubtful."""
+        if isinstance(self.element, ex.Expression):
+            expression = place(self.element)[1]
+            if any(each.rule == "syntax" and _goes_on(expression, each.span) for each in findings):
+                return True
         if self.relies_on is None:
             return False
         span = place(self.relies_on)[1]
@@ -42,6 +46,12 @@ class Finding:
             each.rule == "syntax" or isinstance(_innermost(self.relies_on, each.span), self.relies_on_names)
             for each in within
         )
+
+
+def _goes_on(expression: Span, unread: Span) -> bool:
+    """Whether text that can't be read may belong to an expression, as the point of `1.` does and the `3` of `2 3`."""
+    behind = expression.end_line == unread.line and 0 <= unread.column - expression.end_column <= 1
+    return behind or expression.contains(unread)
 
 
 def _innermost(element: ex.Located, span: Span) -> ex.Located:

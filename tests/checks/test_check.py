@@ -285,6 +285,26 @@ def test_damaged_text_draws_no_rule(tmp_path: Path, damaged: str) -> None:
     assert {each.rule for each in found(tmp_path, f"robot House {{\n  {damaged}\n}}\n")} == {"syntax"}
 
 
+@pytest.mark.parametrize("number", ["1.", "1 2", "1 .5", "99999999999999999999"])
+def test_a_number_that_can_not_be_read_has_no_type(tmp_path: Path, number: str) -> None:
+    robot = f"""
+        robot House {{
+          component Door {{
+            outgoing message opened with type: none
+            behaviour {{
+              variable width: double = {number}
+              initial marked state closed {{
+                on response from opened do width := {number} goto closed
+                transition if width > 1.0 and width = {number} goto closed
+              }}
+            }}
+          }}
+        }}
+    """
+    findings = [each for each in found(tmp_path, robot) if each.rule != "variable-type"]
+    assert places(findings) == [("robot.rscd", line, "syntax") for line in (5, 7, 8)]
+
+
 def test_ten_faults_are_ten_findings(tmp_path: Path) -> None:
     robot = """
         robot House {
