@@ -200,7 +200,7 @@ class _Linker:
 
     def _member(self, members: Names, name: Name, component: rsc.Component, declared: Declared) -> Any:
         found = members.get(name.text)
-        if found is None and not self._file.may_declare(name.text, declared):
+        if found is None and not self._file.may_hold(self._scope.origin(component), name.text, declared):
             what = "communication" if declared is Declared.COMMUNICATION else "variable or state"
             values = [] if declared is Declared.COMMUNICATION else self._scope.find(rsc.EnumValue, name.text)
             hint = self._value_of_enum(name, values[0][1]) if values else None
@@ -217,7 +217,7 @@ class _Linker:
         states = self._scope.states(own) if own is not None else {}
         if name.text in states:
             transition.target = states[name.text]
-        elif own is not None and not self._file.may_declare(name.text, Declared.MEMBER, imported=False):
+        elif own is not None and not self._file.may_hold(own, name.text, Declared.MEMBER):
             self._missing(name, f"component `{own.name}` has no state", states)
 
     # Expressions
@@ -335,7 +335,7 @@ class _Linker:
             if each.name == name.text:
                 return each
         known = [each.name for each in of.definition.properties]
-        if not self._file.may_declare(name.text, Declared.PROPERTY):
+        if not self._file.may_hold(of.definition, name.text, Declared.PROPERTY):
             self._missing(name, f"object `{of.definition.name}` has no property", known)
         return None
 

@@ -97,6 +97,7 @@ class _Recovery:
         at_end = tokens[len(tokens) - 1].kind is Kind.OPEN_COMMENT
         why: str | None
         for each in braces:
+            self._unread.mended = True
             token = tokens[each.index]
             if each.surplus:
                 why = "what follows belongs inside" if each.text == "}" else "one stands before it"
@@ -270,7 +271,8 @@ class _Recovery:
             # What a library would have brought.
             unseen |= {Declared.COMMUNICATION, Declared.MEMBER, Declared.INTERFACE, Declared.DATA_TYPE}
             unseen |= {Declared.ENUM_VALUE, Declared.PROPERTY}
-        self._unread.nameless |= unseen
+        place = self._text.span(block.start, block.end)
+        self._unread.nameless += ((each, place) for each in unseen)
 
     def _blank(self, start: int, end: int) -> None:
         self._content[start:end] = [each if each == "\n" else " " for each in self._content[start:end]]

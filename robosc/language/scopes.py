@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeAlias
 
+from robosc.diagnostics import Span
 from robosc.instances import Instance, Instances
 from robosc.language.unread import Declared, Unread
 from robosc.metamodel import robosc as rsc
@@ -60,6 +61,19 @@ class File:
         libraries = self.libraries.values() if imported else ()
         return any(each is None or each.may_declare(name, *kinds) for each in libraries)
 
+    def may_hold(self, definition: rsc.Definition, name: str, kind: Declared) -> bool:
+        """Whether a definition, of this file or of a library, may declare a name in text that could not be read."""
+        unread = self._homes[definition.eContainer()].unread
+        return unread.may_declare(name, (kind,), Span.parse(definition.source))
+
+    @cached_property
+    def _homes(self) -> dict[rsc.Base | None, File]:
+        """The files of this base and of all that it imports, also from afar."""
+        homes = {self.base: self}
+        for each in self.libraries.values():
+            homes |= each._homes if each is not None else {}
+        return homes
+
 
 class Scope:
     """The names of one robot or library, whose imports are linked already."""
@@ -94,6 +108,12 @@ class Scope:
                 return None
             self._members[component] = by_name(_members(instance))
         return self._members[component]
+
+    def origin(self, component: rsc.Component) -> rsc.Component:
+        """The component whose text declares the members of a component that is not broken."""
+        while isinstance(component.type, rsc.ImportedComponent):
+            component = component.type.definition
+        return component
 
     def states(self, component: rsc.Component) -> Names:
         """The states of a component; empty where its import is broken."""

@@ -4,6 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from enum import Enum, auto
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from robosc.diagnostics import Span
 
 
 class Declared(Enum):
@@ -22,18 +26,27 @@ class Declared(Enum):
 class Unread:
     """The names that skipped text seems to declare, and where it stands.
 
-    `nameless` are the kinds of which a declaration was skipped whose name can't be seen; `ranges` are the texts that
-    were skipped, `doubtful` also the items that something unknown follows (offsets, the end exclusive).
+    `nameless` are the kinds of which a declaration was skipped whose name can't be seen, and where; `mended`: braces had
+    to be added or taken away. `ranges` are the texts that were skipped, `doubtful` also the items that something unknown
+    follows (offsets, the end exclusive).
     """
 
     names: set[str] = field(default_factory=set)
-    nameless: set[Declared] = field(default_factory=set)
+    nameless: list[tuple[Declared, Span]] = field(default_factory=list)
+    mended: bool = False
     ranges: list[tuple[int, int]] = field(default_factory=list)
     doubtful: list[tuple[int, int]] = field(default_factory=list)
 
-    def may_declare(self, name: str, kinds: tuple[Declared, ...]) -> bool:
-        """Whether a name of one of these kinds that is not found may be declared in skipped text."""
-        return name in self.names or not self.nameless.isdisjoint(kinds)
+    def may_declare(self, name: str, kinds: tuple[Declared, ...], within: Span | None = None) -> bool:
+        """Whether a name of one of these kinds that is not found may be declared in skipped text.
+
+        Only a declaration within a definition can declare a member of it, unless braces were mended: then nobody knows
+        what was meant to stand where.
+        """
+        if name in self.names:
+            return True
+        anywhere = within is None or self.mended
+        return any(kind in kinds and (anywhere or within.contains(place)) for kind, place in self.nameless)
 
     def is_doubtful(self, offset: int) -> bool:
         """Whether what stands at an offset may not mean what it seems to."""

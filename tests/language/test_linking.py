@@ -346,3 +346,23 @@ def test_what_hangs_on_an_unresolved_name_is_no_finding(tmp_path: Path) -> None:
     """
     found = reading(tmp_path, robot, safety=STOP)
     assert underlined(found) == [("unresolved-reference", each) for each in ("Stopp", "Nowhere", "gone")]
+
+
+def test_an_unknown_library_adds_nothing_to_what_is_known(tmp_path: Path) -> None:
+    robot = """
+        robot R {
+          datatype object O { a: integer }
+          component Other from Nowhere import Thing with { ready: "/ready" }
+          component Stop from Safety import Stop with { gone: "/gone" }
+          component C {
+            incoming message m with type: O
+            behaviour { initial state s { on response from Other.ready transition if value.b = 1 } }
+          }
+          requirement C.lost needs C.nothing or Stop.walking or Other.idle or unheard
+          provide m with { c: 1 }
+        }
+    """
+    found = reading(tmp_path, robot, safety=STOP)
+    assert underlined(found) == [
+        ("unresolved-reference", each) for each in ("Nowhere", "gone", "lost", "nothing", "walking", "c")
+    ]

@@ -278,3 +278,48 @@ def test_no_damage_is_too_bad(tmp_path: Path, damages: list[tuple[int, str | Non
     # Whatever is left has the shape of the metamodel: each element stands in a feature that takes its kind.
     for each in found.base.eAllContents() if found.base else ():
         assert each.source is not None
+
+
+@pytest.mark.parametrize(
+    ("broken", "hidden"),
+    [
+        ("component C { behaviour { initial marked state } }", False),
+        ("component C { behaviour { variable : integer } }", False),
+        ("component C { incoming message with type: none }", False),
+        ("datatype object P { : integer }", False),
+        ("component C from L import", False),
+        # Where a brace is missing, the variable may be one of `A`.
+        ("component C { behaviour { variable : integer }", True),
+    ],
+)
+def test_a_nameless_declaration_hides_nothing_in_other_definitions(tmp_path: Path, broken: str, hidden: bool) -> None:
+    text = f"""
+        robot R {{
+          datatype object O {{ a: integer }}
+          component A {{
+            incoming message go with type: O
+            behaviour {{ initial marked state s {{ on request to go }} }}
+          }}
+          {broken}
+          requirement A.gone needs A.lost
+          provide A.go with {{ b: 1 }}
+        }}
+    """
+    missing = [text for rule, text in underlined(reading(tmp_path, text)) if rule == "unresolved-reference"]
+    assert missing == (["gone", "b"] if hidden else ["gone", "lost", "b"])
+
+
+def test_a_nameless_declaration_may_be_the_missing_one_of_its_definition(tmp_path: Path) -> None:
+    text = """
+        robot R {
+          datatype object O { : integer }
+          component A {
+            incoming message go with type: O
+            outgoing message with type: none
+            behaviour { variable : integer initial marked state s { on request to go goto t } }
+          }
+          requirement A.gone needs A.lost
+          provide A.go with { b: 1 }
+        }
+    """
+    assert {each.rule for each in reading(tmp_path, text).findings} == {"syntax"}
