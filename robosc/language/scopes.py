@@ -70,8 +70,8 @@ class File:
     def _homes(self) -> dict[rsc.Base | None, File]:
         """The files of this base and of all that it imports, also from afar."""
         homes = {self.base: self}
-        for each in self.libraries.values():
-            homes |= each._homes if each is not None else {}
+        for each in filter(None, self.libraries.values()):
+            homes |= each._homes  # noqa: SLF001
         return homes
 
 

@@ -26,9 +26,9 @@ class Declared(Enum):
 class Unread:
     """The names that skipped text seems to declare, and where it stands.
 
-    `nameless` are the kinds of which a declaration was skipped whose name can't be seen, and where; `mended`: braces had
-    to be added or taken away. `ranges` are the texts that were skipped, `doubtful` also the items that something unknown
-    follows (offsets, the end exclusive).
+    `nameless` are the kinds of which a declaration was skipped whose name can't be seen, and where; `mended` says
+    whether braces had to be added or taken away. `ranges` are the texts that were skipped, `doubtful` also the items
+    that something unknown follows (offsets, the end exclusive).
     """
 
     names: set[str] = field(default_factory=set)
