@@ -37,24 +37,35 @@ def name(plant: sct.Plant) -> str:
 
 
 def words(event: sct.Event) -> str:
-    """An event, such as `request to Platform.move`; of silent transitions also the line."""
+    """An event, such as `request to Platform.move`; of silent transitions also the line, and what tells them apart."""
     said = _EVENTS[event.kind].format(f"`{name(plant_of(event))}`")
+    where = _where(event) if event.kind == sct.EventKind.tau else ""
+    return f"{said} in {where}" if where else said
+
+
+def _where(event: sct.Event) -> str:
+    """The line of an event, with the column where another of its plant stands in that line."""
     span = Span.parse(event.source)
-    return f"{said} in line {span.line}" if event.kind == sct.EventKind.tau and span else said
+    if span is None:
+        return ""
+    others = (Span.parse(each.source) for each in plant_of(event).events if each is not event)
+    shared = any(other is not None and other.line == span.line for other in others)
+    return f"line {span.line}, column {span.column}" if shared else f"line {span.line}"
 
 
 def change(event: sct.Event) -> str:
-    """What a silent event does, such as `Lidar changes by itself: blocked to free`."""
+    """What a silent event does, such as `Lidar changes by itself: blocked to free`; where several do so, the line too."""
     plant = plant_of(event)
     if event.kind == sct.EventKind.reset:
         return f"{name(plant)} is ready to be used again"
-    steps = dict.fromkeys(
-        f"{location.name} to {edge.target.name}"
-        for location in plant.locations
-        for edge in location.edges
-        if edge.event is event
-    )
-    return f"{name(plant)} changes by itself: {', '.join(steps)}"
+    steps: dict[sct.Event, dict[str, None]] = {}
+    for location in plant.locations:
+        for edge in location.edges:
+            steps.setdefault(edge.event, {})[f"{location.name} to {edge.target.name}"] = None
+    own = steps.get(event, {})
+    alike = any(each.kind == sct.EventKind.tau and steps[each] == own for each in steps if each is not event)
+    where = _where(event) if alike else ""
+    return f"{name(plant)} changes by itself: {', '.join(own)}" + (f" ({where})" if where else "")
 
 
 def blocking(reason: Reason) -> str:

@@ -204,6 +204,32 @@ def test_the_text_tells_what_the_robot_does(run: Run, tmp_path: Path) -> None:
     assert {"data_light.c_none", "component_Sensor.c_tau1"} <= {*names}
 
 
+def test_silent_events_with_one_source_and_target_are_told_apart(run: Run, tmp_path: Path) -> None:
+    file = tmp_path / "lamp.rscd"
+    file.write_text(
+        """robot Lamp {
+  component Bulb {
+    behaviour {
+      variable level: integer(0..2)
+      initial marked state off {
+        transition do level := 1 goto on transition do level := 2 goto on
+        transition if level = 2 goto on
+      }
+      marked state on { transition goto off }
+    }
+  }
+}
+"""
+    )
+    headings = [each for each in run("synthesize", file).stdout.splitlines() if each.startswith("Bulb")]
+    assert headings == [
+        "Bulb changes by itself: off to on (line 6, column 9)",
+        "Bulb changes by itself: off to on (line 6, column 42)",
+        "Bulb changes by itself: off to on (line 7)",
+        "Bulb changes by itself: on to off",
+    ]
+
+
 def test_no_supervisor(run: Run, stuck: Path) -> None:
     answer = run("synthesize", stuck, "--json")
     assert answer.exit_code == 3

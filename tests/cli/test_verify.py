@@ -86,6 +86,13 @@ def test_what_is_refuted_is_shown_with_its_traces(run: Run, lock: Path) -> None:
     )
 
 
+def test_transitions_in_one_line_are_told_apart(run: Run, lock: Path) -> None:
+    lock.write_text(" ".join(lock.read_text().split()))
+    told = run("verify", lock).stdout.partition("\nconfluence: ")[2]
+    columns = [lock.read_text().index(f"transition goto {each}") + 1 for each in ("out", "in")]
+    assert all(f"    1. transition of `Bolt` in line 1, column {each}\n" in told for each in columns)
+
+
 def test_as_json(run: Run, lock: Path) -> None:
     answer = run("verify", lock, "--json")
     assert answer.exit_code == 1
