@@ -54,7 +54,7 @@ def _where(event: sct.Event) -> str:
 
 
 def change(event: sct.Event) -> str:
-    """What a silent event does, such as `Lidar changes by itself: blocked to free`; where several do so, the line too."""
+    """What a silent event does: `Lidar changes by itself: blocked to free`; where several do that, the line, too."""
     plant = plant_of(event)
     if event.kind == sct.EventKind.reset:
         return f"{name(plant)} is ready to be used again"
