@@ -3,22 +3,36 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING, Any, Final
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 from robosc.engine.state import Domain
+from robosc.evaluation import as_double
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
+from robosc.metamodel.reflection import tree
 from robosc.roles import Roles, event_name
 from robosc.runtime.node_data import NodeData
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator, Mapping, Sequence
 
     from robosc.engine import Engine
     from robosc.engine.state import Value
 
 #: What JSON text says nothing about.
 _ABSENT: Final = object()
+#: The index of an element has less.
+_DIGITS = 10
+#: What each basic type is called, what JSON has for it, and what ROS leaves where nothing is said.
+_BASIC: Mapping[type[ex.Type], tuple[str, Any, Value]] = {
+    ex.BooleanType: ("a boolean", bool, False),
+    ex.IntegerType: ("an integer", int, 0),
+    ex.DoubleType: ("a number", int | float, 0.0),
+    ex.StringType: ("a string", str, ""),
+}
+#: The steps to basic data, and its type.
+_Read: TypeAlias = "tuple[Sequence[rosgraph.WireStep], ex.Type | None]"
 
 
 class DataError(Exception):
@@ -94,32 +108,68 @@ class EventData:
         if isinstance(found, str) and found in {literal.name for literal in conversion.enumeration.literals}:
             return found
         try:
-            return str(self._node.convert(conversion, _Fields.of(found)).name)
-        except (AttributeError, TypeError, ValueError) as error:
+            return str(self._node.convert(conversion, _argument(found, _reads(conversion), _label(each))).name)
+        except DataError as error:
             literals = ", ".join(literal.name for literal in conversion.enumeration.literals)
-            raise DataError(f"{_label(each)}: none of {literals}, and no data to tell it from: {error}") from None
+            raise DataError(f"expected one of {literals}, or the data to tell it from: {error}") from None
 
 
-class _Fields:
-    """An object of JSON with its fields as attributes, as messages of ROS have them."""
+class _Array:
+    """An array of which only those elements are there that are read."""
 
-    def __init__(self, fields: Mapping[str, Any]) -> None:
-        self._fields = fields
+    def __init__(self, length: int, elements: Mapping[int, Any]) -> None:
+        self._length = length
+        self._elements = elements
 
-    @classmethod
-    def of(cls, data: Any) -> Any:
-        """The same data with attributes; arrays and basic data as they are."""
-        if isinstance(data, dict):
-            if data and all(each.isdecimal() for each in data):
-                elements = {int(index): cls.of(each) for index, each in data.items()}
-                return [elements.get(index, 0) for index in range(max(elements) + 1)]
-            return cls({name: cls.of(each) for name, each in data.items()})
-        return [cls.of(each) for each in data] if isinstance(data, list) else data
+    def __len__(self) -> int:
+        return self._length
 
-    def __getattr__(self, name: str) -> Any:
-        if name in self._fields:
-            return self._fields[name]
-        raise AttributeError(f"there is no field {name}")
+    def __getitem__(self, index: int) -> Any:
+        return self._elements[index]
+
+
+def _argument(data: Any, reads: Sequence[_Read], place: str) -> Any:
+    """JSON in the shape of data from ROS, as far as it is read; what is left out is as ROS leaves it."""
+    inner: dict[Any, list[_Read]] = {}
+    array = False
+    for steps, kind in reads:
+        if not steps:
+            return _basic(data, kind, place)
+        array = isinstance(steps[0], rosgraph.IndexStep)
+        inner.setdefault(steps[0].index if array else _field(steps[0]), []).append((steps[1:], kind))
+    if array:
+        elements = _elements(data, place)
+        length = max(elements, default=-1) + 1
+        read = {index: own for index, own in inner.items() if index < length}
+        return _Array(
+            length,
+            {index: _argument(elements.get(index, _ABSENT), own, f"{place}[{index}]") for index, own in read.items()},
+        )
+    fields = {} if data is _ABSENT or not reads else data
+    if not isinstance(fields, dict):
+        raise DataError(f"{place} is {json.dumps(data)}, expected an object with {next(iter(inner))}")
+    return SimpleNamespace(
+        **{name: _argument(fields.get(name, _ABSENT), own, f"{place}.{name}") for name, own in inner.items()}
+    )
+
+
+def _elements(data: Any, place: str) -> dict[int, Any]:
+    if data is _ABSENT:
+        return {}
+    if isinstance(data, list):
+        return dict(enumerate(data))
+    if isinstance(data, dict) and all(each.isdecimal() and len(each) < _DIGITS for each in data):
+        return {int(index): each for index, each in data.items()}
+    raise DataError(f"{place} is {json.dumps(data)}, expected a list, or an object from index to element")
+
+
+def _basic(data: Any, kind: ex.Type | None, place: str) -> Any:
+    name, plain, default = next((each for known, each in _BASIC.items() if isinstance(kind, known)), ("", object, 0))
+    if data is _ABSENT:
+        return default
+    if not isinstance(data, plain) or (isinstance(data, bool) and name in {"an integer", "a number"}):
+        raise DataError(f"{place} is {json.dumps(data)}, expected {name}")
+    return as_double(data) if isinstance(kind, ex.DoubleType) else data
 
 
 def _assignments(graph: rosgraph.RosGraph) -> Iterator[tuple[sct.Input, rosgraph.InputAssignment]]:
@@ -129,6 +179,11 @@ def _assignments(graph: rosgraph.RosGraph) -> Iterator[tuple[sct.Input, rosgraph
     for reception in receptions:
         for assignment in reception.inputs:
             yield assignment.input, assignment
+
+
+def _reads(conversion: rosgraph.Conversion) -> list[_Read]:
+    accesses = (each for rule in conversion.rules for each in tree(rule.condition))
+    return [(list(each.steps), each.type) for _, each in accesses if isinstance(each, rosgraph.WireAccess)]
 
 
 def _access(assignment: rosgraph.InputAssignment) -> rosgraph.WireAccess:

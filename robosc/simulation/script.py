@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from robosc.simulation.data import EventData
 
 RULE = "script"
+#: No number of a script has more; Python itself refuses to read some thousand.
+_DIGITS = 1000
 
 
 @dataclass(frozen=True)
@@ -90,12 +92,15 @@ class _Line:
 
     def _json(self, column: int) -> dict[str, Any] | None:
         try:
-            read = json.loads(self._line[column:], parse_constant=_refuse)
+            read = json.loads(self._line[column:], parse_constant=_refuse, parse_int=_integer)
         except json.JSONDecodeError as error:
             self._fault(column + error.pos, f"not JSON: {error.msg}")
             return None
-        except (ValueError, RecursionError) as error:
+        except ValueError as error:
             self._fault(column, f"not JSON: {error}")
+            return None
+        except RecursionError:
+            self._fault(column, "nested too deeply")
             return None
         if not isinstance(read, dict):
             self._fault(column, "data is an object", f'write {{"value": {self._line[column:].strip()}}}')
@@ -105,6 +110,12 @@ class _Line:
     def _fault(self, column: int, message: str, hint: str | None = None, length: int = 1) -> None:
         span = Span(self._number, column + 1, self._number, column + 1 + length)
         self.findings.append(Diagnostic(self._file, span, Severity.ERROR, RULE, message, hint))
+
+
+def _integer(digits: str) -> int:
+    if len(digits) > _DIGITS:
+        raise ValueError(f"a number of {len(digits)} digits is too long")
+    return int(digits)
 
 
 def _refuse(constant: str) -> None:

@@ -73,6 +73,10 @@ def test_the_state_has_every_plant_and_variable() -> None:
         ("filling", {"size": {"rows": [0, 8]}}, "filling", "full"),
         ("filling", {"size": {"rows": {"1": 8}}}, "filling", "full"),
         ("filling", {"size": {"rows": [8]}}, "filling", "partly"),
+        ("filling", {"size": {"rows": {"3": 8}}}, "filling", "partly"),
+        ("filling", {"size": {"rows": {"999999999": 8}}}, "filling", "partly"),
+        ("filling", {"size": {}}, "filling", "partly"),
+        ("filling", {}, "filling", "partly"),
     ],
 )
 def test_data(event, value, name, result) -> None:
@@ -108,6 +112,7 @@ def test_all_faults_are_found_before_anything_is_played() -> None:
         'message_report.u_response {"value": 3}',
         'message_filling.u_response {"value": {"size": 1}}',
         'message_level.u_response {"value": NaN}',
+        f'message_level.u_response {{"value": {"9" * 5000}}}',
     )
     assert [each.split(": error: ")[0] for each in found] == [
         "<stdin>:4:1",
@@ -119,7 +124,32 @@ def test_all_faults_are_found_before_anything_is_played() -> None:
         "<stdin>:10:1",
         "<stdin>:11:1",
         "<stdin>:12:26",
+        "<stdin>:13:26",
     ]
+
+
+@pytest.mark.parametrize(
+    ("value", "complaint"),
+    [
+        (3, "value is 3, expected an object with size"),
+        ({"size": 1}, "value.size is 1, expected an object with rows"),
+        ({"size": {"rows": 1}}, "value.size.rows is 1, expected a list, or an object from index to element"),
+        ({"size": {"rows": [0, "zzz"]}}, 'value.size.rows[1] is "zzz", expected an integer'),
+        ({"size": {"rows": [0, 1.5]}}, "value.size.rows[1] is 1.5, expected an integer"),
+        ("zzz", 'value is "zzz", expected an object with size'),
+    ],
+)
+def test_data_that_tells_no_literal(value: object, complaint: str) -> None:
+    (found,) = faults(f"message_filling.u_response {json.dumps({'value': value})}")
+    assert found.endswith(f" expected one of full, partly, or the data to tell it from: {complaint} [script]")
+
+
+def test_data_of_an_enum_that_reads_none(tmp_path: Path) -> None:
+    model = tmp_path / "gauge.rscd"
+    text = MODEL.read_text().replace('    value = "#f00" -> red\n', "").replace("default -> other", "default -> red")
+    model.write_text(text)
+    done = simulate("--script", "-", lines='message_lamp.u_response {"value": "#0f0"}', model=model)
+    assert json.loads(done.stdout)["state"]["Gauge.lamp"] == "red"
 
 
 def test_a_log_is_a_script() -> None:
