@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
+from dataclasses import replace
 from pathlib import Path
 from random import Random
 from typing import TYPE_CHECKING, Any
@@ -16,8 +17,10 @@ from robosc.cli.progress import synthesizing
 from robosc.cli.reading import read_models
 from robosc.cli.report import Report
 from robosc.engine import Settings
+from robosc.language.text import decode
 from robosc.simulation import Simulation, read_script, unfit_data
 from robosc.simulation.loop import LoopSimulation
+from robosc.simulation.script import RULE
 from robosc.simulation.session import Session, trace_line
 from robosc.supervision import supervise
 
@@ -95,11 +98,17 @@ def _settings(model: Path, chosen: str | None) -> Settings:
 def _played(models: Models, script: str, settings: Settings | None, report: Report) -> Iterator[dict[str, Any]]:
     """The answer to each line of a script; what is wrong with the script goes to the report, which then ends."""
     name = "<stdin>" if script == "-" else script
-    with click.open_file(script, encoding="utf-8") as file:
-        text = file.read()
+    with click.open_file(script, "rb") as file:
+        decoded, faults = decode(name, file.read())
+    report.add([replace(each, rule=RULE) for each in faults], {name: decoded.content})
+    report.stop_on_errors()
+    text = decoded.content
     simulation = Simulation(models.sct, models.rosgraph)
     looped = None if settings is None else LoopSimulation(models.sct, models.rosgraph, settings)
-    steps, findings = read_script(name, text, simulation.engine.events if looped is None else looped.events)
+    engine = simulation.engine
+    steps, findings = read_script(
+        name, text, *((engine.events, LoopSimulation.OWN) if looped is None else (looped.events, engine.events))
+    )
     own = () if looped is None else looped.OWN
     found = unfit_data(name, (each for each in steps if each.event not in own), simulation.data)
     report.add([*findings, *found], {name: text})

@@ -29,8 +29,12 @@ class Step:
     data: Mapping[str, Any]
 
 
-def read_script(file: str, text: str, events: Collection[str]) -> tuple[list[Step], list[Diagnostic]]:
+def read_script(
+    file: str, text: str, events: Collection[str], others: Collection[str] = ()
+) -> tuple[list[Step], list[Diagnostic]]:
     """The steps of a script, and what is wrong with its text; `events` are the names that it may use.
+
+    `others` are those that it may use only with `--loop`, or only without.
 
     A line is `EVENT [JSON]`, or a JSON object with `event` and maybe `data` (other keys of an event log are ignored).
     Empty lines and lines that begin with `#` are no steps.
@@ -40,7 +44,7 @@ def read_script(file: str, text: str, events: Collection[str]) -> tuple[list[Ste
     for number, line in enumerate(text.splitlines(), 1):
         if not line.strip() or line.lstrip().startswith("#"):
             continue
-        read = _Line(file, number, line, events)
+        read = _Line(file, number, line, events, others)
         found = read.step()
         if found is not None:
             steps.append(found)
@@ -61,8 +65,8 @@ def unfit_data(file: str, steps: Iterable[Step], data: EventData) -> Iterator[Di
 class _Line:
     """One line that is not empty."""
 
-    def __init__(self, file: str, number: int, line: str, events: Collection[str]) -> None:
-        self._file, self._number, self._line, self._events = file, number, line, events
+    def __init__(self, file: str, number: int, line: str, events: Collection[str], others: Collection[str]) -> None:
+        self._file, self._number, self._line, self._events, self._others = file, number, line, events, others
         self._start = len(line) - len(line.lstrip())
         self.findings: list[Diagnostic] = []
 
@@ -85,6 +89,12 @@ class _Line:
     def _known(self, name: str, column: int) -> bool:
         if name in self._events:
             return True
+        if name in self._others:
+            looped = "tick" in self._events
+            message = f"`{name}` is no line of a script {'with' if looped else 'without'} the control loop"
+            hint = "the control loop decides itself when it happens, at `tick`" if looped else "it needs `--loop`"
+            self._fault(column, message, hint, len(name))
+            return False
         close = get_close_matches(name, sorted(self._events), n=1)
         hint = f"did you mean `{close[0]}`?" if close else "`robosc synthesize --json` lists the events"
         self._fault(column, f"there is no event `{name}`", hint, len(name))

@@ -11,7 +11,7 @@ from robosc.cli import main
 MODEL = Path(__file__).parent / "gauge.rscd"
 
 
-def simulate(*arguments: str, lines: str = "", model: Path = MODEL):
+def simulate(*arguments: str, lines: str | bytes = "", model: Path = MODEL):
     return CliRunner().invoke(main, ["simulate", str(model), *arguments], input=lines)
 
 
@@ -150,6 +150,24 @@ def test_data_of_an_enum_that_reads_none(tmp_path: Path) -> None:
     model.write_text(text)
     done = simulate("--script", "-", lines='message_lamp.u_response {"value": "#0f0"}', model=model)
     assert json.loads(done.stdout)["state"]["Gauge.lamp"] == "red"
+
+
+@pytest.mark.parametrize("standard_input", [False, True])
+def test_a_script_in_another_encoding(tmp_path: Path, standard_input: bool) -> None:
+    script = tmp_path / "script"
+    script.write_bytes(b"# \xff\n")
+    name, lines = ("-", script.read_bytes()) if standard_input else (str(script), b"")
+    done = simulate("--script", name, lines=lines)
+    assert done.exit_code == 1
+    assert ":1:3: error: the byte 0xff is no UTF-8 [script]" in done.stderr
+
+
+def test_lines_of_the_other_kind_of_script() -> None:
+    (tick,) = faults("tick")
+    assert "`tick` is no line of a script without the control loop" in tick
+    done = simulate("--loop", "--script", "-", lines="message_refill.c_trigger")
+    assert done.exit_code == 1
+    assert "`message_refill.c_trigger` is no line of a script with the control loop" in done.stderr
 
 
 def test_a_log_is_a_script() -> None:
