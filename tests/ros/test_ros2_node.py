@@ -138,6 +138,18 @@ def test_a_managed_node_that_is_not_active_ends_without_a_word(graph: Graph) -> 
     assert "outside" not in log.read_text()
 
 
+@pytest.mark.parametrize("parameter", ["period_ms:=0", "watchdog_ms.stop:=-1", "watchdog_stops:=3"])
+def test_a_managed_node_that_can_not_be_configured_is_connected_to_nothing(graph: Graph, parameter: str) -> None:
+    graph.world.do("advertise", topic="/order", kind="std_msgs/Float64")
+    node, _ = graph.start("managed_porter", "unfit", parameter)
+    assert not graph.manage("change", "/unfit", CONFIGURE)
+    assert "not configured: " in (graph.folder / "unfit.log").read_text()
+    graph.processes.wait_until(lambda: graph.world.do("listeners", topic="/order") == 0, "nobody listens")
+    # Where it is unconfigured, it can be asked to try again.
+    assert not graph.manage("change", "/unfit", CONFIGURE)
+    assert graph.processes.stop(node) == 0
+
+
 def test_parameters_say_what_they_mean(graph: Graph) -> None:
     node, _ = graph.start("porter_controller", "described", "qos_overrides./stop.subscription.depth:=3")
     names = ["period_ms", "service_timeout_ms", "watchdog_ms.stop", "watchdog_stops"]

@@ -12,7 +12,6 @@
 #include <exception>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -63,7 +62,7 @@ class Controller : public rclcpp_lifecycle::LifecycleNode {
       } else if (wiring_) {
         wiring_->stop();
       }
-    }, [this] { return waits(travel_client_); });
+    }, [this] { return waits(); });
   }
 
   using CallbackReturn = rclcpp_lifecycle::node_interfaces::LifecycleNodeInterface::CallbackReturn;
@@ -92,13 +91,17 @@ class Controller : public rclcpp_lifecycle::LifecycleNode {
   }
 
   CallbackReturn on_cleanup(const rclcpp_lifecycle::State&) override {
+    if (waits()) {
+      RCLCPP_ERROR(get_logger(), "not cleaned up: a goal that is to be cancelled is not accepted yet");
+      return CallbackReturn::FAILURE;
+    }
     release();
     return CallbackReturn::SUCCESS;
   }
 
   CallbackReturn on_shutdown(const rclcpp_lifecycle::State&) override {
     if (active_) deactivate();
-    release();
+    if (!waits()) release();
     return CallbackReturn::SUCCESS;
   }
 
@@ -396,14 +399,13 @@ class Controller : public rclcpp_lifecycle::LifecycleNode {
         .add("transitions", transitions);
   }
 
-  template <typename Client>
-  static bool waits(const std::optional<Client>& client) {
-    return client && client->waits();
+  // Whether a goal may still be accepted, to be cancelled then.
+  bool waits() const {
+    return (travel_client_ && travel_client_->waits());
   }
 
   // Connects the node to everything that the model names.
   void configure() {
-    if (waits(travel_client_)) throw std::runtime_error("/travel: its server has not answered the last goal");
     log_ =
         EventLog(parameter<std::string>(*this, "event_log", "",
         "A file that gets a line of JSON for each event; empty: none."));
@@ -458,7 +460,7 @@ class Controller : public rclcpp_lifecycle::LifecycleNode {
         [this](const nav2_msgs::action::NavigateToPose::Feedback& message) { on_travel_feedback(message); },
         [this](const nav2_msgs::action::NavigateToPose::Result& message) { on_travel_response(message); },
         [this](const std::string& why) { on_travel_error(why); },
-        [this] { if (timer_) wake(); }});
+        [this] { wake(); }});
     travel_retry_.emplace(*this, retry, [this] { wake(); });
 
     rclcpp::PublisherOptions reporting;
@@ -511,7 +513,7 @@ class Controller : public rclcpp_lifecycle::LifecycleNode {
     stop_watchdog_->stop();
   }
 
-  // Connected to nothing, with nothing kept; but a goal that waits for its acceptance is still to be cancelled.
+  // Connected to nothing, with nothing kept.
   void release() {
     timer_.reset();
     order_subscription_.reset();
@@ -525,11 +527,7 @@ class Controller : public rclcpp_lifecycle::LifecycleNode {
     release_client_.reset();
     release_fault_.clear();
     travel_retry_.reset();
-    if (waits(travel_client_)) {
-      travel_client_->cancel();
-    } else {
-      travel_client_.reset();
-    }
+    travel_client_.reset();
     travel_fault_.clear();
     definition_report_.reset();
     state_report_.reset();

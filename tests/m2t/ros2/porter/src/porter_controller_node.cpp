@@ -57,7 +57,7 @@ class Controller : public rclcpp::Node {
     activate();
     shutdown_hook_.emplace(*this, [this] {
       if (active_) stop();
-    }, [this] { return waits(travel_client_); });
+    }, [this] { return waits(); });
   }
 
  private:
@@ -354,9 +354,9 @@ class Controller : public rclcpp::Node {
         .add("transitions", transitions);
   }
 
-  template <typename Client>
-  static bool waits(const std::optional<Client>& client) {
-    return client && client->waits();
+  // Whether a goal may still be accepted, to be cancelled then.
+  bool waits() const {
+    return (travel_client_ && travel_client_->waits());
   }
 
   // Connects the node to everything that the model names.
