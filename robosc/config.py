@@ -188,22 +188,22 @@ class Configuration(_Settings):
         """
         return Diagnostic(self._file, _span(self._text, key), Severity.ERROR, RULE, message, hint)
 
-    def unknown_names(self, topics: Sequence[str], messages: Sequence[str]) -> list[Diagnostic]:
+    def unknown_names(self, topics: Sequence[str]) -> list[Diagnostic]:
         """Warnings about settings for what the robot does not have.
 
-        `topics` are its topics, services and actions without a `/` in front, `messages` the names of its messages.
+        `topics` are its topics, services and actions without a `/` in front.
         """
-        named: list[tuple[Key, str, Sequence[str]]] = []
-        for setting, values in (("frameId", self.frame_id), ("qos", self.qos), ("watchdogMs", self.watchdog_ms)):
-            named += (((setting, name), name, topics) for name in values)
-        named += ((("onShutdown", place), name, messages) for place, name in enumerate(self.on_shutdown))
+        settings = (("frameId", self.frame_id), ("qos", self.qos), ("watchdogMs", self.watchdog_ms))
         return [
             replace(
-                self.error(key, f'"{key[0]}": the robot has no {name}', _repair(name, known)),
+                self.error(
+                    (setting, name), f'"{setting}": the robot has no {name}', _repair(name, topics) if topics else None
+                ),
                 severity=Severity.WARNING,
             )
-            for key, name, known in named
-            if name not in known
+            for setting, values in settings
+            for name in values
+            if name not in topics
         ]
 
 

@@ -67,8 +67,7 @@ class Target:
             return found
         topics = [each.topic for each in graph.subscriptions] + [each.topic for each in graph.publishers]
         topics += [each.identifier for each in graph.serviceClients] + [each.identifier for each in graph.actionClients]
-        messages = [each.name for publisher in graph.publishers for each in publisher.sendings]
-        return [*found, *configuration.unknown_names([each.removeprefix("/") for each in topics], messages)]
+        return [*found, *configuration.unknown_names([each.removeprefix("/") for each in topics])]
 
     @property
     def tested_ros(self) -> int | None:
