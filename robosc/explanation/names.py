@@ -80,7 +80,9 @@ def state_given(model: sct.SupervisoryControlModel, given: str) -> dict[Element,
         if len(found) > 1:
             listed = ", ".join(f"`{_whole_name(each)}`" for each in found)
             raise NamingError(f"`{name}` can be several parts of the state", f"say which: {listed}")
-        codes[found[0]] = _code(found[0], chosen, name)
+        code = _code(found[0], chosen, name)
+        if codes.setdefault(found[0], code) != code:
+            raise NamingError(f"the state has two values for `{name}`", "leave one out")
     return codes
 
 

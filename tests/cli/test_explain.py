@@ -117,6 +117,10 @@ def test_a_state_as_simulate_prints_it(run: Run) -> None:
         ("--event refill --state Gauge=ful", "`Gauge` can't be `ful`; did you mean `full`?"),
         ("--event refill --state Gauge.level=10", "`Gauge.level` can't be `10`; it is an integer from 0 to 9"),
         ("--event refill --state Gauge.level=low", "`Gauge.level` can't be `low`; it is an integer from 0 to 9"),
+        (
+            "--event refill --state Gauge=full,component_Gauge=metering",
+            "the state has two values for `component_Gauge`",
+        ),
         ("--event refill --state wet=3", "`wet` can't be `3`; it is one of false, true"),
         ("--event refill --state full", "`full` is no part of a state; write `Component=state,Component.variable=3`"),
         ("--event refill --state {", "the state is no JSON; "),
