@@ -30,7 +30,7 @@ _COMMANDS = {
     "run": "Be a robot's controller on ROS, without a build.",
     "format": "Lay out models in the one canonical way.",
     "rule": "Say what a rule means.",
-    "diagram": "Draw a metamodel.",
+    "diagram": "Draw a model or a metamodel.",
 }
 
 

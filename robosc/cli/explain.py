@@ -55,7 +55,7 @@ def command(
 
     MODEL is a .rscd file with a robot, or an .xmi file that `transform --to xmi` wrote. An event is a communication's
     name for what it is there for (`move`, `Platform.move`), or one of its events (`drive.cancel`, `grip.error`), or the
-    name that `synthesize` shows (`message_move.c_trigger`). What a state leaves open is chosen so that the robot gets
+    name in `synthesize --json` (`message_move.c_trigger`). What a state leaves open is chosen so that the robot gets
     there soonest; the answer shows the state and the way to it.
 
     \b
