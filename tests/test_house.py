@@ -74,6 +74,7 @@ LIBRARIES = {
     "rospy": {"runtime"},
     "std_msgs": {"runtime"},
     "textx": {"language", "verification"},
+    "unique_identifier_msgs": {"runtime"},
 }
 
 

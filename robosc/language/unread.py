@@ -45,8 +45,8 @@ class Unread:
         """
         if name in self.names:
             return True
-        anywhere = within is None or self.mended
-        return any(kind in kinds and (anywhere or within.contains(place)) for kind, place in self.nameless)
+        place = None if self.mended else within
+        return any(kind in kinds and (place is None or place.contains(span)) for kind, span in self.nameless)
 
     def is_doubtful(self, offset: int) -> bool:
         """Whether what stands at an offset may not mean what it seems to."""
