@@ -21,7 +21,6 @@ try:
     import rclpy.exceptions
     from action_msgs.msg import GoalStatus
     from rcl_interfaces.msg import IntegerRange, ParameterDescriptor
-    from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
     from rclpy.executors import SingleThreadedExecutor
     from rclpy.qos import (
         DurabilityPolicy,
@@ -37,6 +36,11 @@ try:
     from rclpy.type_support import NoTypeSupportImportedException, check_for_type_support
     from std_msgs.msg import String
     from unique_identifier_msgs.msg import UUID
+
+    try:
+        from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
+    except ImportError:  # before Iron
+        from rclpy.qos_event import PublisherEventCallbacks, SubscriptionEventCallbacks
 except ImportError as error:
     raise StartError(
         f"ROS 2 is not there for this Python: {error}",
