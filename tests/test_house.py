@@ -74,7 +74,6 @@ LIBRARIES = {
     "rospy": {"runtime"},
     "std_msgs": {"runtime"},
     "textx": {"language", "verification"},
-    "unique_identifier_msgs": {"runtime"},
 }
 
 

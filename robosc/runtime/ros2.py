@@ -19,7 +19,7 @@ try:
     import rclpy.action
     import rclpy.action.client
     import rclpy.exceptions
-    from action_msgs.msg import GoalStatus
+    from action_msgs.msg import GoalInfo, GoalStatus
     from rcl_interfaces.msg import IntegerRange, ParameterDescriptor
     from rclpy.executors import SingleThreadedExecutor
     from rclpy.qos import (
@@ -35,7 +35,6 @@ try:
     from rclpy.signals import SignalHandlerOptions
     from rclpy.type_support import NoTypeSupportImportedException, check_for_type_support
     from std_msgs.msg import String
-    from unique_identifier_msgs.msg import UUID
 
     try:
         from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
@@ -331,7 +330,8 @@ class _Goal:
 
     def __init__(self, client: Any, goal: Message, handlers: GoalHandlers) -> None:
         self._handlers = handlers
-        identifier = UUID(uuid=list(uuid4().bytes))
+        identifier = GoalInfo().goal_id
+        identifier.uuid = list(uuid4().bytes)
         self._handle = rclpy.action.client.ClientGoalHandle(client, identifier, None)
         sent = client.send_goal_async(goal, lambda message: handlers.feedback(message.feedback), identifier)
         sent.add_done_callback(lambda future: _answer(future, self._decided, self._failed))
