@@ -110,6 +110,9 @@ def run() -> NoReturn:
     taking them apart one by one would take a third of the time of a short run.
     """
     gc.set_threshold(500_000, 20, 20)
+    for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
+        if getattr(sys, name) is None:  # closed by the caller, who wants nothing of it
+            setattr(sys, name, open(os.devnull, mode, encoding="utf-8"))  # noqa: PTH123, SIM115
     status = ERRORS_FOUND
     try:
         try:

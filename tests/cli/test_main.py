@@ -131,6 +131,23 @@ def test_an_output_that_can_not_be_written(door: Path) -> None:
     assert "No space left on device" in done.stderr
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="there is no sh")
+@pytest.mark.parametrize("closed", ["<&-", ">&-", "2>&-", "<&- >&- 2>&-"])
+@pytest.mark.parametrize("command", ["check", "synthesize", "simulate", "simulate --script -"])
+def test_closed_streams(door: Path, command: str, closed: str) -> None:
+    name, *options = command.split()
+    call = [sys.executable, "-m", "robosc", name, door, *options]
+    done = subprocess.run(
+        ["/bin/sh", "-c", f'exec "$@" {closed}', "sh", *call],
+        check=False,
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0
+    assert "Traceback" not in done.stderr
+
+
 def test_a_reader_that_has_read_enough(door: Path) -> None:
     with subprocess.Popen(
         [sys.executable, "-m", "robosc", "synthesize", door], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
