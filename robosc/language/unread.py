@@ -45,8 +45,8 @@ class Unread:
         """
         if name in self.names:
             return True
-        place = None if self.mended else within
-        return any(kind in kinds and (place is None or place.contains(span)) for kind, span in self.nameless)
+        span = None if self.mended else within
+        return any(kind in kinds and (span is None or span.contains(place)) for kind, place in self.nameless)
 
     def is_doubtful(self, offset: int) -> bool:
         """Whether what stands at an offset may not mean what it seems to."""

@@ -25,7 +25,7 @@ _ABSENT: Final = object()
 #: The index of an element has less.
 _DIGITS = 10
 #: What each basic type is called, what JSON has for it, and what ROS leaves where nothing is said.
-_BASIC: Mapping[type[ex.Type], tuple[str, Any, Any]] = {
+_BASIC: Mapping[type[ex.Type], tuple[str, Any, Value | float]] = {
     ex.BooleanType: ("a boolean", bool, False),
     ex.IntegerType: ("an integer", int, 0),
     ex.DoubleType: ("a number", int | float, 0.0),
@@ -135,10 +135,10 @@ def _argument(data: Any, reads: Sequence[_Read], place: str) -> Any:
     for steps, kind in reads:
         if not steps:
             return _basic(data, kind, place)
-        first = steps[0]
+        first, *rest = steps
         array = isinstance(first, rosgraph.IndexStep)
         key = first.index if isinstance(first, rosgraph.IndexStep) else _field(first)
-        inner.setdefault(key, []).append((steps[1:], kind))
+        inner.setdefault(key, []).append((rest, kind))
     if array:
         elements = _elements(data, place)
         length = max(elements, default=-1) + 1
