@@ -5,7 +5,6 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from difflib import get_close_matches
-from itertools import accumulate
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar
 
@@ -14,6 +13,7 @@ from pydantic.alias_generators import to_camel
 
 from robosc.diagnostics import Diagnostic, ModelError, Severity, Span
 from robosc.naming import controller_name, layer_name
+from robosc.nesting import too_deep
 
 if TYPE_CHECKING:
     from robosc.metamodel.expression import NamedElement
@@ -23,8 +23,6 @@ RULE = "configuration"
 #: How many folders below the model a configuration is looked for.
 SEARCH_DEPTH = 3
 
-_DEEPEST = 100
-_BRACKETS = {"{": 1, "[": 1, "]": -1, "}": -1}
 #: Faults that pydantic calls by Python's names.
 _WRONG_TYPE = {"model_type": "be an object", "dict_type": "be an object", "list_type": "be an array"}
 
@@ -230,7 +228,7 @@ def read(file: Path) -> Configuration:
     name = str(file)
     try:
         text = file.read_bytes().decode("utf-8")
-        if _depth(text) > _DEEPEST:
+        if too_deep(text):
             raise ModelError([_error(name, "nested too deeply")])
         values = json.loads(text)
     except UnicodeDecodeError as error:
@@ -252,11 +250,6 @@ def schema() -> str:
     """The JSON Schema of the file, as it ships in `robosc/schemas`."""
     document = {"$schema": "https://json-schema.org/draft/2020-12/schema", **Configuration.model_json_schema()}
     return json.dumps(document, indent=2) + "\n"
-
-
-def _depth(text: str) -> int:
-    """How many brackets are open at once, those in strings counted too: `json` would follow any number of them."""
-    return max(accumulate((_BRACKETS.get(each, 0) for each in text), initial=0))
 
 
 def _folders(folder: Path) -> list[Path]:

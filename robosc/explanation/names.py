@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
+from robosc.nesting import too_deep
 from robosc.roles import Roles, event_name, plant_of
 from robosc.synthesis.decoding import Value, text, value
 from robosc.synthesis.encoding import domain_size, smallest
@@ -121,6 +122,8 @@ def _elements(model: sct.SupervisoryControlModel) -> dict[str, list[Element]]:
 
 def _pairs(given: str) -> list[tuple[str, Any]]:
     if given.lstrip().startswith("{"):
+        if too_deep(given):
+            raise NamingError("the state is nested too deeply", "write `Component=state,Component.variable=3`")
         try:
             read = json.loads(given)
         except ValueError as error:

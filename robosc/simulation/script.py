@@ -8,6 +8,7 @@ from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
 
 from robosc.diagnostics import Diagnostic, Severity, Span
+from robosc.nesting import too_deep
 from robosc.simulation.data import DataError
 
 if TYPE_CHECKING:
@@ -101,6 +102,9 @@ class _Line:
         return False
 
     def _json(self, column: int) -> dict[str, Any] | None:
+        if too_deep(self._line):
+            self._fault(column, "nested too deeply")
+            return None
         try:
             read = json.loads(self._line[column:], parse_constant=_refuse, parse_int=_integer)
         except json.JSONDecodeError as error:
@@ -108,9 +112,6 @@ class _Line:
             return None
         except ValueError as error:
             self._fault(column, f"not JSON: {error}")
-            return None
-        except RecursionError:
-            self._fault(column, "nested too deeply")
             return None
         if not isinstance(read, dict):
             self._fault(column, "data is an object", f'write {{"value": {self._line[column:].strip()}}}')

@@ -124,6 +124,7 @@ def test_a_state_as_simulate_prints_it(run: Run) -> None:
         ("--event refill --state wet=3", "`wet` can't be `3`; it is one of false, true"),
         ("--event refill --state full", "`full` is no part of a state; write `Component=state,Component.variable=3`"),
         ("--event refill --state {", "the state is no JSON; "),
+        (f"--event refill --state {{{'[' * 100_000}", "the state is nested too deeply; "),
         ("--event refill --why-empty", "give one of --event, --why-empty and --why-never"),
         ("", "give one of --event, --why-empty and --why-never"),
         ("--why-empty --state Gauge=full", "--state needs --event"),

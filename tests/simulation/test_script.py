@@ -162,6 +162,11 @@ def test_a_script_in_another_encoding(tmp_path: Path, standard_input: bool) -> N
     assert ":1:3: error: the byte 0xff is no UTF-8 [script]" in done.stderr
 
 
+def test_a_line_that_is_nested_too_deeply() -> None:
+    (found,) = faults(f'message_level.u_response {{"value": {"[" * 100_000}')
+    assert "nested too deeply" in found
+
+
 def test_lines_of_the_other_kind_of_script() -> None:
     (tick,) = faults("tick")
     assert "`tick` is no line of a script without the control loop" in tick
