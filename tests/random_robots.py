@@ -222,11 +222,16 @@ class Writer:
             basic = kind in {"incoming", "outgoing"} or (kind == "service" and set(types) == {NONE})
             if not basic or any(each.needs_link for each in types):
                 made.text += " links i"
+                if kind in {"incoming", "outgoing"}:
+                    made.text = made.text.replace("/shared", "/shared/i")
             elif kind in {"incoming", "outgoing"}:
                 carried = {"incoming": made.sent, "outgoing": made.data.get("response", NONE)}[kind]
                 wire = carried.base or carried
                 if wire.kind != "object":
                     made.text += self.maybe(f" links {'i' if wire.kind == 'integer' else f'i_{wire.kind}'}", 5)
+                # A topic has one type.
+                link = made.text.partition(" links ")[2]
+                made.text = made.text.replace("/shared", f"/shared/{link or wire.text.partition('(')[0]}")
             component.communications.append(made)
         if self.random.randrange(6) == 0:
             self.components.append(component)
