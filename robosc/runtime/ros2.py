@@ -296,17 +296,17 @@ class Ros2Port(Ros2Node):
         return {each: self._endpoints(each) for each in elements}
 
     def _endpoints(self, element: rosgraph.Subscription | rosgraph.Publisher) -> list[Endpoint]:
-        own = self._qualities[element]
-        found = [
-            self._endpoint(each, each.qos_profile, own)
-            for each in self.node.get_publishers_info_by_topic(element.topic)
-        ]
-        if isinstance(element, rosgraph.Publisher):
-            found += [
-                replace(self._endpoint(each, own, each.qos_profile), listens=True)
-                for each in self.node.get_subscriptions_info_by_topic(element.topic)
-            ]
         myself = _full_name(self.node.get_namespace(), self.node.get_name())
+        publishers = self.node.get_publishers_info_by_topic(element.topic)
+        found = [self._endpoint(each, each.qos_profile, self._qualities[element]) for each in publishers]
+        if isinstance(element, rosgraph.Publisher):
+            # What the graph says of the node itself: what it asked for leaves deadlines and leases open.
+            own = [each.qos_profile for each in publishers if _full_name(each.node_namespace, each.node_name) == myself]
+            found += [
+                replace(self._endpoint(each, own[0], each.qos_profile), listens=True)
+                for each in self.node.get_subscriptions_info_by_topic(element.topic)
+                if own
+            ]
         return [each for each in found if each.node != myself and "UNKNOWN" not in each.node]
 
     @staticmethod

@@ -94,14 +94,15 @@ def test_reports_state_and_definition(drive: Drive) -> None:
     assert seen == declared
     assert sum(event == "message_stop.u_response" for each in states for event in each["transitions"]) == 1
     assert all(each["transitions"] for each in states[1:])
-    # In every tick something is sent, and reported. A few commands more are answers that wait for no tick.
-    ticks = sum(each["direction"] == "out" for each in drive.log)
-    assert ticks * 0.9 < len(states) <= ticks + 2
     told = [event for each in states for event in each["transitions"]]
     happened = [each["event"] for each in drive.log]
     first = next((at for at in range(len(happened)) if happened[at : at + len(told)] == told), None)
     assert first is not None, "from the first report on each event is told, once, in its order"
-    assert len(told) > 0.9 * len(happened)
+    # ROS 2 may find the listener late.
+    assert len(told) > len(happened) / 2
+    # In every tick something is sent, and reported. A few commands more are answers that wait for no tick.
+    ticks = sum(each["direction"] == "out" for each in drive.log[first : first + len(told)])
+    assert ticks * 0.9 < len(states) <= ticks + 2
 
 
 def test_what_it_tells_fits_the_schemas(drive: Drive) -> None:
