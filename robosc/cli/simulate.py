@@ -105,10 +105,10 @@ def _played(models: Models, script: str, settings: Settings | None, report: Repo
     text = decoded.content
     simulation = Simulation(models.sct, models.rosgraph)
     looped = None if settings is None else LoopSimulation(models.sct, models.rosgraph, settings)
-    engine = simulation.engine
-    steps, findings = read_script(
-        name, text, *((engine.events, LoopSimulation.OWN) if looped is None else (looped.events, engine.events))
-    )
+    if looped is None:
+        steps, findings = read_script(name, text, simulation.engine.events, LoopSimulation.OWN)
+    else:
+        steps, findings = read_script(name, text, looped.events, simulation.engine.events)
     own = () if looped is None else looped.OWN
     found = unfit_data(name, (each for each in steps if each.event not in own), simulation.data)
     report.add([*findings, *found], {name: text})

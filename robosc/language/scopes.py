@@ -71,7 +71,7 @@ class File:
         """The files of this base and of all that it imports, also from afar."""
         homes = {self.base: self}
         for each in filter(None, self.libraries.values()):
-            homes |= each._homes  # noqa: SLF001
+            homes |= each._homes  # noqa: SLF001  # a file, as this one
         return homes
 
 

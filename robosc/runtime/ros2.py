@@ -120,6 +120,14 @@ class Ros2Node:
             quality = latched if name == "definition" else QoSProfile(depth=_DEPTH)
             self._reports[name] = self.node.create_publisher(String, f"~/{name}", quality)
 
+    def feedback_quality(self, action: rosgraph.ActionClient) -> Any:
+        """How the robot's feedback is received."""
+        return self._quality(action.identifier, QoSProfile(depth=_DEPTH))
+
+    def _service_client(self, service: rosgraph.ServiceClient) -> Any:
+        quality = self._quality(service.identifier, qos_profile_services_default)
+        return self.node.create_client(self._types[service.interface], service.identifier, qos_profile=quality)
+
     def _quality(self, name: str, usual: Any) -> Any:
         """What the configuration says of a topic, service or action goes first."""
         chosen = self._configuration.qos.get(name.removeprefix("/"))
@@ -234,17 +242,13 @@ class Ros2Port(Ros2Node):
                 event_callbacks=PublisherEventCallbacks(use_default_callbacks=False),
             )
         for service in self._graph.serviceClients:
-            self._clients[service] = self.node.create_client(
-                self._types[service.interface],
-                service.identifier,
-                qos_profile=self._quality(service.identifier, qos_profile_services_default),
-            )
+            self._clients[service] = self._service_client(service)
         for action in self._graph.actionClients:
             self._clients[action] = rclpy.action.ActionClient(
                 self.node,
                 self._types[action.interface],
                 action.identifier,
-                feedback_sub_qos_profile=self._quality(action.identifier, QoSProfile(depth=_DEPTH)),
+                feedback_sub_qos_profile=self.feedback_quality(action),
             )
         for subscription in self._graph.subscriptions:
             self._listen(subscription, controller, overriding)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from action_msgs.msg import GoalStatus
 from rclpy.clock import Clock, ClockType
-from rclpy.qos import DurabilityPolicy, QoSProfile, qos_profile_sensor_data, qos_profile_services_default
+from rclpy.qos import DurabilityPolicy, QoSProfile, qos_profile_sensor_data
 
 from robosc.runtime.clients import Answers, ServiceClient
 from robosc.runtime.layer import below_layer, hearing, passing
@@ -37,9 +37,7 @@ class Ros2Layer(Ros2Node):
             route = self._route(publisher, below_layer(publisher.topic), publisher.topic)
             _Relay(self, route, passing(layer, sending))
         for service in self._graph.serviceClients:
-            quality = self._quality(service.identifier, qos_profile_services_default)
-            kind = self._types[service.interface]
-            self._clients[service] = self.node.create_client(kind, service.identifier, qos_profile=quality)
+            self._clients[service] = self._service_client(service)
             _ServiceProxy(self, self._types[service.interface], service, layer, settings.seconds("service_timeout_ms"))
         for action in self._graph.actionClients:
             timeout = settings.seconds("action_timeout_ms")
@@ -54,10 +52,6 @@ class Ros2Layer(Ros2Node):
         chosen = self._configuration.qos.get(element.topic.removeprefix("/"))
         sent = QoSProfile(depth=chosen.depth) if chosen and chosen.depth else usual
         return _Route(self._types[element.interface], source, target, received, sent)
-
-    def feedback_quality(self, action: rosgraph.ActionClient) -> Any:
-        """How the robot's feedback is received."""
-        return self._quality(action.identifier, QoSProfile(depth=_DEPTH))
 
 
 @dataclass(frozen=True)
