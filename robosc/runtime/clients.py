@@ -161,7 +161,7 @@ class ActionClient:
         self._asked, self._cancelling = True, expected
         number = self._number
         if self._phase is _Phase.LOOKING:
-            self._agenda.post(lambda: self._on(number, lambda: self._end("it was never sent")))
+            self._agenda.post(lambda: self._on(number, lambda: self._end(_OWN)))
         elif self._phase is _Phase.ACCEPTED:
             self._ask_to_cancel()
 
@@ -268,7 +268,8 @@ class ActionClient:
             self._forget()
             self._answers.response(result)
             return
-        self._end(f"{_UNASKED[outcome]}{said}")
+        own = outcome is Outcome.CANCELLED and self._asked
+        self._end(f"{_OWN if own else _UNASKED[outcome]}{said}")
 
     def _end(self, why: str) -> None:
         cancelling = self._cancelling
@@ -279,4 +280,6 @@ class ActionClient:
             self._answers.error(why)
 
 
+#: What a goal comes to that the node has cancelled without a cancel of the model's: it has stopped the robot.
+_OWN = "cancelled by the controller itself, an error to the model"
 _UNASKED = {Outcome.SUCCEEDED: "succeeded", Outcome.CANCELLED: "cancelled by someone else", Outcome.ABORTED: "aborted"}

@@ -215,7 +215,7 @@ class _ActionProxy:
                 self._layer.respond(self._action, message.result)
             else:
                 rejected = "rejected" if status == GoalStatus.REJECTED else "aborted"
-                self._layer.fail(self._action, "cancelled by someone else" if status in _CANCELLED else rejected)
+                self._layer.fail(self._action, "cancelled" if status in _CANCELLED else rejected)
         self._finish(goal)
         self._results.publish(message)
 

@@ -294,7 +294,7 @@ class _ActionProxy:
                 self._layer.respond(self._action, response.result)
             else:
                 cancelled = response.status == GoalStatus.STATUS_CANCELED
-                self._layer.fail(self._action, "cancelled by someone else" if cancelled else "aborted")
+                self._layer.fail(self._action, "cancelled" if cancelled else "aborted")
         self._finish(goal, response)
 
     def _on_status(self, message: Any) -> None:

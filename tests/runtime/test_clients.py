@@ -231,7 +231,15 @@ def test_an_interrupted_goal_ends_in_an_error() -> None:
     bench.do(lambda: bench.client.cancel(expected=False))
     assert goal.cancels == 1
     bench.do(lambda: goal.handlers.ended(Outcome.CANCELLED, None, ""))
-    assert bench.told == [("error", "cancelled by someone else")]
+    assert bench.told == [("error", "cancelled by the controller itself, an error to the model")]
+
+
+def test_a_goal_that_is_interrupted_before_it_is_sent_ends_in_the_same_error() -> None:
+    bench = Bench(ActionClient)
+    bench.port.served = False
+    bench.do(lambda: bench.client.start("goal"))
+    bench.do(lambda: bench.client.cancel(expected=False))
+    assert bench.told == [("error", "cancelled by the controller itself, an error to the model")]
 
 
 _GOAL_STEPS = st.lists(

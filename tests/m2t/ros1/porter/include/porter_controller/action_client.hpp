@@ -72,7 +72,7 @@ class ActionClient {
     if (phase_ == Phase::looking) {
       const std::uint64_t number = number_;
       events_.push([this, number] {
-        if (number == number_ && phase_ == Phase::looking) end("cancelled");
+        if (number == number_ && phase_ == Phase::looking) end(kOwn);
       });
     } else if (phase_ != Phase::sent) {
       ask_to_cancel();
@@ -93,6 +93,8 @@ class ActionClient {
 
   // Looks in which a server may be missing: one that came back after a crash is seen in parts for a moment.
   static constexpr int kPatience = 10;
+  // What a goal comes to that was interrupted: the node has stopped the robot.
+  static constexpr const char* kOwn = "cancelled by the controller itself, an error to the model";
 
   // No goal; one that waits for a server; sent; known to the server; accepted by it; over, but for its result.
   enum class Phase { idle, looking, sent, known, accepted, over };
@@ -214,7 +216,7 @@ class ActionClient {
         return "aborted";
       case TerminalState::RECALLED:
       case TerminalState::PREEMPTED:
-        return interrupted_ ? "cancelled" : "cancelled by someone else";
+        return interrupted_ ? kOwn : "cancelled by someone else";
       default:
         return "the server has lost the goal";
     }

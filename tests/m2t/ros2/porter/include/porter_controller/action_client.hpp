@@ -105,7 +105,7 @@ class ActionClient {
 
   void send() {
     if (to_cancel_) {
-      finish([this] { handlers_.error("cancelled before it was sent"); });
+      finish([this] { handlers_.error(kOwn); });
       return;
     }
     if (!client_->action_server_is_ready()) {
@@ -170,7 +170,7 @@ class ActionClient {
       case rclcpp_action::ResultCode::SUCCEEDED:
         return finish([this, &result] { handlers_.response(*result.result); });
       case rclcpp_action::ResultCode::CANCELED:
-        return finish([this, ours = to_cancel_] { handlers_.error(ours ? "cancelled" : "cancelled by someone else"); });
+        return finish([this, ours = to_cancel_] { handlers_.error(ours ? kOwn : "cancelled by someone else"); });
       default:
         return finish([this] { handlers_.error("aborted"); });
     }
@@ -250,6 +250,8 @@ class ActionClient {
   }
 
   static constexpr std::size_t kEarly = 10;
+  // What a goal comes to that was interrupted: the node has stopped the robot.
+  static constexpr const char* kOwn = "cancelled by the controller itself, an error to the model";
 
   std::shared_ptr<char> alive_ = std::make_shared<char>();
   Handlers handlers_;
