@@ -52,8 +52,8 @@ class Explanation:
     `by` is the first of what forbids it: the plants, requirements, synthesis; None where nothing does, or, in a state
     that the supervisor never lets the robot get to, where neither plants nor requirements do. `plants` and
     `requirements` say all that forbids it, `trouble` what would follow if synthesis did not; there `blamed` are the
-    requirements that forbid something from the end of that trouble on. `changes` are the events
-    that would change a part of it at once, at the transitions that do. `way` is a shortest trace from here, under the
+    requirements that forbid something from the end of that trouble on. `changes` are the transitions of those events
+    that can happen now and after which it can. `way` is a shortest trace from here, under the
     supervisor, to where the event can happen: empty if that is here, None if there is none. `refusal` is about the
     first event on the trace that the supervisor forbids, where it never lets the robot get to this state.
     """

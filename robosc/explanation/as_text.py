@@ -64,7 +64,7 @@ class Teller:
         yield from self._refused(told.refusal)
         yield from self._obstacles(told)
         if told.changes:
-            yield from self._section("What would change that at once:", self._notes(told.changes))
+            yield from self._section("What would make it possible at once:", self._notes(told.changes))
         if told.situation.reach is Reach.SUPERVISED and not told.allowed:
             yield from self._way(told)
 

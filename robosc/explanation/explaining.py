@@ -81,7 +81,7 @@ def _explained(space: Space, event: sct.Event, situation: Situation, refusal: Ex
         requirements,
         caught,
         tuple(blame),
-        tuple(obstacles.changes()),
+        tuple(obstacles.changes(allowed)) if supervised and not space.is_in(codes, allowed) else (),
         _way(space, codes, allowed) if supervised else None,
         refusal,
     )

@@ -1,23 +1,25 @@
-"""What plants and requirements have against an event in a state, and which events would change that."""
+"""What plants and requirements have against an event in a state, and which events would make it possible."""
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from robosc.explanation.answers import Note
 from robosc.expressions import RobotPrinter
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
-from robosc.supervision.wording import listed, name, what_is, words
-from robosc.synthesis.decoding import value
+from robosc.supervision.wording import in_words, listed, name, what_is, words
+from robosc.synthesis.decoding import pick, text, value
 from robosc.synthesis.encoding import referenced
 from robosc.synthesis.fixpoint import reachable
+from robosc.synthesis.paths import Path, trace
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-
     from robosc.explanation.space import Codes, Space
+    from robosc.synthesis.bdd import Diagram
     from robosc.synthesis.encoding import Element
+    from robosc.synthesis.paths import Move
 
 #: How many states a sentence names.
 _NAMED = 4
@@ -27,8 +29,8 @@ _PHASES = {
     "idle": "is not under way",
     "wait_for_response": "still waits for its answer",
     "executing": "is still under way",
-    "ready": "has ended, but is not yet ready to be used again",
-    "error": "has failed, and is not yet ready to be used again",
+    "ready": "has ended, and is reset before it can start again",
+    "error": "has failed, and is reset after a while before it can start again",
 }
 _WAITING = {
     sct.EventKind.trigger: "`on request to {}`",
@@ -64,21 +66,20 @@ class Obstacles:
             if not self._space.is_in(self._codes, where)
         ]
 
-    def changes(self) -> list[Note]:
-        """The transitions from here that change something of this at once."""
-        relation = self._space.relations[self._event]
+    def changes(self, allowed: Diagram) -> list[Note]:
+        """What makes it possible at once: each event that can happen here and leads to one of the states `allowed`.
+
+        It is told at the transitions with which it changes what stands in the way.
+        """
+        encoding = self._space.encoding
+        here = encoding.state(self._codes)
         found: list[Note] = []
-        for plant, where in relation.enabled_by.items():
-            if not self._space.is_in(self._codes, where):
-                found += self._to_where_it_waits(plant)
-                edge = self._edge(plant)
-                for part, _ in self._failing(edge.guard, wanted=True) if edge else ():
-                    found += self._changing(part)
-        for requirement, where in relation.asked.items():
-            if not self._space.is_in(self._codes, where):
-                for part, _ in self._parts(requirement):
-                    found += self._changing(part)
-        return list(dict.fromkeys(found))
+        for move in self._space.moves:
+            possible = move[1].image(here) & allowed
+            if possible.satisfiable():
+                after = pick(possible, encoding.layout.state)
+                found += self._changing(move, after)
+        return found
 
     # Plants
 
@@ -96,7 +97,7 @@ class Obstacles:
             asked = f"{self._transition(plant)} asks for `{self._print(edge.guard)}`"
             return Note(edge, f"`{name(plant)}` is in `{here.name}`, where {asked}", parts)
         if plant.kind in _CALLS and here.name in _PHASES:
-            return Note(plant, f"`{name(plant)}` {_PHASES[here.name]}")
+            return Note(plant, f"`{name(plant)}` is in `{here.name}`: it {_PHASES[here.name]}")
         others = [f"`{each.name}`" for each in plant.locations if any(own.event is self._event for own in each.edges)]
         elsewhere = (
             f"it has one in {listed(others)}" if len(others) <= _NAMED else f"{len(others)} other states have one"
@@ -112,12 +113,6 @@ class Obstacles:
             return f"the {words(self._event)}"
         own, _, short = name(owner).rpartition(".")
         return _WAITING[self._event.kind].format(short if own == name(plant) else name(owner))
-
-    def _to_where_it_waits(self, plant: sct.Plant) -> Iterator[Note]:
-        here = self._here(plant)
-        for edge in here.edges:
-            if edge.target is not here and any(each.event is self._event for each in edge.target.edges):
-                yield _moves(edge)
 
     # Conditions
 
@@ -146,24 +141,33 @@ class Obstacles:
         values = [what_is(each, value(each, self._codes[each])) for each in dict.fromkeys(referenced(condition))]
         return f"{held}: {listed(values)}" if values and told else held
 
-    def _changing(self, part: ex.Expression) -> Iterator[Note]:
-        """What changes an element that a part of a condition reads."""
-        targets = {part.location} if isinstance(part, sct.LocationReference) else None
-        for element in dict.fromkeys(referenced(part)):
-            yield from self._changing_element(element, targets)
+    # Changes
 
-    def _changing_element(self, element: Element, targets: Iterable[sct.Location] | None) -> Iterator[Note]:
-        if isinstance(element, sct.Plant):
-            here = self._here(element)
-            wanted = targets if targets is not None and here not in targets else element.locations
-            for edge in here.edges:
-                if edge.target is not here and edge.target in wanted:
-                    yield _moves(edge)
-            return
-        plant: sct.Plant = element.eContainer()
-        for edge in self._here(plant).edges:
-            if any(update.variable is element for update in edge.updates):
-                yield Note(edge, f"`{name(plant)}.{element.name}` changes by {words(edge.event)}")
+    def _changing(self, move: Move, after: Codes) -> list[Note]:
+        """The transitions of an event from here to the state `after` that change something of what is in the way."""
+        relation = move[0]
+        steps = trace(self._space.encoding, Path([dict(self._codes), dict(after)], [move]))
+        by = in_words(steps, self._space.model)
+        found = []
+        for plant in relation.enabled_by:
+            edge = next(each for each in self._here(plant).edges if each.event is relation.event)
+            changed = [each for each in (plant, *plant.variables) if self._codes[each] != after[each]]
+            found += [(each, _change(each, edge, after, by)) for each in changed]
+        return [note for each, note in found if each in self._in_the_way] or [note for _, note in found]
+
+    @cached_property
+    def _in_the_way(self) -> set[Element]:
+        """The plants that can't take part, and what the guards and requirements read that fail."""
+        found: set[Element] = set()
+        relation = self._space.relations[self._event]
+        for plant, where in relation.enabled_by.items():
+            if not self._space.is_in(self._codes, where):
+                edge = self._edge(plant)
+                found.update([plant] if edge is None else referenced(edge.guard))
+        for requirement, where in relation.asked.items():
+            if not self._space.is_in(self._codes, where):
+                found.update(each for part, _ in self._parts(requirement) for each in referenced(part))
+        return found
 
 
 def blamed(space: Space, end: Codes) -> list[Note]:
@@ -178,9 +182,10 @@ def blamed(space: Space, end: Codes) -> list[Note]:
     ]
 
 
-def _moves(edge: sct.Edge) -> Note:
-    """That an edge leads its plant from one location to another."""
-    here: sct.Location = edge.eContainer()
-    return Note(
-        edge, f"`{name(here.eContainer())}` goes from `{here.name}` to `{edge.target.name}` by {words(edge.event)}"
-    )
+def _change(element: Element, edge: sct.Edge, after: Codes, by: str) -> Note:
+    """What an edge, taken by an event, makes of its plant or of a variable."""
+    if isinstance(element, sct.Plant):
+        here: sct.Location = edge.eContainer()
+        return Note(edge, f"`{name(element)}` goes from `{here.name}` to `{edge.target.name}` by {by}")
+    whole = f"`{name(element.eContainer())}.{element.name}`"
+    return Note(edge, f"{whole} becomes {text(value(element, after[element]))} by {by}")

@@ -19,6 +19,7 @@ def test_wording(run: Run, golden: Callable[[Path, str], None]) -> None:
         "--event refill --state Gauge=full,Gauge.level=4,Valve=open",
         "--event refill --state Gauge=metering,wet=true",
         "--event rinse --state rinse=error",
+        "--event rinse --state rinse=ready",
         "--event rinse.response",
         "--event Gauge.c_tau1 --state level=5",
         "--event level",
