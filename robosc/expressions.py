@@ -10,6 +10,7 @@ from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc, sct
 from robosc.metamodel.reflection import features, is_attribute
 from robosc.naming import written
+from robosc.visible import visible
 
 _Kind = TypeVar("_Kind", bound=ex.Expression)
 
@@ -130,7 +131,7 @@ class RoboscPrinter(ExpressionPrinter):
                 digits = format(Decimal(repr(expression.value)), "f")  # RoboSC has no exponents
                 return digits if "." in digits else f"{digits}.0"
             case ex.StringLiteral():
-                return json.dumps(expression.value, ensure_ascii=False)
+                return visible(json.dumps(expression.value, ensure_ascii=False))
         return super().atom(expression)
 
 

@@ -112,6 +112,15 @@ def test_caret_stands_under_the_fault(line: str, start: int, end: int, shown: st
     assert underline(line, start, end) == (shown, carets)
 
 
+@pytest.mark.parametrize("at", [0, 10, 59, 60, 61, 200, 495, 499, 500])
+def test_of_a_long_line_the_part_around_the_fault_is_shown(at: int) -> None:
+    line = "".join(chr(0x4E00 + number) for number in range(500))
+    shown, carets = underline(line, at, at + 400)
+    assert len(shown) < 170
+    columns = sum(1 if each == "…" else 2 for each in shown.partition(line[at : at + 1] or "end")[0])
+    assert carets.index("^") == columns
+
+
 def test_of_several_lines_the_first_is_underlined() -> None:
     text = "one {  \n two\n}"
     assert as_text.render([finding(1, 5, 3, 2)], {"a.rscd": text}).splitlines()[1:] == ["    one {", "        ^"]

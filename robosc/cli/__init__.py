@@ -6,12 +6,18 @@ import gc
 import os
 import sys
 import traceback
+from contextlib import contextmanager
 from importlib import import_module
-from typing import Any, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 
 from robosc import __version__
+from robosc.cli.saying import say
+from robosc.visible import visible, visible_lines
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 #: Exit statuses, beside 0.
 ERRORS_FOUND = 1
@@ -44,6 +50,19 @@ class _InternalError(click.ClickException):
     exit_code = INTERNAL_ERROR
 
 
+@contextmanager
+def _visible_errors() -> Iterator[None]:
+    """What is wrong with a call may cite it: nothing in that steers the terminal."""
+    try:
+        yield
+    except click.ClickException as error:
+        said = error.format_message()
+        if visible_lines(said) == said:
+            raise
+        kind = _InternalError if isinstance(error, _InternalError) else CallError
+        raise kind(visible_lines(said)) from error
+
+
 class _Commands(click.Group):
     """The commands, each in a module of this package with its name, and what holds for all of them."""
 
@@ -61,7 +80,15 @@ class _Commands(click.Group):
         with formatter.section("Commands"):
             formatter.write_dl(list(_COMMANDS.items()))
 
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        with _visible_errors():
+            return super().parse_args(ctx, args)
+
     def invoke(self, ctx: click.Context) -> Any:
+        with _visible_errors():
+            return self._invoked(ctx)
+
+    def _invoked(self, ctx: click.Context) -> Any:
         for stream in (sys.stdout, sys.stderr):
             if hasattr(stream, "reconfigure"):
                 # A terminal that lacks a character, or a file name that is no text, shall not end in an error.
@@ -73,7 +100,9 @@ class _Commands(click.Group):
         except KeyboardInterrupt:
             raise click.exceptions.Exit(INTERRUPTED) from None
         except OSError as error:
-            raise CallError(f"{error.filename}: {error.strerror}" if error.filename else str(error)) from error
+            raise CallError(
+                f"{visible(str(error.filename))}: {error.strerror}" if error.filename else str(error)
+            ) from error
         except MemoryError as error:
             raise CallError(f"the model is too large: {str(error) or 'out of memory'}") from error
         except Exception as error:
@@ -124,5 +153,5 @@ def run() -> NoReturn:
         pass  # whoever reads has read enough
     except OSError as error:
         status = WRONG_CALL
-        click.echo(f"Error: the output can't be written: {error.strerror}", err=True)
+        say(f"Error: the output can't be written: {error.strerror}", err=True)
     os._exit(status)

@@ -11,6 +11,7 @@ from robosc.cli import CallError
 from robosc.cli.options import FILE, interface_path, library_path
 from robosc.cli.reading import read, read_models
 from robosc.cli.report import Report
+from robosc.cli.saying import put
 from robosc.diagrams import (
     GRAPH_NOTATIONS,
     METAMODELS,
@@ -85,7 +86,7 @@ def command(
         with Report(aside=True) as report:
             text = diagram(_graph(model, kind or "behaviour", library_paths, report, interface_paths), notation)
     if output is None:
-        click.echo(text, nl=False)
+        put(text, nl=False)
         return
     path = Path(output)
     try:

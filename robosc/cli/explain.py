@@ -12,6 +12,7 @@ from robosc.cli.options import interface_path, library_path, model
 from robosc.cli.progress import progress
 from robosc.cli.reading import read_models
 from robosc.cli.report import Report
+from robosc.cli.saying import put, say
 from robosc.explanation import as_json
 from robosc.explanation.as_text import Teller
 from robosc.explanation.emptiness import emptiness
@@ -21,6 +22,7 @@ from robosc.explanation.possibility import possibility
 from robosc.explanation.space import explored
 from robosc.metamodel.places import place
 from robosc.supervision import supervise
+from robosc.visible import visible
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -78,10 +80,12 @@ def command(
         if told is None and not why_empty:
             supervise(plants)  # raises, and says why there is no supervisor
         elif as_data:
-            click.echo(json.dumps(as_json.answer(told, lambda each: _position(each, report)), indent=2))
+            put(json.dumps(as_json.answer(told, lambda each: _position(each, report)), indent=2))
         else:
-            click.echo(
-                Teller(plants, lambda each: "{file}:{line}:{column}".format(**_position(each, report))).answer(told)
+            say(
+                Teller(plants, lambda each: visible("{file}:{line}:{column}".format(**_position(each, report)))).answer(
+                    told
+                )
             )
 
 

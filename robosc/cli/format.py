@@ -11,9 +11,11 @@ import click
 
 from robosc.cli import ERRORS_FOUND, CallError
 from robosc.cli.report import Report
+from robosc.cli.saying import say
 from robosc.language.formatting import format_text
 from robosc.language.text import decode
 from robosc.output import OutputError, write
+from robosc.visible import visible
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -77,9 +79,9 @@ def _refuse(error: OSError) -> NoReturn:
 def _show(file: str, before: bytes, after: str, *, diff: bool) -> None:
     if diff:
         old, new = (_lines(each) for each in (before.decode(), after))
-        click.echo("".join(unified_diff(old, new, file, file)), nl=False)
+        say("".join(unified_diff(old, new, visible(file), visible(file))), nl=False)
     elif after.encode() != before:
-        click.echo(file)
+        say(visible(file))
 
 
 def _lines(text: str) -> list[str]:

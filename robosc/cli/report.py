@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Literal
 import click
 
 from robosc.cli import EMPTY_SUPERVISOR, ERRORS_FOUND
+from robosc.cli.saying import put
 from robosc.diagnostics import ModelError, has_errors
 
 if TYPE_CHECKING:
@@ -85,19 +86,19 @@ class Report:
         if self.form == "json":
             from robosc.diagnostics import as_json
 
-            click.echo(as_json.render(self.findings), nl=False)
+            put(as_json.render(self.findings), nl=False)
         elif self.form == "sarif":
             from robosc import __version__
             from robosc.diagnostics import as_sarif
 
-            click.echo(as_sarif.render(self.findings, __version__), nl=False)
+            put(as_sarif.render(self.findings, __version__), nl=False)
         elif self.findings:
             from robosc.diagnostics import as_text
 
             paint = as_text.plain if os.environ.get("NO_COLOR") else _paint
             texts = {each.file: self._text(each.file) for each in self.findings}
-            click.echo(as_text.render(self.findings, texts, paint), nl=False, err=self.aside)
-            click.echo(as_text.summary(self.findings), err=True)
+            put(as_text.render(self.findings, texts, paint), nl=False, err=self.aside)
+            put(as_text.summary(self.findings), err=True)
 
     def _text(self, file: str) -> str:
         """The source of a file: as it was read, else (configurations, XMI) from the file, empty if there is none."""

@@ -9,6 +9,7 @@ import click
 from rich.console import Console
 from rich.markdown import Markdown
 
+from robosc.cli.saying import put
 from robosc.diagnostics.rules import page, rules
 
 
@@ -23,7 +24,7 @@ def command(rule: str | None) -> None:
       robosc rule
     """
     if rule is None:
-        click.echo("\n".join(rules()))
+        put("\n".join(rules()))
         return
     text = page(rule)
     if text is None:
@@ -33,4 +34,4 @@ def command(rule: str | None) -> None:
     if sys.stdout.isatty():
         Console().print(Markdown(text))
     else:
-        click.echo(text, nl=False)
+        put(text, nl=False)

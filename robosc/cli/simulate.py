@@ -16,6 +16,7 @@ from robosc.cli.options import FILE, interface_path, library_path, model
 from robosc.cli.progress import synthesizing
 from robosc.cli.reading import read_models
 from robosc.cli.report import Report
+from robosc.cli.saying import put, say
 from robosc.engine import Settings
 from robosc.language.text import decode
 from robosc.simulation import Simulation, read_script, unfit_data
@@ -80,7 +81,7 @@ def command(
             answers = _played(models, script, settings, report)
     if script is not None:
         for answer in answers:
-            click.echo(json.dumps(answer))
+            put(json.dumps(answer))
         return
     simulation = Simulation(models.sct, models.rosgraph)
     if number is not None:
@@ -124,18 +125,18 @@ def _run(simulation: Simulation, number: int, seed: int) -> None:
         happened = simulation.random_step(random)
         if happened is None:
             return
-        click.echo(trace_line(happened))
+        put(trace_line(happened))
 
 
 def _converse(simulation: Simulation, seed: int) -> None:
     session = Session(simulation, seed)
     interactive = sys.stdin.isatty()
     if interactive:
-        click.echo(f"{simulation.engine.model.name}: h for help, q to end")
-    click.echo(session.enabled())
+        say(f"{simulation.engine.model.name}: h for help, q to end")
+    say(session.enabled())
     while not session.ended:
         if interactive:
-            click.echo("> ", nl=False)
+            say("> ", nl=False)
         line = sys.stdin.readline()
         if not line:
             return
@@ -144,4 +145,4 @@ def _converse(simulation: Simulation, seed: int) -> None:
         except (OSError, UnicodeDecodeError) as error:
             answer = str(error)
         if answer:
-            click.echo(answer)
+            say(answer)

@@ -12,6 +12,7 @@ from robosc.cli.options import interface_path, library_path, memory, model
 from robosc.cli.progress import synthesizing
 from robosc.cli.reading import read_models
 from robosc.cli.report import Report
+from robosc.cli.saying import put, say
 from robosc.expressions import SctPrinter, conjunction, copied
 from robosc.metamodel import sct
 from robosc.roles import SILENT, event_name
@@ -79,7 +80,7 @@ def _show_json(model: sct.SupervisoryControlModel, synthesis: Synthesis) -> None
         "bdd_nodes": synthesis.bdd_nodes,
         **_cost(synthesis.statistics),
     }
-    click.echo(json.dumps(answer, indent=2))
+    put(json.dumps(answer, indent=2))
 
 
 def _cost(statistics: Statistics) -> dict[str, Any]:
@@ -129,14 +130,14 @@ def _show(model: sct.SupervisoryControlModel, synthesis: Synthesis) -> None:
     """What tells something: the choice among data to send restricts nothing that the robot does."""
     assert synthesis.supervisor is not None
     states = f"{synthesis.controlled_states} states, of {synthesis.uncontrolled_states} without requirements"
-    click.echo(f"{model.name}: {states}")
+    say(f"{model.name}: {states}")
     for guard in synthesis.supervisor.guards:
         if guard.event.kind == sct.EventKind.data:
             continue
         event = _controllable(guard)
         heading = change(guard.event) if guard.event.kind in SILENT else event["name"]
-        click.echo(f"\n{heading}{'' if event['ever_enabled'] else ' (never enabled)'}")
+        say(f"\n{heading}{'' if event['ever_enabled'] else ' (never enabled)'}")
         if event["ever_enabled"] or event["guard"] != "true":
-            click.echo(f"    guard: {event['guard']}")
+            say(f"    guard: {event['guard']}")
         if event["added_by_synthesis"]:
-            click.echo(f"    added by synthesis: {event['added_by_synthesis']}")
+            say(f"    added by synthesis: {event['added_by_synthesis']}")

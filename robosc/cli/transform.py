@@ -13,6 +13,7 @@ from robosc.cli.options import FILE, findings_format, interface_path, library_pa
 from robosc.cli.progress import progress, synthesizing
 from robosc.cli.reading import read_models
 from robosc.cli.report import Report
+from robosc.cli.saying import say
 from robosc.output import OutputError, write
 from robosc.supervision import supervise
 from robosc.targets import TARGETS, Target, together
@@ -102,7 +103,7 @@ def command(
             changed = write(trees)
         except OutputError as error:
             raise CallError(str(error)) from error
-    click.echo(f"{folder}: {len(trees[folder])} files, {len(changed)} written", err=True)
+    say(f"{folder}: {len(trees[folder])} files, {len(changed)} written", err=True)
 
 
 def _configuration(model: Path, chosen: str | None) -> config.Configuration:

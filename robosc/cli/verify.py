@@ -16,8 +16,10 @@ from robosc.cli.options import FILE, interface_path, library_path, model
 from robosc.cli.progress import progress
 from robosc.cli.reading import read_models
 from robosc.cli.report import Report
+from robosc.cli.saying import put, say
 from robosc.supervision import supervise
 from robosc.verification import Outcome, as_json, as_junit, as_text, verify
+from robosc.visible import visible
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -78,7 +80,7 @@ def command(
     if junit:
         Path(junit).write_text(as_junit.render(models.sct, verdicts, model), encoding="utf-8")
     if as_object:
-        click.echo(as_json.render(models.sct.name, verdicts), nl=False)
+        put(as_json.render(models.sct.name, verdicts), nl=False)
     else:
         _show(models.sct, verdicts)
     if any(each.outcome is Outcome.REFUTED for each in verdicts):
@@ -95,10 +97,10 @@ def _show(model: sct.SupervisoryControlModel, verdicts: Sequence[Verdict]) -> No
     table.add_column("seconds", justify="right")
     for each in verdicts:
         verdict = Text(each.outcome.value, _STYLES[each.outcome])
-        table.add_row(Text(each.property), verdict, Text(each.evidence), f"{each.seconds:.3f}")
+        table.add_row(Text(each.property), verdict, Text(visible(each.evidence)), f"{each.seconds:.3f}")
     console.print(table)
     for each in verdicts:
         said = as_text.details(each, model)
         if said:
-            click.echo(f"\n{said}")
-    click.echo(f"\n{model.name}: {as_text.summary(verdicts)}")
+            say(f"\n{said}")
+    say(f"\n{model.name}: {as_text.summary(verdicts)}")

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Literal, TypeAlias
 from rich.cells import cell_len
 
 from robosc.diagnostics import Diagnostic, Severity, in_order
+from robosc.visible import visible
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
@@ -16,8 +17,10 @@ if TYPE_CHECKING:
 Part: TypeAlias = Literal["place", "error", "warning", "rule", "caret", "hint"]
 _TAB = 4
 _MARGIN = "    "
-#: What would move a terminal's cursor or reorder its text shows as a replacement character.
-_UNPRINTABLE = re.compile("[\x00-\x08\x0a-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069]")
+#: More findings than anybody reads are counted only, errors shown first; of a long line or message a part is shown.
+MOST = 100
+_LONGEST_LINE, _BEFORE_FAULT = 160, 60
+_LONGEST_TEXT = 4000
 
 
 def plain(_part: Part, text: str) -> str:
@@ -29,10 +32,16 @@ def render(findings: Iterable[Diagnostic], texts: Mapping[str, str], paint: Call
     """All findings in order, each as `file:line:column: severity: message [rule]` with its line, carets and hint.
 
     `texts` holds the source of each file; of a file that is not there no line is shown. `paint` colours a part of the
-    output. Empty for no findings, else it ends with a line break.
+    output. Empty for no findings, else it ends with a line break. Where there are more than `MOST` findings, that many
+    are shown, errors before warnings, and the number of the others.
     """
-    lines = {file: text.split("\n") for file, text in texts.items()}
-    return "".join(_render(each, lines.get(each.file, []), paint) for each in in_order(findings))
+    found = in_order(findings)
+    shown = in_order(sorted(found, key=lambda each: each.severity is not Severity.ERROR)[:MOST])
+    lines = {file: texts[file].split("\n") for file in {each.file for each in shown} if file in texts}
+    parts = [_render(each, lines.get(each.file, []), paint) for each in shown]
+    if len(found) > len(shown):
+        parts.append(f"{len(found) - len(shown)} more are not shown: `robosc check --format json` tells all\n")
+    return "".join(parts)
 
 
 def summary(findings: Iterable[Diagnostic]) -> str:
@@ -43,16 +52,16 @@ def summary(findings: Iterable[Diagnostic]) -> str:
 
 
 def _render(finding: Diagnostic, lines: list[str], paint: Callable[[Part, str], str]) -> str:
-    place = f"{_safe(finding.file)}:{finding.span.line}:{finding.span.column}:"
+    place = f"{visible(finding.file)}:{finding.span.line}:{finding.span.column}:"
     severity: Part = "error" if finding.severity is Severity.ERROR else "warning"
     head = f"{paint('place', place)} {paint(severity, f'{severity}:')}"
-    shown = [f"{head} {_safe(finding.message)} {paint('rule', f'[{finding.rule}]')}"]
+    shown = [f"{head} {_told(finding.message)} {paint('rule', f'[{finding.rule}]')}"]
     if finding.span.line <= len(lines):
         line, carets = underlined(finding, lines[finding.span.line - 1])
         indent = len(carets) - len(carets.lstrip())
         shown += [_MARGIN + line, _MARGIN + carets[:indent] + paint("caret", carets[indent:])]
     if finding.hint:
-        shown.append(f"{_MARGIN}{paint('hint', 'hint:')} {_safe(finding.hint)}")
+        shown.append(f"{_MARGIN}{paint('hint', 'hint:')} {_told(finding.hint)}")
     return "\n".join(shown) + "\n"
 
 
@@ -60,7 +69,7 @@ def underlined(finding: Diagnostic, line: str) -> tuple[str, str]:
     """The first line of the finding as a terminal shows it, and the carets that stand under its span there.
 
     Tabs are expanded; a wide character takes two columns and a combining one none. Of a span over several lines the
-    rest of the first is underlined.
+    rest of the first is underlined. Of a long line only what is around the start of the span is shown.
     """
     line = line.removesuffix("\r")
     span = finding.span
@@ -69,23 +78,28 @@ def underlined(finding: Diagnostic, line: str) -> tuple[str, str]:
     # A combining character belongs to the one before it: it neither starts nor ends an underline.
     while 0 < start < len(line) and unicodedata.combining(line[start]):
         start -= 1
-    left = _columns(line[:start])
-    width = _columns(line[:end]) - left
-    return _shown(line).rstrip(), " " * left + "^" * max(width, 1)
+    before = after = ""
+    if len(line) > _LONGEST_LINE:
+        first = max(0, min(start - _BEFORE_FAULT, len(line) - _LONGEST_LINE))
+        before, after = "…" if first else "", "…" if first + _LONGEST_LINE < len(line) else ""
+        line, start, end = line[first : first + _LONGEST_LINE], start - first, min(end - first, _LONGEST_LINE)
+    left = _columns(before + line[:start])
+    width = _columns(before + line[:end]) - left
+    return _shown(before + line + after).rstrip(), " " * left + "^" * max(width, 1)
 
 
 def _shown(text: str) -> str:
     """The text with tabs expanded to columns, and nothing in it that a terminal would obey."""
     shown, column = [], 0
     for piece in re.split("(\t)", text):
-        visible = " " * (_TAB - column % _TAB) if piece == "\t" else _safe(piece)
-        shown.append(visible)
-        column += cell_len(visible)
+        part = " " * (_TAB - column % _TAB) if piece == "\t" else visible(piece)
+        shown.append(part)
+        column += cell_len(part)
     return "".join(shown)
 
 
-def _safe(text: str) -> str:
-    return _UNPRINTABLE.sub("\N{REPLACEMENT CHARACTER}", text)
+def _told(text: str) -> str:
+    return visible(text if len(text) <= _LONGEST_TEXT else f"{text[:_LONGEST_TEXT]} …")
 
 
 def _columns(text: str) -> int:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from robosc.diagrams.graph import Arrow, Group, Node, visible
+from robosc.diagrams.graph import Arrow, Group, Node
+from robosc.visible import visible
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

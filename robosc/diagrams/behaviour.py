@@ -5,12 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.diagrams.automata import EVERY, State, Step, automaton
-from robosc.diagrams.graph import Graph, visible
+from robosc.diagrams.graph import Graph
 from robosc.expressions import RoboscPrinter
 from robosc.instances import Instances
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc
 from robosc.naming import written
+from robosc.visible import visible
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

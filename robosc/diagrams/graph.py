@@ -60,8 +60,3 @@ class Graph:
     def nodes(self) -> list[Node]:
         """Those of all groups."""
         return [node for group in self.groups for node in group.nodes]
-
-
-def visible(text: str) -> str:
-    """The text with every character that can't be seen, or would end a line, as its code."""
-    return "".join(each if each.isprintable() else f"\\u{ord(each):04x}" for each in text)

@@ -5,11 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.diagrams.automata import EVERY, State, Step, automaton
-from robosc.diagrams.graph import Graph, visible
+from robosc.diagrams.graph import Graph
 from robosc.expressions import SctPrinter
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 from robosc.roles import event_name, plant_of
+from robosc.visible import visible
 
 if TYPE_CHECKING:
     from robosc.diagrams.graph import Group, Label

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robosc.diagrams.graph import Arrow, Graph, Group, Node, visible
+from robosc.diagrams.graph import Arrow, Graph, Group, Node
 from robosc.naming import controller_name
 from robosc.roles import plant_of
+from robosc.visible import visible
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator

@@ -10,11 +10,14 @@ from robosc.metamodel import robosc, rosgraph, sct
 from robosc.metamodel.reflection import tree
 from robosc.metamodel.rosgraph_validity import rosgraph_faults
 from robosc.metamodel.sct_validity import sct_faults
+from robosc.visible import visible
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
 _IDENTIFIER = re.compile("[A-Za-z_][A-Za-z0-9_]*")
+#: What is told to people, in logs too, as it stands.
+_TOLD = ("text", "origin", "explanation")
 _PACKAGE = re.compile("[A-Za-z][A-Za-z0-9_-]*")
 
 
@@ -51,6 +54,14 @@ def _own_faults(element: Any) -> Iterator[tuple[Any, str]]:
             yield element, "an index counts from 0"
         case robosc.Access() if element.value == (element.item is not None):
             yield element, "an access reads either an item or the value of the event"
+    yield from _told_faults(element)
     for feature, text in texts:
         if not _IDENTIFIER.fullmatch(text):
             yield element, f"'{feature}' is to be an identifier, which '{text}' is not"
+
+
+def _told_faults(element: Any) -> Iterator[tuple[Any, str]]:
+    for feature in _TOLD:
+        told = getattr(element, feature, None)
+        if told is not None and visible(told) != told:
+            yield element, f"'{feature}' is to be one line without hidden characters"

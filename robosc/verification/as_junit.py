@@ -11,6 +11,7 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from robosc.verification.as_text import details
 from robosc.verification.verdict import Outcome
+from robosc.visible import visible, visible_lines
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -34,14 +35,21 @@ def render(model: sct.SupervisoryControlModel, verdicts: Sequence[Verdict], file
         case = SubElement(
             suite,
             "testcase",
-            {"name": verdict.property, "classname": model.name, "file": file, "time": _seconds(verdict.seconds)},
+            {
+                "name": verdict.property,
+                "classname": model.name,
+                "file": visible(file),
+                "time": _seconds(verdict.seconds),
+            },
         )
         if verdict.outcome is Outcome.REFUTED:
-            failure = SubElement(case, "failure", {"message": verdict.explanation, "type": verdict.outcome.value})
-            failure.text = details(verdict, model)
+            failure = SubElement(
+                case, "failure", {"message": visible(verdict.explanation), "type": verdict.outcome.value}
+            )
+            failure.text = visible_lines(details(verdict, model))
         elif verdict.outcome is Outcome.SKIPPED:
-            SubElement(case, "skipped", {"message": verdict.explanation})
-        SubElement(case, "system-out").text = verdict.evidence
+            SubElement(case, "skipped", {"message": visible(verdict.explanation)})
+        SubElement(case, "system-out").text = visible(verdict.evidence)
     indent(root)
     return '<?xml version="1.0" encoding="UTF-8"?>\n' + tostring(root, encoding="unicode") + "\n"
 

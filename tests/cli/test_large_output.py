@@ -1,0 +1,42 @@
+"""A model with thousands of faults on one line: the output stays readable, and small."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING
+
+from robosc.diagnostics import Diagnostic, Severity, Span, as_text
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from tests.cli.conftest import Run
+
+FAULTS = 2000
+
+
+def test_a_line_with_thousands_of_faults(run: Run, tmp_path: Path) -> None:
+    file = tmp_path / "line.rscd"
+    file.write_text(f"robot R {{{'component A { x } ' * FAULTS}}}", encoding="utf-8")
+    answer = run("check", file)
+    assert answer.exit_code == 1
+    assert len(answer.output) < 100_000
+    assert all(len(line) < 300 for line in answer.output.split("\n"))
+    everything = json.loads(run("check", file, "--format", "json").stdout)
+    assert f"{len(everything) - as_text.MOST} more are not shown" in answer.output
+    assert f"{len(everything)} errors" in answer.output
+    assert len(everything) >= FAULTS
+
+
+def test_errors_are_shown_before_warnings() -> None:
+    span = Span(1, 1, 1, 2)
+    found = [Diagnostic("a", span, Severity.WARNING, "x", f"{number}") for number in range(as_text.MOST)]
+    shown = as_text.render([*found, Diagnostic("b", span, Severity.ERROR, "y", "wrong")], {})
+    assert shown.count("warning:") == as_text.MOST - 1
+    assert shown.index("warning:") < shown.index("b:1:1: error: wrong")
+    assert shown.endswith("\n1 more are not shown: `robosc check --format json` tells all\n")
+
+
+def test_a_long_message_is_cut() -> None:
+    finding = Diagnostic("a", Span(1, 1, 1, 2), Severity.ERROR, "x", "m" * 100_000, "h" * 100_000)
+    assert len(as_text.render([finding], {})) < 10_000
