@@ -99,7 +99,9 @@ class ControlLoop(_Settings):
     period_ms: Milliseconds = Field(default=100, description="Time from one tick to the next.")
     events_per_tick: Count = Field(default=0, description="Most events sent in a tick; 0: no limit.")
     react_immediately: bool = Field(default=True, description="Whether incoming data may start events at once.")
-    reactions_per_tick: Count = Field(default=10, description="Most events started by incoming data between two ticks.")
+    reactions_per_tick: Count = Field(
+        default=10, description="Most events started by the data of one topic, service or action between two ticks."
+    )
 
 
 class Services(_Settings):

@@ -42,6 +42,11 @@ def layer_name(robot: ex.NamedElement) -> str:
     return name if name == "layer" or name.endswith("_layer") else f"{name}_layer"
 
 
+def below_layer(name: str) -> str:
+    """The name of a topic, service or action for the controller, below the layer's own name: `controller/scan`."""
+    return f"controller/{name.removeprefix('/')}"
+
+
 def escape(name: str, keywords: Collection[str]) -> str:
     """The name, with underscores behind it where a keyword differs from it in underscores at the end only.
 

@@ -61,6 +61,16 @@ class Roles:
         return self._of(sct.EventKind.response, sct.EventKind.error, sct.EventKind.feedback)
 
     @cached_property
+    def sources(self) -> tuple[tuple[sct.Event, ...], ...]:
+        """What comes from the robot: what messages on one topic mean, what one service says, or one action."""
+        found: dict[str | sct.Plant, list[sct.Event]] = {}
+        for event in self.incoming:
+            plant = plant_of(event)
+            named = plant.kind == sct.PlantKind.message and plant.topic is not None
+            found.setdefault(plant.topic.removeprefix("/") if named and plant.topic else plant, []).append(event)
+        return tuple(map(tuple, found.values()))
+
+    @cached_property
     def shared_topics(self) -> tuple[tuple[sct.Event, ...], ...]:
         """Triggers of messages that go to one topic, two or more: at most one of them runs in a round."""
         topics: dict[str, list[sct.Event]] = {}

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robosc.metamodel import sct
-from robosc.naming import ROBOSC_KEYWORDS, Names, controller_name, escape, snake_case, written
+from robosc.naming import ROBOSC_KEYWORDS, Names, below_layer, controller_name, escape, snake_case, written
 from robosc.resources import locate
 
 KEYWORDS = [*kwlist, "if__", "_", "x_y"]
@@ -74,3 +74,8 @@ def test_the_keywords_are_the_grammars() -> None:
 def test_a_name_is_written_so_that_it_is_no_keyword() -> None:
     assert written("state") == "^state"
     assert written("states") == "states"
+
+
+def test_names_for_the_controller_are_below_the_layers_own() -> None:
+    assert below_layer("/lamp/light") == "controller/lamp/light"
+    assert below_layer("battery") == "controller/battery"

@@ -7,7 +7,7 @@ from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from robosc.interfaces.unknown import MAKE_KNOWN, REPAIR, why_unknown
-from robosc.interfaces.wire import Basic, DefinitionError, Fields, Nested, Part, Sequence, WireType
+from robosc.interfaces.wire import INTEGER_RANGES, Basic, DefinitionError, Fields, Nested, Part, Sequence, WireType
 from robosc.metamodel import robosc as rsc
 from robosc.naming import written
 from robosc.typing import declared_type
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from robosc.checks.wire_data import Carried, Uses
     from robosc.interfaces import Edition, Interfaces
 
-_INTEGERS = frozenset({f"{sign}int{width}" for sign in ("", "u") for width in (8, 16, 32, 64)} | {"byte", "char"})
+_INTEGERS = frozenset(INTEGER_RANGES)
 #: The wire types that hold values of a type, and the type to write for them.
 _FITTING: dict[type[rsc.DataType], tuple[frozenset[str], str]] = {
     rsc.BooleanDataType: (frozenset({"bool"}), "boolean"),

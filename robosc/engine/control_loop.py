@@ -9,7 +9,7 @@ from robosc.engine.interpreter import Engine
 from robosc.roles import event_name, plant_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Collection, Mapping
 
     from robosc.engine.state import State, Value
     from robosc.metamodel import sct
@@ -17,7 +17,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Settings:
-    """How much the loop does: events in one tick (0: no limit), reactions between two ticks, whether it reacts."""
+    """How much the loop does.
+
+    Events in one tick (0: no limit), reactions to one topic, service or action between two ticks, whether it reacts.
+    """
 
     events_per_tick: int = 0
     reactions_per_tick: int = 10
@@ -43,7 +46,8 @@ class ControlLoop:
 
     Incoming data: `begin()`, `perform(event, data)` for each event of the batch, `end()`. Every period: `tick()`. After
     `end` and `tick` silent events and data plants rest, or a livelock was reported. Cancels and triggers run from two
-    queues, the least recently run first. Raises what `Engine` raises.
+    queues, the least recently run first. Each topic, service and action has a count of reactions of its own, so that
+    none uses up another's. Raises what `Engine` raises.
     """
 
     def __init__(
@@ -62,16 +66,22 @@ class ControlLoop:
         self._topics = {
             event_name(event): number for number, events in enumerate(roles.shared_topics) for event in events
         }
+        self._sources = {
+            event_name(event): number for number, events in enumerate(roles.sources, 1) for event in events
+        }
         self._once_per_tick = {event_name(each) for each in roles.once_per_tick}
         self._next_silent = 0
         self._rested = False
         self._livelocked = False
         self._ticked = False
-        self._reactions = 0
+        self._reactions = [0] * (len(roles.sources) + 1)
+        self._source = 0
+        self._owed: set[str] = set()
         self._sent_to: set[int] = set()
         self._started: set[str] = set()
         self._enabled_before: set[str] = set()
         self._data_before: dict[str, int] = {}
+        self._state_before = self.engine.state
 
     @property
     def state(self) -> State:
@@ -86,26 +96,40 @@ class ControlLoop:
         """Lets one event happen with its data, if it is enabled and not withheld; says whether it did."""
         if data:
             self.engine.set_inputs(event, data)
-        return self.engine.enabled(event) and self._run(event)
+        happened = self.engine.enabled(event) and self._run(event)
+        if happened:
+            self._source = self._sources.get(event, 0)
+        return happened
 
     def begin(self) -> None:
-        """Starts a batch: what one message from the robot means."""
+        """Starts a batch: what one message from the robot means. Its last event says which topic it comes from."""
         self._settle()
+        self._source = 0
+        self._state_before = self.engine.state
         self._enabled_before = {each for each in self._queued() if self.engine.enabled(each)}
         self._data_before = self._data_locations()
 
     def end(self) -> None:
-        """Ends a batch: settles, then runs each cancel and trigger that it made possible, or whose data it changed."""
+        """Ends a batch: settles, then runs each cancel and trigger that it made possible, or whose data it changed.
+
+        What found its count used up is owed: until the next tick it runs after another batch that changes the state.
+        """
         self._settle()
         if self._ticked and self.settings.react_immediately:
-            candidates = self._candidates()
+            if self._owed and self.engine.state == self._state_before:
+                return
+            self._owed.update(self._candidates())
             self._sent_to.clear()
-            self._reactions = self._serve(candidates, self._reactions)
+            left = self._serve(self._owed, self._reactions[self._source])
+            self._reactions[self._source] = left
+            if left:
+                self._owed.clear()
 
     def tick(self) -> None:
         """Settles, then runs each enabled cancel and trigger once."""
         self._ticked = True
-        self._reactions = self.settings.reactions_per_tick
+        self._reactions = [self.settings.reactions_per_tick] * len(self._reactions)
+        self._owed.clear()
         self._sent_to.clear()
         self._started.clear()
         self._settle()
@@ -129,7 +153,7 @@ class ControlLoop:
             and (each not in self._enabled_before or data.get(each) != self._data_before.get(each))
         ]
 
-    def _serve(self, due: Sequence[str], most: int) -> int:
+    def _serve(self, due: Collection[str], most: int) -> int:
         """Asks each due event at its turn, cancels first, and runs at most so many; returns what is left of these.
 
         The model has settled whenever one is asked.
@@ -153,6 +177,7 @@ class ControlLoop:
             return False
         self.engine.perform(event)
         self._rested = False
+        self._owed.discard(event)
         for queue in (self._cancels, self._triggers):
             if event in queue:
                 queue.remove(event)

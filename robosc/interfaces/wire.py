@@ -33,6 +33,14 @@ class Part(Enum):
         return self.value[1]
 
 
+#: The values of each whole number; a `byte` is that of ROS 1.
+INTEGER_RANGES = {
+    **{f"int{bits}": (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1) for bits in (8, 16, 32, 64)},
+    **{f"uint{bits}": (0, 2**bits - 1) for bits in (8, 16, 32, 64)},
+    "byte": (-128, 127),
+    "char": (0, 255),
+}
+
 #: The folder in a package that holds the definitions of a kind; the same word ends the names of its files.
 FOLDERS = {"message": "msg", "service": "srv", "action": "action"}
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from robosc.interfaces import DefinitionError, Part
 from robosc.interfaces.unknown import why_unknown
-from robosc.interfaces.wire import Basic, Sequence
+from robosc.interfaces.wire import INTEGER_RANGES, Basic, Sequence
 from robosc.metamodel import robosc as rsc
 from robosc.metamodel.reflection import contents, tree
 
@@ -17,13 +17,7 @@ if TYPE_CHECKING:
     from robosc.metamodel import expression as ex
 
 #: Small integers bring their range with them.
-_RANGES = {
-    "int8": (-128, 127),
-    "uint8": (0, 255),
-    "int16": (-32768, 32767),
-    "uint16": (0, 65535),
-}
-_INTEGERS = {*_RANGES, "int32", "uint32", "int64", "uint64", "byte", "char"}
+_NARROW = ("int8", "uint8", "int16", "uint16")
 
 
 def declare(reference: rsc.InterfaceTypeReference, interfaces: Interfaces) -> tuple[str, str] | None:
@@ -118,8 +112,8 @@ def _data_type(wire: WireType, edition: Edition) -> rsc.DataType | None:
 
 
 def _basic(name: str) -> rsc.DataType | None:
-    if name in _INTEGERS:
-        minimum, maximum = _RANGES.get(name, (None, None))
+    if name in INTEGER_RANGES:
+        minimum, maximum = INTEGER_RANGES[name] if name in _NARROW else (None, None)
         return rsc.IntegerDataType(minimum=minimum, maximum=maximum)
     if name == "bool":
         return rsc.BooleanDataType()

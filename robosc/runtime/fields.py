@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-import re
 import struct
 from typing import TYPE_CHECKING
 
 from robosc.evaluation import as_double, saturate
+from robosc.interfaces.wire import INTEGER_RANGES
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from robosc.runtime.port import Message, Port
 
 _FLOATS = {"float32": "f", "float": "f", "float64": "d", "double": "d"}
-_BYTES = {"byte": (-128, 127), "char": (0, 255), "octet": (0, 255)}
-_INTEGER = re.compile(r"(u?)int(8|16|32|64)")
+#: ROS 2 calls its `byte` an octet.
+_RANGES = {**INTEGER_RANGES, "octet": INTEGER_RANGES["uint8"]}
 
 
 class NotFiniteError(Exception):
@@ -48,18 +48,10 @@ def _held(kind: str, value: Value, path: Sequence[str]) -> bool | int | float | 
     assert isinstance(value, (int, float))
     if kind in _FLOATS:
         return _narrowed(as_double(value), _FLOATS[kind], path)
-    low, high = _bounds(kind)
+    low, high = _RANGES.get(kind, (0, 1))
     if isinstance(value, float):
         value = int(_finite(value, path))
     return saturate(value, low, high)
-
-
-def _bounds(kind: str) -> tuple[int, int]:
-    found = _INTEGER.fullmatch(kind)
-    if found:
-        bits = int(found[2])
-        return (0, 2**bits - 1) if found[1] else (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1)
-    return _BYTES.get(kind, (0, 1))
 
 
 def _narrowed(value: float, code: str, path: Sequence[str]) -> float:

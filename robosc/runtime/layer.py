@@ -25,11 +25,6 @@ if TYPE_CHECKING:
 _Client = rosgraph.ServiceClient | rosgraph.ActionClient
 
 
-def below_layer(name: str) -> str:
-    """What the controller knows a topic, service or action by: its name below the layer's own."""
-    return f"~/controller/{name.removeprefix('/')}"
-
-
 class Layer:
     """The layer of a robot. All its functions belong to the thread that works on the agenda; others forward.
 

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 import rospy
 from actionlib_msgs.msg import GoalID, GoalStatus, GoalStatusArray
 
+from robosc.naming import below_layer
 from robosc.runtime.clients import Answers, ServiceClient
-from robosc.runtime.layer import below_layer, hearing, passing
+from robosc.runtime.layer import hearing, passing
 from robosc.runtime.ros1 import Ros1Node
 
 if TYPE_CHECKING:
@@ -82,7 +83,7 @@ def _publisher(name: str, kind: Any, *, latch: bool = False) -> Any:
 
 def _inside(name: str) -> str:
     """The name for the controller, as ROS 1 writes private names."""
-    return below_layer(name).replace("~/", "~")
+    return f"~{below_layer(name)}"
 
 
 class _ServiceProxy:

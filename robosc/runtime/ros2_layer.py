@@ -9,8 +9,9 @@ from action_msgs.msg import GoalStatus
 from rclpy.clock import Clock, ClockType
 from rclpy.qos import DurabilityPolicy, QoSProfile, qos_profile_sensor_data
 
+from robosc.naming import below_layer
 from robosc.runtime.clients import Answers, ServiceClient
-from robosc.runtime.layer import below_layer, hearing, passing
+from robosc.runtime.layer import hearing, passing
 from robosc.runtime.ros2 import Ros2Node
 
 if TYPE_CHECKING:
@@ -31,10 +32,10 @@ class Ros2Layer(Ros2Node):
     def connect(self, layer: Layer, settings: Settings) -> None:
         """Stands between the controller and the robot from now on."""
         for topic in self._graph.subscriptions:
-            _Relay(self, self._route(topic, topic.topic, below_layer(topic.topic)), hearing(layer, topic))
+            _Relay(self, self._route(topic, topic.topic, f"~/{below_layer(topic.topic)}"), hearing(layer, topic))
         for publisher in self._graph.publishers:
             (sending,) = publisher.sendings
-            route = self._route(publisher, below_layer(publisher.topic), publisher.topic)
+            route = self._route(publisher, f"~/{below_layer(publisher.topic)}", publisher.topic)
             _Relay(self, route, passing(layer, sending))
         for service in self._graph.serviceClients:
             self._clients[service] = self._service_client(service)
@@ -156,7 +157,7 @@ class _ServiceProxy:
         self._layer = layer
         self._waiting: _Answer | None = None
         self._client = ServiceClient(port, port.agenda, service, timeout, Answers(self._answered, self._failed))
-        _serve(port, kind, below_layer(service.identifier), self._asked)
+        _serve(port, kind, f"~/{below_layer(service.identifier)}", self._asked)
 
     def _asked(self, request: Any, answer: _Answer) -> None:
         if self._waiting is not None:
@@ -205,7 +206,7 @@ class _ActionProxy:
         self._deadline = 0.0
         self._statuses: Any = kind.Impl.GoalStatusMessage()
         self._types = kind.Impl
-        inside, outside = f"{below_layer(action.identifier)}/_action", f"{action.identifier}/_action"
+        inside, outside = f"~/{below_layer(action.identifier)}/_action", f"{action.identifier}/_action"
         lasting = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         node = port.node
         self._goals = node.create_client(self._types.SendGoalService, f"{outside}/send_goal")

@@ -43,7 +43,7 @@ def controller_parameters(graph: rosgraph.RosGraph, configuration: Configuration
         Parameter(
             "reactions_per_tick",
             loop.reactions_per_tick,
-            "Most events started by incoming data between two ticks.",
+            "Most events started by the data of one topic between two ticks.",
             (0, _COUNT),
         ),
         Parameter("react_immediately", loop.react_immediately, "Whether incoming data may start events at once."),

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
+from robosc.interfaces.wire import INTEGER_RANGES
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph
 from robosc.metamodel.reflection import tree
@@ -23,7 +24,6 @@ if TYPE_CHECKING:
 #: So many messages are tried in vain before no more are looked for.
 _TRIALS = 500
 _KEPT = 4
-_INTEGERS = {"byte": (-128, 127), "char": (0, 127), "octet": (0, 127)}
 
 
 @dataclass(frozen=True)
@@ -96,13 +96,9 @@ def _is_single(value: float) -> bool:
 
 
 def _bounds(field: Field) -> tuple[int, int]:
-    kind = field.wire
-    if kind is None:
-        return 0, 127  # every type holds these
-    if kind in _INTEGERS:
-        return _INTEGERS[kind]
-    bits = int("".join(filter(str.isdigit, kind)) or 64)
-    return (0, 2**bits - 1) if kind.startswith("u") else (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1)
+    if field.wire in (None, "byte"):
+        return 0, 127  # every type holds these, and a byte of either ROS
+    return INTEGER_RANGES.get(field.wire, INTEGER_RANGES["int64"])
 
 
 def incoming(

@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from robosc.metamodel import sct
-from robosc.roles import SILENT, event_name
+from robosc.roles import event_name
 from robosc.supervision.wording import condition, name
 from robosc.synthesis.decoding import value
 from robosc.synthesis.fixpoint import reachable
@@ -76,11 +76,6 @@ class SupervisedSystem:
     def settling(self) -> Settling:
         """Whether silent events come to rest, and when."""
         return settling(self.diagrams, self.silent, self.reachable, _EFFORT)
-
-    @cached_property
-    def silent_moves(self) -> list[Move]:
-        """The silent events that change something."""
-        return [move for move in self.moves if move[0].event.kind in SILENT]
 
     @cached_property
     def size(self) -> str:

@@ -48,12 +48,12 @@ def message(name, topic=None, **more):
     )
 
 
-def switch(name="switch", states=("off", "on")):
+def switch(name="switch", states=("off", "on"), **more):
     """Goes to a state when `u_feedback…` of its number happens."""
     events = [f"u_response{number}" for number, _ in enumerate(states)]
     return plant(
         name, {each: [edge(event, to=to) for event, to in zip(events, states, strict=True)] for each in states},
-        uncontrollable=events,
+        uncontrollable=events, **more,
     )  # fmt: skip
 
 
@@ -289,6 +289,55 @@ def test_the_limit_of_reactions_holds_between_ticks() -> None:
     assert loop.ticks() == [["b.c_trigger", "a.c_trigger"]]
     loop.batch("switch.u_response0")
     assert loop.batch("switch.u_response1") == ["a.c_trigger"]
+
+
+def lidar_and_button(**settings):
+    """A robot that drives while its lidar sees nothing and its button is not pressed, and stops else."""
+    lidar, button = switch("lidar", ("free", "blocked")), switch("button", ("released", "pressed"))
+    made = model(
+        [lidar, button, message("move", "/cmd"), message("halt", "/cmd")],
+        guards={
+            "move.c_trigger": "lidar.free and button.released",
+            "halt.c_trigger": "lidar.blocked or button.pressed",
+        },
+    )
+    loop = Recorded(made, **settings)
+    loop.ticks()
+    return loop
+
+
+FREE, BLOCKED, RELEASED, PRESSED = (f"{name}.u_response{number}" for name in ("lidar", "button") for number in range(2))
+
+
+def test_a_stop_does_not_wait_behind_a_flicker() -> None:
+    loop = lidar_and_button(reactions_per_tick=2)
+    flicker = [loop.batch(event) for event in (BLOCKED, FREE, BLOCKED, FREE)]
+    assert flicker == [["halt.c_trigger"], ["move.c_trigger"], [], []]
+    assert loop.batch(PRESSED) == ["halt.c_trigger"]
+
+
+def test_a_stop_that_the_flicker_has_made_possible_in_vain_does_not_wait_either() -> None:
+    loop = lidar_and_button(reactions_per_tick=2)
+    for event in (BLOCKED, FREE, BLOCKED):
+        loop.batch(event)
+    assert loop.enabled("halt.c_trigger")  # and not sent: the lidar's count is used up
+    assert loop.batch(RELEASED) == [], "a message that changes nothing uses up no count"
+    assert loop.batch(PRESSED) == ["halt.c_trigger"]
+    assert loop.batch(BLOCKED) == []
+    assert loop.ticks() == [["halt.c_trigger"]]
+    assert loop.batch(RELEASED) == [], "after a tick nothing is owed"
+
+
+def test_messages_on_one_topic_have_one_count() -> None:
+    lidar = switch("lidar", ("free", "blocked"), kind="message", topic="/scan")
+    button = switch("button", ("released", "pressed"), kind="message", topic="scan")
+    made = model(
+        [lidar, button, message("move"), message("halt")],
+        guards={"move.c_trigger": "lidar.free", "halt.c_trigger": "button.pressed"},
+    )
+    loop = Recorded(made, reactions_per_tick=1)
+    loop.ticks()
+    assert [loop.batch(event) for event in (BLOCKED, FREE, PRESSED)] == [[], ["move.c_trigger"], []]
 
 
 def test_there_is_no_reaction_before_the_first_tick_or_where_they_are_off() -> None:

@@ -1,5 +1,6 @@
 """What the control loop promises, whatever the robot and whatever happens to it."""
 
+from collections import Counter
 from itertools import combinations
 from random import Random
 
@@ -32,7 +33,7 @@ class Observed:
         self.data = {event_name(each) for events in self.roles.data for each in events}
         self.operations: list[tuple[str, list[str]]] = []
         #: Of each moment: the operation, what happened, and which cancels and triggers are enabled then.
-        self.moments: list[tuple[int, str, set[str]]] = []
+        self.moments = [(0, "", {each for each in self.queued if self.loop.enabled(each)})]
         self.performed: list[str] = []
         random = Random(seed)  # noqa: S311
         for _ in range(60):
@@ -76,6 +77,12 @@ class Observed:
                 return random.choice((kind.minimum, kind.maximum, random.randint(kind.minimum, min(kind.maximum, 9))))
         return random.random() < 0.5
 
+    def source(self, number: int) -> int:
+        """What the batch comes from that an operation ends: the topic, service or action of its last event, or 0."""
+        _, performed = self.operations[number - 1]
+        sources = {event_name(each): place for place, group in enumerate(self.roles.sources, 1) for each in group}
+        return sources[performed[-1]] if performed else 0
+
     def rounds(self, *kinds: str) -> list[list[str]]:
         """The cancels and triggers of each operation of these kinds."""
         return [
@@ -113,18 +120,48 @@ def test_rounds(seen: Observed) -> None:
 @given(_observed)
 def test_reactions(seen: Observed) -> None:
     once = {event_name(each) for each in seen.roles.once_per_tick}
-    reactions, started, ticked = 0, [], False
-    for operation, happened in seen.operations:
+    reactions, started, ticked = Counter(), [], False
+    for number, (operation, happened) in enumerate(seen.operations):
         sent = [each for each in happened if each in seen.queued]
         if operation == "tick":
-            reactions, started, ticked = 0, [], True
+            reactions, started, ticked = Counter(), [], True
         elif operation == "end":
-            reactions += len(sent)
+            reactions[seen.source(number)] += len(sent)
         started += [each for each in sent if each in once]
         assert len(started) == len(set(started)), "a service or action starts once between two ticks"
         assert operation in ("tick", "end") or not sent
         allowed = seen.settings.reactions_per_tick if ticked and seen.settings.react_immediately else 0
-        assert reactions <= allowed
+        assert all(number <= allowed for number in reactions.values())
+        assert reactions.total() <= (len(seen.roles.sources) + 1) * allowed
+
+
+@_some
+@given(_observed)
+def test_what_a_batch_makes_possible_waits_for_no_other_topic(seen: Observed) -> None:
+    """It runs at the end of the batch, whatever others did, unless what the batch comes from has used up its own count.
+
+    Of what shares a topic one is sent, and a service or action starts once between two ticks.
+    """
+    shared = {event_name(each): number for number, group in enumerate(seen.roles.shared_topics) for each in group}
+    once = {event_name(each) for each in seen.roles.once_per_tick}
+    reactions, started, before, ticked = Counter(), set(), set(), False
+    for number, (operation, happened) in enumerate(seen.operations):
+        sent = [each for each in happened if each in seen.queued]
+        started |= {*sent} & once
+        if operation == "tick":
+            reactions, started, ticked = Counter(), {*sent} & once, True
+        elif operation == "begin":
+            before = [enabled for place, _, enabled in seen.moments if place <= number + 1][-1]
+        elif operation == "end" and ticked and seen.settings.react_immediately:
+            reactions[seen.source(number)] += len(sent)
+            if reactions[seen.source(number)] < seen.settings.reactions_per_tick:
+                moments = [each for each in seen.moments if each[0] <= number + 1]
+                ran = [at for at, (place, event, _) in enumerate(moments) if place == number + 1 and event in sent]
+                settled = ran[0] - 1 if ran else len(moments) - 1
+                waiting = set.intersection(*(enabled for _, _, enabled in moments[settled:]))
+                waiting -= before | {*sent} | started
+                topics = {shared[each] for each in sent if each in shared}
+                assert all(each in shared and shared[each] in topics for each in waiting)
 
 
 @_some

@@ -12,7 +12,7 @@ from jsonschema import Draft202012Validator
 from robosc.config import Configuration
 from robosc.resources import locate
 from robosc.runtime.agenda import Agenda
-from robosc.runtime.layer import Layer, below_layer
+from robosc.runtime.layer import Layer
 from robosc.runtime.settings import Settings, layer_parameters
 from tests.runtime.fake import FakePort, Record, supervised
 
@@ -134,8 +134,3 @@ def test_provided_data_plays_no_part(passage: Passage) -> None:
     passage.hear("/stop")
     passage.hear("/resume")
     assert not [each for _, each in passage.directions() if each.startswith("data_")]
-
-
-def test_names_for_the_controller_are_below_the_layers_own() -> None:
-    assert below_layer("/lamp/light") == "~/controller/lamp/light"
-    assert below_layer("battery") == "~/controller/battery"

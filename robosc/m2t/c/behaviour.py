@@ -84,8 +84,11 @@ class Behaviour:
             "settles": bool(roles.silent or roles.data),
             "topics": len(roles.shared_topics),
             "groups": len(roles.shared_topics) + len(roles.once_per_tick),
-            "group_index": unsigned_type(len(roles.shared_topics) + len(roles.once_per_tick)),
             "group_of": self._group_of(),
+            "incoming": len(self._context.events) - len(roles.incoming),
+            "sources": len(roles.sources) + 1,
+            "source_index": unsigned_type(len(roles.sources) + 1),
+            "source_of": self._source_of(),
             "conditions": [
                 {"name": each.name, "comment": comment([_of(each.events)]), "text": self._shared.body(each)}
                 for each in self._shared.conditions
@@ -160,6 +163,11 @@ class Behaviour:
             for trigger, plant in self._context.roles.data_plants.items()
             if plant in self._context.located
         ]
+
+    def _source_of(self) -> list[int]:
+        """For each event from the robot the number of what it comes from."""
+        numbers = {event: number for number, events in enumerate(self._context.roles.sources, 1) for event in events}
+        return [numbers[event] for event in self._context.roles.incoming]
 
     def _group_of(self) -> list[int]:
         """For each cancel and trigger: 0, or the number of those of which one runs only."""

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from pathlib import PurePath
 from typing import TYPE_CHECKING
 
 from robosc.m2t.c.nodes import All, Node, Not, Some
 from robosc.metamodel import sct
+from robosc.metamodel.places import parse_source
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
@@ -35,12 +37,11 @@ class EventTable:
             self._requirements.setdefault(requirement.event, []).append(requirement)
 
     def words(self, event: sct.Event) -> list[str]:
-        """What the requirements on an event say, each with its place, and why synthesis restricts it."""
-        words = [
-            f"{each.text}{f' ({each.source})' if each.source else ''}"
-            for each in self._requirements.get(event, ())
-            if each.text
-        ]
+        """What the requirements on an event say, each with its file, and why synthesis restricts it.
+
+        Where in the file it stands is left out: what does not change the robot does not change its code.
+        """
+        words = [f"{each.text}{_file(each)}" for each in self._requirements.get(event, ()) if each.text]
         why = self._guards[event].explanation if event in self._guards else None
         return [*words, f"synthesis prevents this: {why}"] if why else words
 
@@ -76,6 +77,11 @@ def _possible(plant: sct.Plant, edges: Edges, printer: CPrinter) -> Node:
         guard = All(_given(edge.guard))
         by_guard.setdefault(printer(guard), ([guard], []))[1].append(location)
     return Some([All([within(plant, locations, plant.locations), *guard]) for guard, locations in by_guard.values()])
+
+
+def _file(requirement: sct.Requirement) -> str:
+    file, _ = parse_source(requirement.source) or (None, None)
+    return f" ({PurePath(file).name})" if file else ""
 
 
 def _given(expression: ex.Expression | None) -> list[Node]:

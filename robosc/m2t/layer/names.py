@@ -10,11 +10,6 @@ if TYPE_CHECKING:
     from robosc.m2t.layer.node import LayerNode
 
 
-def below_layer(name: str) -> str:
-    """The name of a topic, service or action for the controller, below the layer's own name: `controller/scan`."""
-    return f"controller/{name.removeprefix('/')}"
-
-
 def remapped(layer: LayerNode, parts_of_actions: Sequence[str]) -> list[str]:
     """The robot's names that a controller is started with others for; an action is re-mapped part by part."""
     names = [each.topic for each in layer.inward] + [each.topic for each in layer.outward]

@@ -6,9 +6,10 @@ import re
 from typing import TYPE_CHECKING, Any
 
 from robosc.m2t.layer import preconditions as shared
-from robosc.m2t.layer.names import below_layer, remapped
+from robosc.m2t.layer.names import remapped
 from robosc.m2t.layer.packages import Target, controller_package, package, type_packages
 from robosc.m2t.roscpp import header
+from robosc.naming import below_layer
 
 if TYPE_CHECKING:
     from robosc.config import Configuration

@@ -5,10 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from robosc.config import QualityOfService
-from robosc.m2t.layer.names import below_layer, remapped
+from robosc.m2t.layer.names import remapped
 from robosc.m2t.layer.packages import Target, controller_package, package, type_packages
 from robosc.m2t.layer.preconditions import preconditions
 from robosc.m2t.rclcpp import header
+from robosc.naming import below_layer
 
 if TYPE_CHECKING:
     from robosc.config import Configuration

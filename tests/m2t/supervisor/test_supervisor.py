@@ -165,13 +165,13 @@ def test_the_line_follower_is_small(tmp_path: Path) -> None:
     compiled = tmp_path / "engine.o"
     call("gcc", "-std=c99", "-Os", "-DLINE_FOLLOWER_NO_NAMES", "-c", source, "-o", compiled)
     sizes = dict(re.findall(r"^(\.\w+) +(\d+)", call("size", "-A", compiled), flags=re.MULTILINE))
-    assert int(sizes[".text"]) <= 1300
+    assert int(sizes[".text"]) <= 1400
     assert int(sizes[".data"]) == int(sizes[".bss"]) == 0
 
 
 def test_requirements_stand_at_the_guard_in_the_words_of_the_model() -> None:
     header, source, _ = robosc.generate("supervisor", Models(dock())).values()
-    words = "requirement Station.docked disables approach (dock.rscd:78:"
+    words = "requirement Station.docked disables approach (dock.rscd)"
     at = source.index("case dock_action_approach_c_trigger:")
     assert words in source[:at].rsplit("return", 1)[1]
     assert words in header.split("dock_action_approach_c_trigger,")[0].rsplit("/*", 1)[1]

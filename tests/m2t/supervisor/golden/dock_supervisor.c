@@ -9,6 +9,7 @@
 /* Cancels, triggers and silent events, in this order, are the first events. */
 #define CANCELS 1U
 #define QUEUED 5U /* cancels and triggers */
+#define SOURCES 5U /* topics, services and actions that events come from, and none of them */
 #define SILENT 4U
 #define BOUND 24U /* So many silent events may happen in a row. */
 #define EVENTS ((unsigned)DOCK_EVENT_COUNT)
@@ -23,23 +24,23 @@ const dock_settings dock_default_settings = {
 static bool guard(const dock_state *state, dock_event event)
 {
     switch (event) {
-    /* approach is cancelled where a requirement on it no longer holds (dock.rscd:53:5-53:110) */
+    /* approach is cancelled where a requirement on it no longer holds (dock.rscd) */
     case dock_action_approach_c_cancel:
         return state->action_approach == dock_action_approach_executing
             && !(state->component_Power == dock_component_Power_low || state->component_Operator_wish == dock_Order_dock_now);
-    /* requirement approach needs Power.low or Operator.wish = dock_now (dock.rscd:77:3-77:67)
-     * requirement Station.docked disables approach (dock.rscd:78:3-78:47)
-     * requirement approach needs Station.failures < 3 (dock.rscd:79:3-79:50) */
+    /* requirement approach needs Power.low or Operator.wish = dock_now (dock.rscd)
+     * requirement Station.docked disables approach (dock.rscd)
+     * requirement approach needs Station.failures < 3 (dock.rscd) */
     case dock_action_approach_c_trigger:
         return state->action_approach == dock_action_approach_idle
             && (state->component_Power == dock_component_Power_low || state->component_Operator_wish == dock_Order_dock_now)
             && state->component_Station == dock_component_Station_away
             && state->component_Station_failures < 3U;
-    /* requirement call_help needs Station.failures >= 3 (dock.rscd:81:3-81:52) */
+    /* requirement call_help needs Station.failures >= 3 (dock.rscd) */
     case dock_service_call_help_c_trigger:
         return state->service_call_help == dock_service_call_help_idle
             && state->component_Station_failures >= 3U;
-    /* requirement leave needs Operator.wish = leave and Power.enough (dock.rscd:80:3-80:65) */
+    /* requirement leave needs Operator.wish = leave and Power.enough (dock.rscd) */
     case dock_message_leave_c_trigger:
         return state->component_Station == dock_component_Station_docked
             && state->component_Operator_wish == dock_Order_leave
@@ -157,6 +158,26 @@ static void execute(
  * (services, actions) between two ticks. Those with 0 are free. */
 static const uint8_t group[QUEUED] = { 0, 1, 2, 0, 0 };
 
+/* The topic, service or action that an event comes from, by number; 0: it is the controller's own. */
+static unsigned source_of(unsigned event)
+{
+    static const uint8_t source[] = { 1, 2, 3, 3, 3, 4, 4 };
+    return event < 12U ? 0U : source[event - 12U];
+}
+
+static bool same(const dock_state *one, const dock_state *other)
+{
+    return (one->component_Power == other->component_Power)
+        && (one->component_Power_charge == other->component_Power_charge)
+        && (one->component_Power_drop == other->component_Power_drop)
+        && (one->component_Operator_wish == other->component_Operator_wish)
+        && (one->action_approach == other->action_approach)
+        && (one->service_call_help == other->service_call_help)
+        && (one->component_Station == other->component_Station)
+        && (one->component_Station_failures == other->component_Station_failures)
+        && (one->data_light == other->data_light);
+}
+
 /* Asks the caller whether an enabled event may happen. */
 static bool allowed(const dock_hooks *hooks, dock_event event)
 {
@@ -193,6 +214,7 @@ static bool run(dock_supervisor *self, dock_event event)
     execute(&self->state, &self->inputs, event);
     self->rested = false;
     if ((unsigned)event < QUEUED) {
+        self->due[event] = false;
         /* It moves behind the others of its kind. */
         unsigned last = QUEUED - 1U;
         if ((unsigned)event < CANCELS) {
@@ -269,18 +291,18 @@ static void settle(dock_supervisor *self)
     }
 }
 
-/* One round in a settled state: each due cancel, then each due trigger, runs if it is enabled at its turn; at most so
- * many, and what is left of these is returned. */
-static uint16_t serve(dock_supervisor *self, uint16_t most)
+/* One round in a settled state: each cancel, then each trigger, of the first so many of the queue or of those that are
+ * due, runs if it is enabled at its turn; at most so many, and what is left of these is returned. */
+static unsigned serve(dock_supervisor *self, bool all, unsigned end, unsigned most)
 {
-    uint16_t left = most;
+    unsigned left = most;
     unsigned place = 0U;
-    for (unsigned asked = 0U; (asked < QUEUED) && (left > 0U); ++asked) {
+    for (unsigned asked = 0U; (asked < end) && (left > 0U); ++asked) {
         if (asked == CANCELS) {
             place = CANCELS;
         }
         const dock_event event = (dock_event)self->queue[place];
-        bool ran = self->due[event] && !self->taken[group[event]] && guard(&self->state, event);
+        bool ran = (all || self->due[event]) && !self->taken[group[event]] && guard(&self->state, event);
         if (ran) {
             ran = run(self, event);
         }
@@ -309,34 +331,34 @@ static bool fresh(const dock_supervisor *self, dock_event event)
     return guard(&self->state, event) && (moved || !guard(&self->before, event));
 }
 
-/* What a batch made possible, or has other data, runs. */
-static void react(dock_supervisor *self)
+/* What a batch made possible, or has other data, runs, and what is owed if the batch changed anything. */
+static void react(dock_supervisor *self, unsigned source)
 {
-    for (unsigned event = 0U; event < QUEUED; ++event) {
-        self->due[event] = fresh(self, (dock_event)event);
+    if (same(&self->before, &self->state)) {
+        return;
     }
-    self->reactions = serve(self, self->reactions);
+    for (unsigned event = 0U; event < QUEUED; ++event) {
+        self->due[event] = (self->owing && self->due[event]) || fresh(self, (dock_event)event);
+    }
+    const unsigned most = self->settings.reactions_per_tick;
+    const unsigned left = serve(self, false, QUEUED, most - self->reactions[source]);
+    self->reactions[source] = (uint16_t)(most - left);
+    self->owing = left == 0U;
 }
 
 /* Each enabled cancel, then each enabled trigger runs once; at most so many. */
-static void go_round(dock_supervisor *self, uint16_t most)
+static void go_round(dock_supervisor *self, unsigned most)
 {
-    for (unsigned event = 0U; event < QUEUED; ++event) {
-        self->due[event] = true;
-    }
     for (unsigned each = 1U; each <= 2U; ++each) {
         self->taken[each] = false;
     }
-    (void)serve(self, most);
+    (void)serve(self, true, QUEUED, most);
 }
 
 /* Each enabled cancel runs once. */
 static void serve_cancels(dock_supervisor *self)
 {
-    for (unsigned event = 0U; event < QUEUED; ++event) {
-        self->due[event] = event < CANCELS;
-    }
-    (void)serve(self, QUEUED);
+    (void)serve(self, true, CANCELS, QUEUED);
 }
 
 /* How the control loop is before anything has happened. */
@@ -350,7 +372,11 @@ static void start(dock_supervisor *self)
     for (unsigned each = 0U; each <= 2U; ++each) {
         self->taken[each] = false;
     }
-    self->reactions = 0U;
+    for (unsigned each = 0U; each < SOURCES; ++each) {
+        self->reactions[each] = 0U;
+    }
+    self->last = 0U;
+    self->owing = false;
     self->started = false;
     self->silent = 0U;
     self->livelocked = false;
@@ -394,6 +420,9 @@ bool dock_perform(dock_supervisor *self, dock_event event)
     if (ran) {
         ran = run(self, event);
     }
+    if (ran) {
+        self->last = (uint8_t)event;
+    }
     return ran;
 }
 
@@ -401,13 +430,15 @@ void dock_begin(dock_supervisor *self)
 {
     settle(self);
     self->before = self->state;
+    self->last = 0U;
 }
 
 void dock_end(dock_supervisor *self)
 {
+    const unsigned source = source_of(self->last);
     settle(self);
     if (self->started && self->settings.react_immediately) {
-        react(self);
+        react(self, source);
     }
 }
 
@@ -415,7 +446,10 @@ void dock_tick(dock_supervisor *self)
 {
     settle(self);
     self->started = true;
-    self->reactions = self->settings.reactions_per_tick;
+    for (unsigned each = 0U; each < SOURCES; ++each) {
+        self->reactions[each] = 0U;
+    }
+    self->owing = false;
     go_round(self, (self->settings.events_per_tick > 0U) ? self->settings.events_per_tick : QUEUED);
 }
 

@@ -36,21 +36,21 @@ typedef enum dock_event {
     /* ---- Cancels: the control loop runs them first. ---- */
 
     /* Station.approach is cancelled (/approach).
-     * approach is cancelled where a requirement on it no longer holds (dock.rscd:53:5-53:110) */
+     * approach is cancelled where a requirement on it no longer holds (dock.rscd) */
     dock_action_approach_c_cancel = 0,
 
     /* ---- Triggers: what the controller sends, by the control loop, where the supervisor allows it. ---- */
 
     /* Station.approach is started (/approach).
-     * requirement approach needs Power.low or Operator.wish = dock_now (dock.rscd:77:3-77:67)
-     * requirement Station.docked disables approach (dock.rscd:78:3-78:47)
-     * requirement approach needs Station.failures < 3 (dock.rscd:79:3-79:50) */
+     * requirement approach needs Power.low or Operator.wish = dock_now (dock.rscd)
+     * requirement Station.docked disables approach (dock.rscd)
+     * requirement approach needs Station.failures < 3 (dock.rscd) */
     dock_action_approach_c_trigger,
     /* Station.call_help is called (/help).
-     * requirement call_help needs Station.failures >= 3 (dock.rscd:81:3-81:52) */
+     * requirement call_help needs Station.failures >= 3 (dock.rscd) */
     dock_service_call_help_c_trigger,
     /* Station.leave is sent (/leave).
-     * requirement leave needs Operator.wish = leave and Power.enough (dock.rscd:80:3-80:65) */
+     * requirement leave needs Operator.wish = leave and Power.enough (dock.rscd) */
     dock_message_leave_c_trigger,
     /* Light.light is sent (/light). */
     dock_message_light_c_trigger,
@@ -160,7 +160,7 @@ typedef struct dock_inputs {
 
 typedef struct dock_settings {
     uint16_t events_per_tick; /* Most cancels and triggers in one tick; 0: no limit. */
-    uint16_t reactions_per_tick; /* Most cancels and triggers between two ticks, at the ends of batches. */
+    uint16_t reactions_per_tick; /* Most cancels and triggers between two ticks, at the ends of one topic's batches. */
     bool react_immediately; /* Whether what a batch makes possible runs at its end; else it waits for the tick. */
 } dock_settings;
 
@@ -187,9 +187,11 @@ typedef struct dock_supervisor {
     /* What follows is the engine's own. */
     dock_state before; /* The state at the start of the batch. */
     uint8_t queue[5]; /* Cancels, then triggers, each with the least recently run first. */
-    bool due[5]; /* Which cancels and triggers are to be asked. */
+    bool due[5]; /* What a batch made possible. */
     bool taken[3]; /* Topics that were sent to; services and actions that were started. */
-    uint16_t reactions; /* How many more there may be before the next tick. */
+    uint16_t reactions[5]; /* How many there were since the last tick, to each topic. */
+    uint8_t last; /* What was performed in the batch. */
+    bool owing; /* Whether what is due found that count used up. */
     bool started; /* Whether there was a tick. */
     uint8_t silent; /* The silent event to ask next. */
     bool livelocked; /* Whether a livelock was reported. */
@@ -207,7 +209,9 @@ bool dock_enabled(const dock_supervisor *self, dock_event event);
 bool dock_perform(dock_supervisor *self, dock_event event);
 
 /* Around the events of one batch: what one message from the robot means. At its end the robot settles, and cancels and
- * triggers run that the batch made possible, or whose data it changed. */
+ * triggers run that the batch made possible, or whose data it changed: so many between two ticks for each topic, service
+ * and action that its last event may come from. What is left then waits for a batch of another one that changes the
+ * state, at most for the tick. */
 void dock_begin(dock_supervisor *self);
 void dock_end(dock_supervisor *self);
 

@@ -414,7 +414,7 @@ class Controller : public rclcpp_lifecycle::LifecycleNode {
         *this, "events_per_tick", settings.events_per_tick, 0, 65535, "Most events sent in a tick; 0: no limit."));
     settings.reactions_per_tick = static_cast<std::uint16_t>(
         parameter(*this, "reactions_per_tick", settings.reactions_per_tick, 0, 65535,
-                  "Most events started by incoming data between two ticks."));
+                  "Most events started by the data of one topic between two ticks."));
     settings.react_immediately = parameter<bool>(*this, "react_immediately", settings.react_immediately,
                                                  "Whether incoming data may start events at once.");
     const auto milliseconds = [this](const std::string& name, int value, const std::string& meaning) {
