@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, PrivateAttr, ValidationError
 from pydantic.alias_generators import to_camel
 
+from robosc import files
 from robosc.diagnostics import Diagnostic, ModelError, Severity, Span
 from robosc.naming import controller_name, layer_name
 from robosc.nesting import too_deep
@@ -229,7 +230,7 @@ def read(file: Path) -> Configuration:
     """The configuration in a file. Raises ModelError with all that is wrong with it, and OSError."""
     name = str(file)
     try:
-        text = file.read_bytes().decode("utf-8")
+        text = files.read(file).decode("utf-8")
         if too_deep(text):
             raise ModelError([_error(name, "nested too deeply")])
         values = json.loads(text)

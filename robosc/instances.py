@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections import Counter
+from collections import Counter, deque
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -132,6 +132,20 @@ class Instances:
                 if occurrence is not None:
                     provided.setdefault(occurrence, []).append(each)
         return provided
+
+
+def libraries(base: robosc.Base) -> list[robosc.Library]:
+    """Every library that a base's imports reach, each once, in the order in which they are met, without the base."""
+    found: dict[robosc.Base, None] = {base: None}
+    queue = deque([base])
+    while queue:
+        for component in queue.popleft().definitions:
+            if isinstance(component, robosc.Component) and isinstance(component.type, robosc.ImportedComponent):
+                library = component.type.library
+                if library is not None and library not in found:
+                    found[library] = None
+                    queue.append(library)
+    return [each for each in found if isinstance(each, robosc.Library) and each is not base]
 
 
 def _instantiate(component: robosc.Component, base: robosc.Base) -> Instance | None:

@@ -14,6 +14,7 @@ import click
 
 from robosc import __version__
 from robosc.cli.saying import say
+from robosc.files import noting
 from robosc.visible import visible, visible_lines
 
 if TYPE_CHECKING:
@@ -94,7 +95,8 @@ class _Commands(click.Group):
                 # A terminal that lacks a character, or a file name that is no text, shall not end in an error.
                 stream.reconfigure(errors="backslashreplace")
         try:
-            return super().invoke(ctx)
+            with noting():
+                return super().invoke(ctx)
         except (click.ClickException, click.exceptions.Exit, click.Abort, BrokenPipeError):
             raise
         except KeyboardInterrupt:

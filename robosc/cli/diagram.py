@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
@@ -23,7 +22,7 @@ from robosc.diagrams import (
     ros_graph,
 )
 from robosc.metamodel import robosc as rsc
-from robosc.output import OutputError, write
+from robosc.output import refuse, write_file
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -79,6 +78,8 @@ def command(
     allowed = tuple(GRAPH_NOTATIONS) if model else NOTATIONS
     if notation not in allowed:
         raise CallError(f"a {'' if model else 'meta'}model is drawn in {', '.join(allowed)}, not in {notation}")
+    if output is not None:
+        refuse(output)
     if model is None:
         assert name is not None
         text = metamodel_diagram(name, notation)
@@ -88,11 +89,7 @@ def command(
     if output is None:
         put(text, nl=False)
         return
-    path = Path(output)
-    try:
-        write({path.parent: {path.name: text}})
-    except OutputError as error:
-        raise CallError(str(error)) from error
+    write_file(output, text)
 
 
 def _graph(path: str, kind: str, library_paths: Sequence[str], report: Report, interface_paths: Sequence[str]) -> Graph:

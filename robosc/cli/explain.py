@@ -80,13 +80,9 @@ def command(
         if told is None and not why_empty:
             supervise(plants)  # raises, and says why there is no supervisor
         elif as_data:
-            put(json.dumps(as_json.answer(told, lambda each: _position(each, report)), indent=2))
+            put(json.dumps(as_json.answer(told, _position), indent=2))
         else:
-            say(
-                Teller(plants, lambda each: visible("{file}:{line}:{column}".format(**_position(each, report)))).answer(
-                    told
-                )
-            )
+            say(Teller(plants, lambda each: visible("{file}:{line}:{column}".format(**_position(each)))).answer(told))
 
 
 def _question(
@@ -107,6 +103,6 @@ def _question(
     return answer
 
 
-def _position(element: Any, report: Report) -> dict[str, Any]:
+def _position(element: Any) -> dict[str, Any]:
     file, span = place(element)
-    return {"file": report.path(file), "line": span.line, "column": span.column}
+    return {"file": file, "line": span.line, "column": span.column}

@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, NoReturn
 
 import click
 
+from robosc import files
 from robosc.cli import ERRORS_FOUND, CallError
 from robosc.cli.report import Report
 from robosc.cli.saying import say
 from robosc.language.formatting import format_text
 from robosc.language.text import decode
-from robosc.output import OutputError, write
+from robosc.output import write_file
 from robosc.visible import visible
 
 if TYPE_CHECKING:
@@ -45,7 +46,7 @@ def command(models: Sequence[str], check: bool, diff: bool) -> None:
     changing = False
     with Report(aside=True) as report:
         for file in dict.fromkeys(file for model in models for file in _files(model)):
-            before = click.open_file("-", "rb").read() if file == _STDIN else Path(file).read_bytes()
+            before = files.read_stdin(_STDIN) if file == _STDIN else files.read(file, is_input=False)
             text, findings = decode(file, before)
             after = None
             if not findings:
@@ -59,7 +60,10 @@ def command(models: Sequence[str], check: bool, diff: bool) -> None:
 
 
 def _files(model: str) -> Iterator[str]:
-    """The files of one argument, those of a folder in the order of their paths, hidden folders left out."""
+    """The files of one argument, those of a folder in the order of their paths.
+
+    Hidden folders are left out, and so is what leads out of the folder, or waits for others: links, pipes, devices.
+    """
     if model == "-":
         yield _STDIN
     elif model.endswith(".xmi"):
@@ -69,7 +73,8 @@ def _files(model: str) -> Iterator[str]:
     else:
         for folder, inner, names in os.walk(model, onerror=_refuse):
             inner[:] = sorted(each for each in inner if not each.startswith("."))
-            yield from (str(Path(folder, each)) for each in sorted(names) if each.endswith(".rscd"))
+            paths = (Path(folder, name) for name in sorted(names) if name.endswith(".rscd"))
+            yield from (str(path) for path in paths if path.is_file() and not path.is_symlink())
 
 
 def _refuse(error: OSError) -> NoReturn:
@@ -94,8 +99,4 @@ def _write(file: str, text: str) -> None:
     if file == _STDIN:
         click.open_file("-", "wb").write(text.encode())
         return
-    path = Path(file).resolve()
-    try:
-        write({path.parent: {path.name: text}})
-    except OutputError as error:
-        raise CallError(str(error)) from error
+    write_file(file, text)

@@ -2,21 +2,26 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from pathlib import Path, PurePath
+from typing import TYPE_CHECKING, Any
 
 import robosc
 from robosc.checks import check
 from robosc.cli import CallError
+from robosc.instances import libraries
 from robosc.interfaces import Interfaces
 from robosc.language import read as read_text
+from robosc.language.libraries import search_folders
 from robosc.metamodel import robosc as rsc
 from robosc.metamodel import rosgraph, sct
+from robosc.metamodel.files import set_locate
 from robosc.models import Models
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from robosc.cli.report import Report
+    from robosc.config import Configuration
 
     Root = rsc.Base | sct.SupervisoryControlModel | rosgraph.RosGraph
 
@@ -30,7 +35,12 @@ def read(path: str, library_paths: Sequence[str], report: Report, interface_path
     if path.endswith(".xmi"):
         from robosc.metamodel import xmi
 
-        root: Root | None = xmi.load(path)
+        texts: dict[str, str] = {}
+        try:
+            root: Root | None = xmi.load(path, texts)
+        finally:
+            report.add((), texts)
+        _locate_sources(root, _Sources(path, library_paths, report))
         findings = []
     else:
         reading = read_text(path, library_paths, interfaces)
@@ -39,6 +49,64 @@ def read(path: str, library_paths: Sequence[str], report: Report, interface_path
     if isinstance(root, rsc.Base):
         report.add(check(root, findings, interfaces))
     return root
+
+
+class _Sources:
+    """Finds the texts that a saved model came from, by the names that it has of them.
+
+    Whoever saved the model chose the names: a text is a `.rscd` file in the folder of the saved model or below, or in a
+    folder of the call that libraries are looked for in.
+    """
+
+    def __init__(self, path: str, library_paths: Sequence[str], report: Report) -> None:
+        self._folders = [Path(path).parent, *search_folders(library_paths)]
+        self._report = report
+        self._found: dict[str, str | None] = {}
+
+    def locate(self, name: str) -> str | None:
+        """The path of a text, whose lines may then be quoted; None where there is none."""
+        if name not in self._found:
+            self._found[name] = next((path for folder in self._folders if (path := _text_below(folder, name))), None)
+            if self._found[name]:
+                self._report.may_quote(str(self._found[name]))
+        return self._found[name]
+
+
+def _text_below(folder: Path, name: str) -> str | None:
+    relative = PurePath(name)
+    if relative.is_absolute() or ".." in relative.parts:
+        return None
+    path = folder / relative
+    try:
+        real = path.resolve(strict=True)
+        is_text = real.suffix == ".rscd" and real.is_file() and real.is_relative_to(folder.resolve())
+    except (OSError, ValueError, RuntimeError):  # a null character, links in a circle
+        return None
+    return str(path) if is_text else None
+
+
+def _locate_sources(root: Any, sources: _Sources) -> None:
+    roots = [root]
+    if isinstance(root, rosgraph.RosGraph):
+        roots.append(root.model)
+    elif isinstance(root, rsc.Base):
+        roots += libraries(root)
+    for each in roots:
+        set_locate(each, sources.locate)
+
+
+def read_configuration(model: str, chosen: str | None, report: Report) -> Configuration:
+    """The configuration in the file that was chosen, else in the one near the model; what is wrong may be shown.
+
+    Raises ModelError and OSError as `robosc.config` does.
+    """
+    from robosc import config  # loads pydantic
+
+    file = Path(chosen) if chosen else config.find(Path(model).parent)
+    if file is None:
+        return config.Configuration()
+    report.may_quote(str(file))
+    return config.read(file)
 
 
 def read_models(path: str, library_paths: Sequence[str], report: Report, interface_paths: Sequence[str] = ()) -> Models:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import os
-from dataclasses import replace
+from contextlib import suppress
 from functools import partial
-from pathlib import Path, PurePath
 from typing import TYPE_CHECKING, Literal
 
 import click
 
+from robosc import files
 from robosc.cli import EMPTY_SUPERVISOR, ERRORS_FOUND
 from robosc.cli.saying import put
 from robosc.diagnostics import ModelError, has_errors
@@ -44,20 +44,20 @@ class Report:
         self.aside = aside
         self.findings: list[Diagnostic] = []
         self.texts: dict[str, str] = {}
+        self._quotable: set[str] = set()
         self.status = 0
 
     def add(self, findings: Iterable[Diagnostic], texts: Mapping[str, str] | None = None) -> None:
-        """Adds findings, and the source texts of their files.
-
-        A finding about a model made from text knows the file's bare name only; it gets the path from the texts.
-        """
+        """Adds findings, and the source texts of their files."""
         self.texts |= texts or {}
-        self.findings += [replace(each, file=self.path(each.file)) for each in findings]
+        self.findings += findings
 
-    def path(self, file: str) -> str:
-        """The path of a file of which a model made from text knows the bare name only."""
-        paths = {PurePath(path).name: path for path in reversed(self.texts)}
-        return file if file in self.texts else paths.get(file, file)
+    def may_quote(self, file: str) -> None:
+        """Lets findings show lines of a file that is not read as text; of no other file lines are ever shown.
+
+        A saved model says by itself which file its findings are about: that may be any.
+        """
+        self._quotable.add(file)
 
     def stop_on_errors(self) -> None:
         """Leaves the `with` block where there are errors: what comes next could not make sense of the model."""
@@ -101,10 +101,10 @@ class Report:
             put(as_text.summary(self.findings), err=True)
 
     def _text(self, file: str) -> str:
-        """The source of a file: as it was read, else (configurations, XMI) from the file, empty if there is none."""
-        path = Path(file)
-        if file not in self.texts and path.is_file():
-            self.texts[file] = path.read_text(encoding="utf-8", errors="replace")
+        """The source of a file: as it was read, else from the file if it may be quoted, empty if there is none."""
+        if file not in self.texts and file in self._quotable:
+            with suppress(OSError):
+                self.texts[file] = files.read(file).decode("utf-8", errors="replace")
         return self.texts.get(file, "")
 
 

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import gc
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from robosc import config
 from robosc.cli import CallError
 from robosc.cli.options import FILE, findings_format, interface_path, library_path, model
 from robosc.cli.progress import synthesizing
-from robosc.cli.reading import read_models
+from robosc.cli.reading import read_configuration, read_models
 from robosc.cli.report import Report
 from robosc.supervision import supervise
 from robosc.targets import TARGETS
@@ -20,6 +18,7 @@ from robosc.targets import TARGETS
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from robosc.config import Configuration
     from robosc.models import Models
 
 
@@ -65,8 +64,7 @@ def command(
         models = read_models(model, library_paths, report, interface_paths)
         if models.rosgraph is None:
             raise CallError(f"{model} has no ROS graph: give its .rosgraph.xmi or .rscd")
-        file = Path(chosen) if chosen else config.find(Path(model).parent)
-        configuration = config.read(file) if file else config.Configuration()
+        configuration = read_configuration(model, chosen, report)
         if models.sct.supervisor is None:
             with synthesizing() as statistics:
                 supervision = supervise(models.sct, statistics=statistics)
@@ -78,9 +76,7 @@ def command(
     _run(models, configuration, version, arguments, layer=layer)
 
 
-def _run(
-    models: Models, configuration: config.Configuration, version: int, arguments: Sequence[str], *, layer: bool
-) -> None:
+def _run(models: Models, configuration: Configuration, version: int, arguments: Sequence[str], *, layer: bool) -> None:
     from robosc.m2t.cpp.shutdown import message_named
     from robosc.runtime.node import run_controller, run_layer
     from robosc.runtime.starting import StartError

@@ -5,16 +5,15 @@ from __future__ import annotations
 import json
 import sys
 from dataclasses import replace
-from pathlib import Path
 from random import Random
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from robosc import config
+from robosc import files
 from robosc.cli.options import FILE, interface_path, library_path, model
 from robosc.cli.progress import synthesizing
-from robosc.cli.reading import read_models
+from robosc.cli.reading import read_configuration, read_models
 from robosc.cli.report import Report
 from robosc.cli.saying import put, say
 from robosc.engine import Settings
@@ -71,7 +70,7 @@ def command(
         raise click.UsageError("--loop needs a --script")
     with Report(aside=True) as report:
         models = read_models(model, library_paths, report, interface_paths)
-        settings = _settings(Path(model), chosen) if loop else None
+        settings = _settings(model, chosen, report) if loop else None
         if models.sct.supervisor is None:
             with synthesizing() as statistics:
                 supervision = supervise(models.sct, statistics=statistics)
@@ -90,17 +89,15 @@ def command(
         _converse(simulation, seed)
 
 
-def _settings(model: Path, chosen: str | None) -> Settings:
-    file = Path(chosen) if chosen else config.find(model.parent)
-    loop = (config.read(file) if file else config.Configuration()).control_loop
+def _settings(model: str, chosen: str | None, report: Report) -> Settings:
+    loop = read_configuration(model, chosen, report).control_loop
     return Settings(loop.events_per_tick, loop.reactions_per_tick, loop.react_immediately)
 
 
 def _played(models: Models, script: str, settings: Settings | None, report: Report) -> Iterator[dict[str, Any]]:
     """The answer to each line of a script; what is wrong with the script goes to the report, which then ends."""
     name = "<stdin>" if script == "-" else script
-    with click.open_file(script, "rb") as file:
-        decoded, faults = decode(name, file.read())
+    decoded, faults = decode(name, files.read_stdin(name) if script == "-" else files.read(script))
     report.add([replace(each, rule=RULE) for each in faults], {name: decoded.content})
     report.stop_on_errors()
     text = decoded.content

@@ -7,20 +7,20 @@ from typing import TYPE_CHECKING
 
 import click
 
-from robosc import config
 from robosc.cli import CallError
 from robosc.cli.options import FILE, findings_format, interface_path, library_path, memory, model
 from robosc.cli.progress import progress, synthesizing
-from robosc.cli.reading import read_models
+from robosc.cli.reading import read_configuration, read_models
 from robosc.cli.report import Report
 from robosc.cli.saying import say
-from robosc.output import OutputError, write
+from robosc.output import write
 from robosc.supervision import supervise
 from robosc.targets import TARGETS, Target, together
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from robosc.config import Configuration
     from robosc.models import Models
 
 
@@ -81,7 +81,7 @@ def command(
         for target in targets:
             if target.needs_graph and models.rosgraph is None:
                 raise CallError(f"{model} has no ROS graph, which {target.name} needs: give its .rosgraph.xmi or .rscd")
-        configuration = _configuration(Path(model), chosen)
+        configuration = read_configuration(model, chosen, report)
         if models.sct.supervisor is None:
             with synthesizing() as statistics:
                 supervision = supervise(models.sct, memory=megabytes << 20, statistics=statistics)
@@ -99,16 +99,8 @@ def command(
                         models, configuration, with_tests=with_tests, interface_paths=interface_paths
                     )
         trees = _trees(folder, Path(model).parent, files, models, configuration)
-        try:
-            changed = write(trees)
-        except OutputError as error:
-            raise CallError(str(error)) from error
+        changed = write(trees)
     say(f"{folder}: {len(trees[folder])} files, {len(changed)} written", err=True)
-
-
-def _configuration(model: Path, chosen: str | None) -> config.Configuration:
-    file = Path(chosen) if chosen else config.find(model.parent)
-    return config.read(file) if file else config.Configuration()
 
 
 def _trees(
@@ -116,7 +108,7 @@ def _trees(
     home: Path,
     generated: Mapping[Target, dict[str, str]],
     models: Models,
-    configuration: config.Configuration,
+    configuration: Configuration,
 ) -> dict[Path, dict[str, str]]:
     """What goes where: all targets below the output folder, and the copies that the configuration asks for."""
     trees: dict[Path, dict[str, str]] = {folder: {}}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
@@ -10,13 +9,13 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from robosc import config
 from robosc.cli import ERRORS_FOUND
 from robosc.cli.options import FILE, interface_path, library_path, model
 from robosc.cli.progress import progress
-from robosc.cli.reading import read_models
+from robosc.cli.reading import read_configuration, read_models
 from robosc.cli.report import Report
 from robosc.cli.saying import put, say
+from robosc.output import refuse, write_file
 from robosc.supervision import supervise
 from robosc.verification import Outcome, as_json, as_junit, as_text, verify
 from robosc.visible import visible
@@ -40,7 +39,7 @@ _WIDTH = 120
 @click.command("verify")
 @model
 @click.option("--json", "as_object", is_flag=True, help="Print one JSON object.")
-@click.option("--junit", type=click.Path(dir_okay=False, writable=True), help="Write JUnit XML to FILE, too.")
+@click.option("--junit", type=click.Path(dir_okay=False), help="Write JUnit XML to FILE, too.")
 @click.option("--config", "chosen", type=FILE, help="The configuration, if not the one near the model.")
 @library_path
 @interface_path
@@ -68,8 +67,9 @@ def command(
     """
     with Report(aside=True) as report:
         models = read_models(model, library_paths, report, interface_paths)
-        file = Path(chosen) if chosen else config.find(Path(model).parent)
-        configuration = config.read(file) if file else config.Configuration()
+        configuration = read_configuration(model, chosen, report)
+        if junit:
+            refuse(junit)
         if models.sct.supervisor is None:
             with progress("synthesizing the supervisor"):
                 supervision = supervise(models.sct)
@@ -78,7 +78,7 @@ def command(
         with progress("verifying"):
             verdicts = verify(models, configuration)
     if junit:
-        Path(junit).write_text(as_junit.render(models.sct, verdicts, model), encoding="utf-8")
+        write_file(junit, as_junit.render(models.sct, verdicts, model))
     if as_object:
         put(as_json.render(models.sct.name, verdicts), nl=False)
     else:

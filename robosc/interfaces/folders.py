@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import os
 import re
+from contextlib import suppress
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from robosc import files
 from robosc.interfaces.wire import FOLDERS, DefinitionError, Fields, Part
 
 if TYPE_CHECKING:
@@ -34,7 +36,7 @@ class Share:
         for home in self.homes(package):
             path = home / folder / f"{name}.{folder}"
             if path not in self._read:
-                if not path.is_file():
+                if not path.exists():
                     continue
                 self._read[path] = _sections(path, package, part)
             return self._read[path][part.section]
@@ -72,13 +74,15 @@ class Workspace(Share):
         return packages
 
     def _found(self) -> Iterator[tuple[str, Path]]:
-        for folder, below, files in os.walk(self._folder):
+        for folder, below, names in os.walk(self._folder):
             home = Path(folder)
-            if _IGNORED.intersection(files):
+            if _IGNORED.intersection(names):
                 below.clear()
-            elif "package.xml" in files:
+            elif "package.xml" in names:
                 below.clear()  # packages do not nest
-                manifest = _text(home / "package.xml")
+                manifest = ""
+                with suppress(OSError):
+                    manifest = _text(home / "package.xml")
                 named = _NAME.search(manifest)
                 if self._fits(manifest):
                     yield named[1] if named else home.resolve().name, home
@@ -97,12 +101,11 @@ def _sections(path: Path, package: str, part: Part) -> list[Fields]:
 
     try:
         return sections(_text(path), package, _SECTIONS[part.kind])
+    except OSError as error:
+        raise DefinitionError(f"{path}: {error.strerror}") from None
     except DefinitionError as fault:
         raise DefinitionError(f"{path}: {fault}") from None
 
 
 def _text(path: Path) -> str:
-    try:
-        return path.read_text(encoding="utf-8", errors="replace")
-    except OSError:
-        return ""
+    return files.read(path).decode("utf-8", errors="replace")

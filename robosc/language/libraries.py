@@ -7,6 +7,7 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from robosc import files
 from robosc.resources import locate
 
 if TYPE_CHECKING:
@@ -16,13 +17,18 @@ _BLANK = rb"(?:\s|//[^\n]*|/\*[\s\S]*?\*/)"
 _HEADER = re.compile(rb"(?:\xef\xbb\xbf)?" + _BLANK + rb"*+library\b" + _BLANK + rb"*+\^?([A-Za-z_]\w*)")
 
 
+def search_folders(given: Iterable[Path | str]) -> list[Path]:
+    """The folders of a call, those of ROBOSC_PATH, and the one that ships with the tool."""
+    environment = [each for each in os.environ.get("ROBOSC_PATH", "").split(os.pathsep) if each]
+    return [*map(Path, given), *map(Path, environment), locate("stdlib")]
+
+
 class LibraryPath:
     """The folders in which libraries are looked for, each listed once."""
 
     def __init__(self, given: Iterable[Path | str]) -> None:
         """`given` are the folders of the call; those of ROBOSC_PATH and the one that ships with the tool come after."""
-        environment = [each for each in os.environ.get("ROBOSC_PATH", "").split(os.pathsep) if each]
-        self._folders = [*map(Path, given), *map(Path, environment), locate("stdlib")]
+        self._folders = search_folders(given)
         self._declared: dict[Path, Mapping[str, list[Path]]] = {}
 
     def find(self, name: str, beside: Path) -> list[Path]:
@@ -64,7 +70,7 @@ def _declared(folder: Path) -> Mapping[str, list[Path]]:
 
 def _declared_name(path: Path) -> str | None:
     try:
-        found = _HEADER.match(path.read_bytes())
+        found = _HEADER.match(files.read(path, is_input=False))
     except OSError:
         return None
     return found[1].decode("ascii") if found else None

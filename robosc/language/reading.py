@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from difflib import get_close_matches
-from pathlib import Path
+from pathlib import Path, PurePath
 from typing import TYPE_CHECKING
 
+from robosc import files
 from robosc.diagnostics import in_order
 from robosc.interfaces import Interfaces
 from robosc.language.libraries import LibraryPath
@@ -16,6 +17,7 @@ from robosc.language.scopes import File
 from robosc.language.text import decode
 from robosc.metamodel import robosc as rsc
 from robosc.metamodel.files import set_path
+from robosc.resources import locate
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -46,7 +48,7 @@ def read(path: Path | str, library_paths: Iterable[Path | str] = (), interfaces:
     OSError where the file itself can't be read; all other faults are findings of the rules `syntax`,
     `unresolved-reference` and `import-cycle`.
     """
-    reader = _Reader(library_paths, interfaces or Interfaces())
+    reader = _Reader(Path(path).parent.resolve(), library_paths, interfaces or Interfaces())
     file = reader.read(Path(path), str(path))
     return Reading(file.base, in_order(reader.findings), reader.texts)
 
@@ -54,10 +56,12 @@ def read(path: Path | str, library_paths: Iterable[Path | str] = (), interfaces:
 class _Reader:
     """Reads each file once; `_reading` are those that are being read, each imported by the one before."""
 
-    def __init__(self, library_paths: Iterable[Path | str], interfaces: Interfaces) -> None:
+    def __init__(self, home: Path, library_paths: Iterable[Path | str], interfaces: Interfaces) -> None:
+        self._home = home
         self.findings: list[Diagnostic] = []
         self.texts: dict[str, str] = {}
         self._path = LibraryPath(library_paths)
+        self._names: dict[str, Path] = {}
         self._interfaces = interfaces
         self._files: dict[Path, File] = {}
         self._reading: list[Path] = []
@@ -65,7 +69,7 @@ class _Reader:
     def read(self, path: Path, shown: str) -> File:
         """The file at a path, linked; `shown` is what findings call it."""
         identity = path.resolve()
-        text, findings = decode(shown, path.read_bytes())
+        text, findings = decode(shown, files.read(path))
         self.findings += findings
         self.texts[shown] = text.content
         parsed = parse_file(text)
@@ -74,11 +78,27 @@ class _Reader:
         self._files[identity] = file
         self._reading.append(identity)
         if file.base is not None:
-            set_path(file.base, shown)
+            set_path(file.base, self._name(path), shown)
             self._libraries(file, path)
             self.findings += link(file, self._interfaces)
         self._reading.pop()
         return file
+
+    def _name(self, path: Path) -> str:
+        """What models call a file: its path from the model's folder, if it is below, else its bare name.
+
+        Of two files with one name the one that is read later gets as many of the folders around it as tell them apart.
+        """
+        whole = path.parent.resolve() / path.name
+        shipped = whole.parent == locate("stdlib")
+        name = (
+            path.name if shipped or not whole.is_relative_to(self._home) else whole.relative_to(self._home).as_posix()
+        )
+        parts = len(PurePath(name).parts)
+        while self._names.setdefault(name, whole) != whole:
+            parts += 1
+            name = PurePath(*whole.parts[-parts:]).as_posix()
+        return name
 
     def _libraries(self, file: File, path: Path) -> None:
         """Reads the libraries that a file names, in the order of its text."""

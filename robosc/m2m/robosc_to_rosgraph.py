@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from robosc.instances import Instance, InstanceVariable, Occurrence
+from robosc.instances import Instance, InstanceVariable, Occurrence, libraries
 from robosc.interfaces import Interfaces, Part
 from robosc.m2m.constants import default_value, initial_value, literal
 from robosc.m2m.enumerations import Enumerations
@@ -13,6 +13,7 @@ from robosc.m2m.sources import source
 from robosc.m2m.trace import EVENT_OF
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc, rosgraph, sct
+from robosc.metamodel.files import derive_paths
 from robosc.naming import Names
 from robosc.needed import transitions
 
@@ -58,6 +59,7 @@ class _Transformation:
         self.instances = trace.instances
         robot = self.instances.base
         self.graph = rosgraph.RosGraph(name=robot.name, model=trace.model, source=source(robot, robot))
+        derive_paths(self.graph, [robot, *libraries(robot)])
         self.interfaces: dict[tuple[str, str, str], rosgraph.Interface] = {}
         self.variables: dict[InstanceVariable, rosgraph.NodeVariable] = {}
         self.conversions: dict[robosc.EnumDataType, rosgraph.Conversion] = {}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from robosc.expressions import RoboscPrinter, conjunction, disjunction
-from robosc.instances import Instance, Instances, InstanceVariable, Occurrence
+from robosc.instances import Instance, Instances, InstanceVariable, Occurrence, libraries
 from robosc.m2m.constants import initial_value, literal
 from robosc.m2m.enumerations import Enumerations
 from robosc.m2m.sct_expressions import SctExpressions
@@ -11,6 +11,7 @@ from robosc.m2m.sources import source
 from robosc.m2m.trace import EVENT_OF, Trace
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc, sct
+from robosc.metamodel.files import derive_paths
 from robosc.naming import Names
 from robosc.needed import Data, needed, transitions
 
@@ -32,6 +33,7 @@ class _Transformation:
         self.robot = robot
         self.instances = Instances(robot)
         self.model = sct.SupervisoryControlModel(name=robot.name, source=source(robot, robot))
+        derive_paths(self.model, [robot, *libraries(robot)])
         self.trace = Trace(self.instances, needed(self.instances), self.model, Enumerations(self.model))
         self.enumerations = self.trace.enumerations
         self.expressions = SctExpressions(self.trace)

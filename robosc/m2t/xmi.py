@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from robosc.metamodel import robosc, xmi
+from robosc.instances import libraries
+from robosc.metamodel import xmi
 from robosc.naming import Names
 
 if TYPE_CHECKING:
@@ -30,17 +31,5 @@ def generate(models: Models, _configuration: Configuration) -> dict[str, str]:
     if models.robosc is not None:
         names = Names([name])
         roots[f"{name}.robosc.xmi"] = models.robosc
-        roots |= {f"{names.fresh(library.name)}.robosc.xmi": library for library in _libraries(models.robosc)}
+        roots |= {f"{names.fresh(library.name)}.robosc.xmi": library for library in libraries(models.robosc)}
     return xmi.to_texts(roots)
-
-
-def _libraries(base: robosc.Base) -> list[robosc.Library]:
-    """All that the base imports from, directly or through others, in the order in which they are met."""
-    found: list[robosc.Base] = [base]
-    for each in found:
-        for definition in each.definitions:
-            if isinstance(definition, robosc.Component) and isinstance(definition.type, robosc.ImportedComponent):
-                library = definition.type.library
-                if library not in found:
-                    found.append(library)
-    return [each for each in found if isinstance(each, robosc.Library)]

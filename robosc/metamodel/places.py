@@ -3,6 +3,7 @@
 from typing import Any
 
 from robosc.diagnostics import START, Span
+from robosc.metamodel.files import located
 
 
 def parse_source(source: str | None) -> tuple[str | None, Span] | None:
@@ -15,7 +16,7 @@ def parse_source(source: str | None) -> tuple[str | None, Span] | None:
 
 
 def place(element: Any) -> tuple[str, Span]:
-    """The file and the span of an element, or of the nearest one around it that has a `source`.
+    """The file, as the user would write it, and the span of an element, or of the nearest around it with a `source`.
 
     Without any the file is what the root says of itself, or its name, and the span its first character.
     """
@@ -26,4 +27,5 @@ def place(element: Any) -> tuple[str, Span]:
         found = found or parse_source(around.source)
         root, around = around, around.eContainer()
     file, span = found or (None, START)
-    return file or getattr(root, "file", None) or root.name or "model", span
+    file = file or getattr(root, "file", None)
+    return located(root, file) if file else root.name or "model", span

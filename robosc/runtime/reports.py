@@ -10,6 +10,7 @@ from typing import IO, TYPE_CHECKING
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph
 from robosc.metamodel.reflection import tree
+from robosc.output import open_log
 from robosc.runtime.json_text import Json, json_text
 from robosc.runtime.node_data import PastEndError
 
@@ -45,7 +46,7 @@ class EventLog:
 
     def __init__(self, path: str) -> None:
         self._file: IO[str] | None = (
-            Path(path).open("a", encoding="utf-8", errors="replace", buffering=1) if path else None  # noqa: SIM115
+            os.fdopen(open_log(path), "a", encoding="utf-8", errors="replace", buffering=1) if path else None
         )
 
     @property

@@ -6,8 +6,10 @@ import json
 from random import Random
 from typing import TYPE_CHECKING
 
+from robosc import files
 from robosc.engine import Blocked
 from robosc.expressions import SctPrinter
+from robosc.output import write_file
 from robosc.roles import event_name
 from robosc.simulation.data import DataError
 from robosc.simulation.script import read_script
@@ -124,15 +126,13 @@ class Session:
     def _save(self, file: str) -> str:
         if not file:
             return "save where? give a file"
-        with open(file, "w", encoding="utf-8") as saved:  # noqa: PTH123
-            saved.writelines(f"{trace_line(each)}\n" for each in self._simulation.trace)
+        write_file(file, "".join(f"{trace_line(each)}\n" for each in self._simulation.trace))
         return f"{len(self._simulation.trace)} events in {file}"
 
     def _load(self, file: str) -> str:
         if not file:
             return "load what? give a file"
-        with open(file, encoding="utf-8") as saved:  # noqa: PTH123
-            steps, findings = read_script(file, saved.read(), self._simulation.engine.events)
+        steps, findings = read_script(file, files.read(file, is_input=False).decode(), self._simulation.engine.events)
         if findings:
             return _complaints(findings)
         return "\n".join(self._perform(each.event, dict(each.data)) for each in steps)

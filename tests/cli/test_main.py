@@ -9,6 +9,7 @@ from click.testing import CliRunner
 
 import robosc
 import robosc.cli.check
+from robosc import files
 from robosc.cli import main
 
 from .conftest import Run
@@ -20,6 +21,7 @@ def loaded_by(*arguments: str) -> set[str]:
     """The modules that a call of the command line loads."""
     program = f"""
 import sys
+from robosc import files
 from robosc.cli import main
 try:
     main({arguments!r})
@@ -75,10 +77,10 @@ def test_a_file_that_is_not_there(run: Run, command: tuple[str, ...]) -> None:
 
 
 def test_a_file_that_goes_while_it_is_read(run: Run, door: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def gone(self: Path) -> bytes:
-        raise FileNotFoundError(2, "No such file or directory", str(self))
+    def gone(path: Path) -> bytes:
+        raise FileNotFoundError(2, "No such file or directory", str(path))
 
-    monkeypatch.setattr(Path, "read_bytes", gone)
+    monkeypatch.setattr(files, "read", gone)
     answer = run("check", door)
     assert answer.exit_code == 2
     assert answer.stderr == f"Error: {door}: No such file or directory\n"

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robosc.diagnostics import START, Diagnostic, Severity, Span
+from robosc.diagnostics import Diagnostic, Severity
 from robosc.m2t.c.expressions import working_type
 from robosc.m2t.c.nodes import children_of, is_condition
 from robosc.m2t.c.ranges import Ranges
 from robosc.metamodel import expression as ex
+from robosc.metamodel.places import place
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -23,12 +24,11 @@ def preconditions(model: sct.SupervisoryControlModel) -> list[Diagnostic]:
     ranges = Ranges()
     return [
         Diagnostic(
-            file=(element.source or model.name).partition(":")[0],
-            span=Span.parse(element.source) or START,
-            severity=Severity.ERROR,
-            rule=RULE,
-            message=f"this computation can overflow in C: {fault}",
-            hint="give its variables smaller ranges",
+            *place(element),
+            Severity.ERROR,
+            RULE,
+            f"this computation can overflow in C: {fault}",
+            "give its variables smaller ranges",
         )
         for element, expression in _expressions(model)
         for fault in _overflows(expression, ranges)

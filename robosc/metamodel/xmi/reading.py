@@ -2,11 +2,13 @@
 
 import re
 import sys
+from collections.abc import MutableMapping
 from pathlib import Path, PurePosixPath
 from typing import Any
 from urllib.parse import unquote
 
 from robosc.diagnostics import ModelError, Span
+from robosc.files import read
 from robosc.metamodel.reflection import features, is_attribute
 from robosc.metamodel.validity import faults
 from robosc.metamodel.xmi.building import Document, Reference, build
@@ -17,20 +19,22 @@ _FRAGMENT = re.compile(r"/(/@\w+(\.[0-9]{1,9})?)*", re.ASCII)
 _ADDRESS = re.compile(r"[\w.+-]+:|/")
 
 
-def load(path: str | Path) -> Any:
+def load(path: str | Path, texts: MutableMapping[str, str] | None = None) -> Any:
     """The root element of the model in an XMI file; files that it refers to are loaded with it.
 
     These must lie in the file's folder or below. Raises ModelError with all findings, located in the files: `syntax`
     for what is no XML, `xmi` for what is no model of these metamodels, refers to nothing, or breaks a rule that every
-    such model keeps (`robosc.metamodel.validity`). Nothing is ever fetched, and no entity expanded.
+    such model keeps (`robosc.metamodel.validity`). Nothing is ever fetched, and no entity expanded. `texts` gets
+    what was read, by the names that findings carry.
     """
     # What reads a model follows its expressions by recursion, a few calls for each operator in a row.
     sys.setrecursionlimit(max(sys.getrecursionlimit(), 20 * DEEPEST))
-    return _Loading(Path(path)).root
+    return _Loading(Path(path), {} if texts is None else texts).root
 
 
 class _Loading:
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, texts: MutableMapping[str, str]) -> None:
+        self._texts = texts
         self._folder = path.resolve().parent
         self._documents: dict[Path, Document] = {}
         self._sought: set[tuple[Document, str]] = set()
@@ -58,7 +62,9 @@ class _Loading:
         while pending:
             document = pending.pop()
             try:
-                build(document, parse(document.path.read_bytes(), document.name))
+                content = read(document.path)
+                self._texts[document.name] = content.decode("utf-8", errors="replace")
+                build(document, parse(content, document.name))
             except OSError as error:
                 document.report(Span(1, 1, 1, 1), f"the file can't be read: {error.strerror}")
             except ModelError as error:

@@ -1,0 +1,59 @@
+"""Sends a signal to a process of its own just before it changes the file system for the n-th time."""
+
+import os
+import signal
+from collections.abc import Callable, Iterator
+from typing import Any, NoReturn
+
+#: The functions of `os` through which files are made, moved and removed, by pathlib, tempfile and shutil, too.
+CHANGES = ("mkdir", "link", "replace", "unlink", "rmdir")
+
+
+def interrupted(action: Callable[[], object], number: int, sent: signal.Signals, *, again: bool = False) -> int:
+    """How a process that runs an action ends when it gets a signal before its n-th change, counted from 1.
+
+    With `again` it gets the signal before each change that follows, too. 0: the action came to its end; minus the
+    number of a signal: that has killed it; 130: KeyboardInterrupt; 1: another exception.
+    """
+    process = os.fork()
+    if process == 0:
+        _run(action, number, sent, again=again)
+    return os.waitstatus_to_exitcode(os.waitpid(process, 0)[1])
+
+
+def interruptions(run: Callable[[int], int]) -> Iterator[tuple[int, int]]:
+    """Calls `run` with 1, 2, 3, ... until it answers 0, and yields each number with the answer before that."""
+    number = 1
+    while status := run(number):
+        yield number, status
+        number += 1
+
+
+def _run(action: Callable[[], object], number: int, sent: signal.Signals, *, again: bool) -> NoReturn:
+    status = 1
+    try:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+        _count(number, sent, again=again)
+        action()
+        status = 0
+    except KeyboardInterrupt:
+        status = 130
+    finally:
+        os._exit(status)
+
+
+def _count(number: int, sent: signal.Signals, *, again: bool) -> None:
+    done = 0
+
+    def counted(change: Callable[..., Any]) -> Callable[..., Any]:
+        def changed(*arguments: Any, **options: Any) -> Any:
+            nonlocal done
+            done += 1
+            if done == number or (again and done > number):
+                os.kill(os.getpid(), sent)
+            return change(*arguments, **options)
+
+        return changed
+
+    for name in CHANGES:
+        setattr(os, name, counted(getattr(os, name)))
