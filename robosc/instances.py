@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter, deque
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 from robosc.metamodel import robosc
 
@@ -46,6 +46,10 @@ class Instance:
         return self.topics.get(communication) or communication.identifier or communication.name
 
 
+#: The instance of each component that imports one; None where its import is broken.
+Resolved: TypeAlias = "dict[robosc.Component, Instance | None]"
+
+
 @dataclass(frozen=True)
 class Occurrence:
     """A communication of one instance."""
@@ -68,12 +72,14 @@ class Instances:
     References that linking could not resolve mean None.
     """
 
-    def __init__(self, base: robosc.Base) -> None:
+    def __init__(self, base: robosc.Base, resolved: Resolved | None = None) -> None:
+        """`resolved` is what is known of the imports below, which stay as they are, and is added to."""
         self.base = base
         self._of: dict[robosc.Component, Instance] = {}
+        resolved = {} if resolved is None else resolved
         for definition in base.definitions:
             if isinstance(definition, robosc.Component):
-                instance = _instantiate(definition, base)
+                instance = _instantiate(definition, base, resolved)
                 if instance is not None:
                     self._of[definition] = instance
 
@@ -148,17 +154,29 @@ def libraries(base: robosc.Base) -> list[robosc.Library]:
     return [each for each in found if isinstance(each, robosc.Library) and each is not base]
 
 
-def _instantiate(component: robosc.Component, base: robosc.Base) -> Instance | None:
+def _instantiate(component: robosc.Component, base: robosc.Base, resolved: Resolved) -> Instance | None:
     """Follows imports to the component's definition; outer re-mappings win."""
-    topics: dict[robosc.CommunicationType, str] = {}
+    chain: list[tuple[robosc.Component, robosc.ImportedComponent]] = []
     home, current, seen = base, component, {component}
-    while isinstance(current.type, robosc.ImportedComponent):
-        for remapping in current.type.remappings:
-            topics.setdefault(remapping.communicationType, remapping.identifier)
+    found: Instance | None = None
+    while current not in resolved:
+        if isinstance(current.type, robosc.LocalComponent):
+            found = Instance(current, current.type, home)
+            break
+        if not isinstance(current.type, robosc.ImportedComponent):
+            break
+        chain.append((current, current.type))
         home, current = current.type.library, current.type.definition
         if home is None or current is None or current in seen:
-            return None
+            break
         seen.add(current)
-    if not isinstance(current.type, robosc.LocalComponent):
-        return None
-    return Instance(component, current.type, home, topics)
+    else:
+        found = resolved[current]
+    for importing, imported in reversed(chain):
+        if found is not None:
+            topics: dict[robosc.CommunicationType, str] = {}
+            for remapping in imported.remappings:
+                topics.setdefault(remapping.communicationType, remapping.identifier)
+            found = Instance(importing, found.local, found.home, topics | found.topics | topics)
+        resolved[importing] = found
+    return found

@@ -206,12 +206,17 @@ def segment_type(before: Type, segment: rsc.AccessSegment) -> Type:
     return UNKNOWN
 
 
+def start_type(access: rsc.Access, value: Type | None = None) -> Type:
+    """The type of what an access starts from; `value` as for `access_types`."""
+    return (UNKNOWN if value is None else value) if access.value else item_type(access.item)
+
+
 def access_types(access: rsc.Access, value: Type | None = None) -> list[Type]:
     """The types along an access: of what it starts from, then after each of its segments.
 
     `value` is the type of `value` there, None where there is none.
     """
-    types = [(UNKNOWN if value is None else value) if access.value else item_type(access.item)]
+    types = [start_type(access, value)]
     for segment in access.segments:
         types.append(segment_type(types[-1], segment))
     return types

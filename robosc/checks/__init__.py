@@ -10,7 +10,7 @@ from importlib import import_module
 from pkgutil import iter_modules
 from typing import TYPE_CHECKING
 
-from robosc.checks.libraries import reachable
+from robosc.checks.libraries import reachable, remembering
 from robosc.checks.rule import RULES
 from robosc.diagnostics import Diagnostic, in_order
 from robosc.interfaces import Interfaces
@@ -43,8 +43,9 @@ def check(
         unread.setdefault(each.file, []).append(each)
     findings: list[Diagnostic] = []
     interfaces = interfaces or Interfaces()
-    for each_base in [base, *reachable(base)]:
-        findings += _findings(each_base, unread.get(path_of(each_base), []), interfaces)
+    with remembering():
+        for each_base in [base, *reachable(base)]:
+            findings += _findings(each_base, unread.get(path_of(each_base), []), interfaces)
     return in_order(findings)
 
 

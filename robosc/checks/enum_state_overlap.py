@@ -5,32 +5,30 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.checks.automata import states
-from robosc.checks.libraries import imports, reachable
+from robosc.checks.libraries import fact, imports, instances, reachable
 from robosc.checks.rule import Finding, rule
-from robosc.checks.unique_enum_value import enum_values
-from robosc.instances import Instance, Instances
+from robosc.checks.unique_enum_value import enum_values, has_enum_values
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from robosc.instances import Instance
     from robosc.metamodel import robosc as rsc
 
 
 @rule("enum-state-overlap")
 def enum_state_overlap(base: rsc.Base) -> Iterator[Finding]:
     """No enum value has the name of a state, in a robot or library and what it imports."""
-    libraries = reachable(base)
-    homes = {value: home for home in [base, *libraries] for value in enum_values(home)}
+    homes = {value: home for home in [base, *reachable(base, has_enum_values)] for value in enum_values(home)}
     named: dict[str, list[tuple[Instance, rsc.State]]] = {}
-    for instance in Instances(base):
+    for instance in instances(base):
         for state in states(instance.automaton) if instance.automaton else ():
             named.setdefault(state.name, []).append((instance, state))
-    # What a library has together with its own imports, it has the finding of.
-    together = [_overlaps(each) for each in libraries]
     reported = set()
     for value, home in homes.items():
         for instance, state in named.get(value.name, ()):
-            if any((value, state) in each for each in together):
+            # What a library has together with its own imports, it has the finding of.
+            if any((value, state) in fact(_overlaps, each) for each in reachable(base)):
                 continue
             place = value if home is base else state if instance.home is base else _import(base, instance, home)
             if place not in reported:
@@ -44,8 +42,8 @@ def enum_state_overlap(base: rsc.Base) -> Iterator[Finding]:
 
 
 def _overlaps(library: rsc.Library) -> set[tuple[rsc.EnumValue, rsc.State]]:
-    values = [value for home in [library, *reachable(library)] for value in enum_values(home)]
-    found = [each for instance in Instances(library) if instance.automaton for each in states(instance.automaton)]
+    values = [value for home in [library, *reachable(library, has_enum_values)] for value in enum_values(home)]
+    found = [each for instance in instances(library) if instance.automaton for each in states(instance.automaton)]
     return {(value, state) for value in values for state in found if value.name == state.name}
 
 

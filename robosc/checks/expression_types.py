@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 
+from robosc.checks.libraries import instances
 from robosc.checks.rule import Finding
 from robosc.checks.type_repairs import equality_repair, repair
 from robosc.expressions import RoboscPrinter
-from robosc.instances import Instances
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
 from robosc.naming import written
@@ -205,6 +205,6 @@ def _describe(access: rsc.Access) -> str:
 
 
 def _members(component: rsc.Component) -> list[str]:
-    instance = Instances(component.eContainer()).instance(component, None)
+    instance = instances(component.eContainer()).instance(component, None)
     automaton = instance.automaton if instance else None
     return [each.name for each in (automaton.definitions if automaton else ()) if isinstance(each, rsc.AccessibleItem)]

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robosc.checks.libraries import imports, reachable
+from robosc.checks.libraries import imports, instances, reachable
 from robosc.checks.rule import Finding, interface_rule
-from robosc.checks.wire_data import UsedData, carried
+from robosc.checks.wire_data import UsedData, carried, carries
 from robosc.checks.wire_faults import misfits
 from robosc.diagnostics import Severity
-from robosc.instances import Instances
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -22,10 +21,10 @@ if TYPE_CHECKING:
 @interface_rule("interface-mix", Severity.WARNING)
 def interface_mix(base: rsc.Base, interfaces: Interfaces) -> Iterator[Finding]:
     """One of the two ROS fits all data of a model, as a controller runs in one of them."""
-    communications = {occurrence.communication for occurrence in Instances(base).occurrences()}
-    homes = [base, *reachable(base)]
+    communications = {occurrence.communication for occurrence in instances(base).occurrences()}
+    homes = [base, *reachable(base, carries)]
     present = [(home, data) for home in homes for data in carried(home) if data.communication in communications]
-    used = UsedData(homes if present else ())
+    used = UsedData([base, *reachable(base)] if present else ())
     first: dict[str, tuple[rsc.Base, Carried]] = {}
     for home, data in present:
         reasons = misfits(data, interfaces, used.uses(data))

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from robosc.checks.libraries import reachable
 from robosc.checks.rule import Finding, interface_rule
-from robosc.checks.wire_data import Carried, UsedData, Uses, carried
+from robosc.checks.wire_data import Carried, UsedData, Uses, carried, carries
 from robosc.checks.wire_faults import Fault, Unknown, faults
 from robosc.diagnostics import Severity
 from robosc.metamodel import expression as ex
@@ -59,8 +59,8 @@ def _unknown(data: Carried, interfaces: Interfaces) -> list[Fault] | list[Unknow
 def _faulty(base: rsc.Base, interfaces: Interfaces) -> Iterator[tuple[ex.Located, str, str, bool]]:
     """Where the base's text must change, why, how, and whether the model uses what is faulty there."""
     found: dict[tuple[ex.Located, str, str], bool] = {}
-    homes = {home: list(carried(home)) for home in [base, *reachable(base)]}
-    everything = UsedData(homes if any(homes.values()) else ())
+    homes = {home: list(carried(home)) for home in [base, *reachable(base, carries)]}
+    everything = UsedData([base, *reachable(base)] if any(homes.values()) else ())
     for home, communicated in homes.items():
         itself = everything if home is base else UsedData([home, *reachable(home)] if communicated else ())
         for data in communicated:

@@ -2,32 +2,136 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, TypeVar
 
+from robosc.instances import Instances
 from robosc.metamodel import robosc as rsc
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterable, Iterator
+
+    from robosc.instances import Resolved
+
+    #: Says whether a robot or library by itself has what a rule looks for.
+    Holds = Callable[[rsc.Base], bool]
+
+_Base = TypeVar("_Base", bound=rsc.Base)
+_Fact = TypeVar("_Fact")
 
 
-def imports(base: rsc.Base) -> Iterator[tuple[rsc.Component, rsc.Library]]:
+@dataclass
+class _Memory:
+    """What the rules have found out about the bases of one check, each of which most of them look at."""
+
+    instances: dict[rsc.Base, Instances] = field(default_factory=dict)
+    resolved: Resolved = field(default_factory=dict)
+    reachable: dict[tuple[rsc.Base, Holds], Cell | None] = field(default_factory=dict)
+    facts: dict[tuple[Callable[..., Any], rsc.Base], Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Cell:
+    """A list that several lists go on with: a library, and what comes after it."""
+
+    library: rsc.Library
+    after: Cell | None
+
+
+_MEMORY: ContextVar[_Memory] = ContextVar("_MEMORY")
+
+
+@contextmanager
+def remembering() -> Iterator[None]:
+    """Within the `with` block no model changes, so that what is found out of one holds until the end."""
+    token = _MEMORY.set(_Memory())
+    try:
+        yield
+    finally:
+        _MEMORY.reset(token)
+
+
+def _memory() -> _Memory:
+    return _MEMORY.get(None) or _Memory()
+
+
+def instances(base: rsc.Base) -> Instances:
+    """The instances of a robot or library."""
+    memory = _memory()
+    if base not in memory.instances:
+        memory.instances[base] = Instances(base, memory.resolved)
+    return memory.instances[base]
+
+
+def fact(find: Callable[[_Base], _Fact], base: _Base) -> _Fact:
+    """What a function finds of a robot or library, asked once in a check."""
+    facts = _memory().facts
+    if (find, base) not in facts:
+        facts[find, base] = find(base)
+    found: _Fact = facts[find, base]
+    return found
+
+
+def imports(base: rsc.Base) -> list[tuple[rsc.Component, rsc.Library]]:
     """Each imported component with its library, in the order of the text; unresolved libraries are left out."""
-    for component in base.definitions:
-        if (
-            isinstance(component, rsc.Component)
-            and isinstance(component.type, rsc.ImportedComponent)
-            and component.type.library
-        ):
-            yield component, component.type.library
+    return fact(_imports, base)
 
 
-def reachable(base: rsc.Base) -> list[rsc.Library]:
-    """Every library that the base's imports reach, each once, without the base itself."""
-    found: dict[rsc.Base, None] = {base: None}
-    queue = [base]
-    while queue:
-        for _, library in imports(queue.pop(0)):
-            if library not in found:
+def _imports(base: rsc.Base) -> list[tuple[rsc.Component, rsc.Library]]:
+    return [
+        (component, component.type.library)
+        for component in base.definitions
+        if isinstance(component, rsc.Component)
+        and isinstance(component.type, rsc.ImportedComponent)
+        and component.type.library
+    ]
+
+
+def anything(_: rsc.Base) -> bool:
+    """Any library will do."""
+    return True
+
+
+def reachable(base: rsc.Base, holds: Holds = anything) -> list[rsc.Library]:
+    """Every library that the base's imports reach, each once, without the base itself: those for which `holds` is true.
+
+    The near ones come first. In a chain of imports the libraries of each base are those of the next one and it: only
+    where a base imports several libraries all are visited anew.
+    """
+    known = _memory().reachable
+    chain: list[tuple[rsc.Base, rsc.Library]] = []
+    found: Cell | None = None
+    current, passed = base, {base}
+    while (current, holds) not in known:
+        direct = list(dict.fromkeys(library for _, library in imports(current)))
+        if len(direct) == 1 and direct[0] not in passed:
+            chain.append((current, direct[0]))
+            current = direct[0]
+            passed.add(current)
+            continue
+        for library in reversed(_visited(current)):
+            found = Cell(library, found) if fact(holds, library) else found
+        known[current, holds] = found
+    found = known[current, holds]
+    for importing, library in reversed(chain):
+        found = known[importing, holds] = Cell(library, found) if fact(holds, library) else found
+    return [each for each in dict.fromkeys(_each(found)) if each is not base]
+
+
+def _visited(base: rsc.Base) -> list[rsc.Library]:
+    found: dict[rsc.Library, None] = {}
+    queue: list[rsc.Base] = [base]
+    for current in queue:
+        for _, library in imports(current):
+            if library not in found and library is not base:
                 found[library] = None
                 queue.append(library)
-    return [each for each in found if isinstance(each, rsc.Library) and each is not base]
+    return list(found)
+
+
+def _each(cell: Cell | None) -> Iterable[rsc.Library]:
+    while cell is not None:
+        yield cell.library
+        cell = cell.after

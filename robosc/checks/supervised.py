@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from robosc.checks.libraries import reachable
+from robosc.checks.libraries import fact, instances, reachable
 from robosc.checks.rule import Finding
-from robosc.instances import Instances
 from robosc.metamodel import robosc as rsc
 from robosc.needed import Need, Needed, accesses, needed
 from robosc.typing import BOOLEAN, INTEGER, UNKNOWN, EnumType, declared_type, type_of
@@ -15,6 +14,7 @@ from robosc.typing import BOOLEAN, INTEGER, UNKNOWN, EnumType, declared_type, ty
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
+    from robosc.instances import Instances
     from robosc.metamodel import expression as ex
     from robosc.needed import Assigned
 
@@ -38,11 +38,12 @@ def supervised_faults(base: rsc.Base, search: Search) -> Iterator[Finding]:
 
     It stands at the element where the base's text has it, else at the reference in this text that makes it needed.
     """
-    of_libraries = {fault.element for library in reachable(base) for fault in _faults(library, search)}
     reported = set()
-    instances = Instances(base)
-    result = needed(instances)
-    for fault in search(instances, result):
+    result = fact(_needed, base)
+    of_libraries: set[ex.Located] | None = None
+    for fault in search(instances(base), result):
+        if of_libraries is None:
+            of_libraries = {each.element for library in reachable(base) for each in _faults(library, search)}
         if fault.element in of_libraries:
             continue
         home = _root(fault.element)
@@ -80,8 +81,11 @@ def _fits(assigned: Assigned) -> bool:
 
 
 def _faults(base: rsc.Base, search: Search) -> Iterator[Fault]:
-    instances = Instances(base)
-    return search(instances, needed(instances))
+    return search(instances(base), fact(_needed, base))
+
+
+def _needed(base: rsc.Base) -> Needed:
+    return needed(instances(base))
 
 
 def _reference(base: rsc.Base, need: Need, result: Needed) -> rsc.Access:

@@ -2,30 +2,33 @@
 
 from collections.abc import Iterator
 
-from robosc.checks.libraries import reachable
+from robosc.checks.libraries import fact, instances, reachable
 from robosc.checks.rule import Finding, rule
-from robosc.instances import Instances, Occurrence
+from robosc.instances import Occurrence
 from robosc.metamodel import robosc as rsc
 
 
 @rule("unique-communication")
 def unique_communication(base: rsc.Base) -> Iterator[Finding]:
     """No two communications of a robot or library have one name, except those of instances of one component."""
-    in_libraries = [{each.communication for each in Instances(other).occurrences()} for other in reachable(base)]
     firsts: dict[str, Occurrence] = {}
-    for second in Instances(base).occurrences():
+    for second in instances(base).occurrences():
         if not second.communication.name:
             continue
         first = firsts.setdefault(second.communication.name, second)
         pair = {first.communication, second.communication}
         # Of two in one library, that library has the finding.
-        if len(pair) == 2 and not any(pair <= each for each in in_libraries):
+        if len(pair) == 2 and not any(pair <= fact(_communications, each) for each in reachable(base)):
             own = second.instance.home is base
             yield Finding(
                 second.communication if own else second.instance.component,
                 f"{_describe(second)} has the name of {_describe(first)}, expected a name of its own",
                 _repair(first, second, base),
             )
+
+
+def _communications(base: rsc.Base) -> set[rsc.CommunicationType]:
+    return {each.communication for each in instances(base).occurrences()}
 
 
 def _describe(occurrence: Occurrence) -> str:

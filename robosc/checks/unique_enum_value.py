@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from robosc.checks.libraries import imports, reachable
+from robosc.checks.libraries import fact, imports, reachable
 from robosc.checks.rule import Finding, rule
 from robosc.metamodel import robosc as rsc
 
@@ -11,7 +11,7 @@ from robosc.metamodel import robosc as rsc
 def unique_enum_value(base: rsc.Base) -> Iterator[Finding]:
     """No two enum values of a robot or library and its imports have one name."""
     firsts: dict[str, rsc.EnumValue] = {}
-    for value in (each for library in reachable(base) for each in enum_values(library)):
+    for value in (each for library in reachable(base, has_enum_values) for each in enum_values(library)):
         firsts.setdefault(value.name, value)
     for value in enum_values(base):
         first = firsts.setdefault(value.name, value)
@@ -33,17 +33,21 @@ def enum_values(base: rsc.Base) -> Iterator[rsc.EnumValue]:
                     yield each.value
 
 
+def has_enum_values(base: rsc.Base) -> bool:
+    """Whether the base itself declares an enum value."""
+    return any(True for _ in enum_values(base))
+
+
 def _between_imports(base: rsc.Base) -> Iterator[Finding]:
     """Values of two libraries that only this base brings together; of one library's own imports it has the finding."""
     firsts: dict[str, rsc.EnumValue] = {}
-    together = [set(_with_imports(library)) for library in reachable(base)]
     importing: dict[rsc.Library, rsc.Component] = {}
     for component, library in imports(base):
         importing.setdefault(library, component)
     for library, component in importing.items():
         for value in _with_imports(library):
             first = firsts.setdefault(value.name, value)
-            if first is not value and not any({first, value} <= each for each in together):
+            if first is not value and not any({first, value} <= fact(_brought, each) for each in reachable(base)):
                 yield Finding(
                     component,
                     f"the import of `{library.name}` brings {_describe(value, base)}, which has the name of"
@@ -53,8 +57,12 @@ def _between_imports(base: rsc.Base) -> Iterator[Finding]:
 
 
 def _with_imports(library: rsc.Library) -> Iterator[rsc.EnumValue]:
-    for each in [library, *reachable(library)]:
+    for each in [library, *reachable(library, has_enum_values)]:
         yield from enum_values(each)
+
+
+def _brought(library: rsc.Library) -> set[rsc.EnumValue]:
+    return set(_with_imports(library))
 
 
 def _enum(value: rsc.EnumValue) -> rsc.EnumDataType:

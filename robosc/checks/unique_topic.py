@@ -2,9 +2,10 @@
 
 from collections.abc import Iterator
 
+from robosc.checks.libraries import instances
 from robosc.checks.rule import Finding, rule
 from robosc.diagnostics import Severity
-from robosc.instances import Instances, Occurrence
+from robosc.instances import Occurrence
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
 
@@ -14,7 +15,7 @@ def unique_topic(base: rsc.Base) -> Iterator[Finding]:
     """No two components send messages on one topic, with or without a `/` before it, no import gives a name two."""
     yield from _remapped_twice(base)
     firsts: dict[str, Occurrence] = {}
-    for second in Instances(base).occurrences():
+    for second in instances(base).occurrences():
         message = second.communication
         if not isinstance(message, rsc.Message) or str(message.direction) != "outgoing":
             continue

@@ -57,6 +57,11 @@ def carried(base: rsc.Base) -> Iterator[Carried]:
                     yield Carried(each, interface, declared, part)
 
 
+def carries(base: rsc.Base) -> bool:
+    """Whether the base itself defines a communication with an interface."""
+    return any(True for _ in carried(base))
+
+
 def _parts(communication: rsc.CommunicationType) -> list[tuple[rsc.DataType | None, Part]]:
     match communication:
         case rsc.Message():

@@ -18,9 +18,10 @@ from robosc.typing import (
     EnumType,
     ObjectType,
     Type,
-    access_types,
     declared_type,
     provided_data_type,
+    segment_type,
+    start_type,
     value_type,
 )
 
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from robosc.diagnostics import Diagnostic
+    from robosc.instances import Resolved
     from robosc.interfaces import Interfaces
     from robosc.language.building import Name
 
@@ -38,10 +40,11 @@ _FEW = 6
 OWN_MEMBERS = "a library's component speaks of its own members only"
 
 
-def link(file: File, interfaces: Interfaces) -> list[Diagnostic]:
+def link(file: File, interfaces: Interfaces, resolved: Resolved) -> list[Diagnostic]:
     """Resolves the names of a file, whose libraries are read and linked; returns a finding for each that can't be.
 
-    `interfaces` is what is known of the ROS types that take the place of objects.
+    `interfaces` is what is known of the ROS types that take the place of objects, `resolved` what is known of the
+    components of the libraries; it is added to.
 
     A name without element leaves its feature unset. A name that stands or falls with another one that is not
     resolved, or that text with a syntax error may declare, draws no finding of its own.
@@ -50,7 +53,7 @@ def link(file: File, interfaces: Interfaces) -> list[Diagnostic]:
         return []
     linker = _Linker(file, interfaces)
     linker.imports()
-    linker.link(Scope(file, file.base))
+    linker.link(Scope(file, file.base, resolved))
     return linker.findings
 
 
@@ -61,6 +64,7 @@ class _Linker:
         self._file = file
         self._scope: Scope
         self._definitions: dict[ex.Located, ex.Located] = {}
+        self._types: dict[rsc.Access, list[Type]] = {}
         self._is_library = isinstance(file.base, rsc.Library)
 
     def imports(self) -> None:
@@ -297,8 +301,13 @@ class _Linker:
 
     def _segment(self, segment: rsc.PropertySegment, name: Name) -> None:
         access = segment.eContainer()
-        before = access_types(access, value_type(access))[list(access.segments).index(segment)]
-        found = self._property(before, name)
+        # The segments of an access come in their order: each goes on from the one before.
+        if access not in self._types:
+            self._types[access] = [start_type(access, value_type(access))]
+        types = self._types[access]
+        while access.segments[len(types) - 1] is not segment:
+            types.append(segment_type(types[-1], access.segments[len(types) - 1]))
+        found = self._property(types[-1], name)
         if found is not None:
             segment.property = found
 

@@ -20,9 +20,10 @@ from robosc.metamodel.files import set_path
 from robosc.resources import locate
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator
 
     from robosc.diagnostics import Diagnostic
+    from robosc.instances import Resolved
     from robosc.language.building import Name
 
 
@@ -54,7 +55,10 @@ def read(path: Path | str, library_paths: Iterable[Path | str] = (), interfaces:
 
 
 class _Reader:
-    """Reads each file once; `_reading` are those that are being read, each imported by the one before."""
+    """Reads each file once; `_reading` are those that are being read, each imported by the one before.
+
+    No chain of imports is too long: files wait for their libraries in a list.
+    """
 
     def __init__(self, home: Path, library_paths: Iterable[Path | str], interfaces: Interfaces) -> None:
         self._home = home
@@ -64,10 +68,27 @@ class _Reader:
         self._names: dict[str, Path] = {}
         self._interfaces = interfaces
         self._files: dict[Path, File] = {}
-        self._reading: list[Path] = []
+        self._paths: dict[Path, Path] = {}
+        self._reading: dict[Path, Iterator[Name]] = {}
+        self._resolved: Resolved = {}
 
     def read(self, path: Path, shown: str) -> File:
-        """The file at a path, linked; `shown` is what findings call it."""
+        """The file at a path, linked, with all that it imports; `shown` is what findings call it."""
+        first = self._open(path, shown)
+        while self._reading:
+            identity, names = next(reversed(self._reading.items()))
+            file = self._files[identity]
+            name = next((name for name in names if name.text not in file.libraries), None)
+            if name is not None:
+                file.libraries[name.text] = self._library(file, self._paths[identity], name)
+                continue
+            if file.base is not None:
+                self.findings += link(file, self._interfaces, self._resolved)
+            del self._reading[identity]
+        return first
+
+    def _open(self, path: Path, shown: str) -> File:
+        """A file whose libraries are read next, in the order of its text."""
         identity = path.resolve()
         text, findings = decode(shown, files.read(path))
         self.findings += findings
@@ -76,12 +97,13 @@ class _Reader:
         self.findings += parsed.findings
         file = File(text, parsed.base, parsed.references, parsed.unread)
         self._files[identity] = file
-        self._reading.append(identity)
+        self._paths[identity] = path
+        references = file.references.items() if file.base is not None else ()
+        self._reading[identity] = (
+            names["library"] for element, names in references if isinstance(element, rsc.ImportedComponent)
+        )
         if file.base is not None:
             set_path(file.base, self._name(path), shown)
-            self._libraries(file, path)
-            self.findings += link(file, self._interfaces)
-        self._reading.pop()
         return file
 
     def _name(self, path: Path) -> str:
@@ -100,13 +122,6 @@ class _Reader:
             name = PurePath(*whole.parts[-parts:]).as_posix()
         return name
 
-    def _libraries(self, file: File, path: Path) -> None:
-        """Reads the libraries that a file names, in the order of its text."""
-        for element, names in file.references.items():
-            if isinstance(element, rsc.ImportedComponent) and names["library"].text not in file.libraries:
-                name = names["library"]
-                file.libraries[name.text] = self._library(file, path, name)
-
     def _library(self, file: File, path: Path, name: Name) -> File | None:
         found = self._path.find(name.text, path)
         if len(found) != 1:
@@ -114,12 +129,13 @@ class _Reader:
             return None
         identity = found[0].resolve()
         if identity in self._reading:
-            cycle = [self._files[each] for each in self._reading[self._reading.index(identity) :]]
+            reading = list(self._reading)
+            cycle = [self._files[each] for each in reading[reading.index(identity) :]]
             names = [each.base.name for each in cycle if each.base is not None]
             message = f"libraries import each other in a circle: {' -> '.join([*names, name.text])}"
             self._report(file, name, message, "move what both need to a library of its own", "import-cycle")
             return None
-        return self._files[identity] if identity in self._files else self.read(found[0], str(found[0]))
+        return self._files[identity] if identity in self._files else self._open(found[0], str(found[0]))
 
     def _several(self, name: Name, found: list[Path]) -> tuple[str, str]:
         files = " and ".join(f"`{each}`" for each in found)

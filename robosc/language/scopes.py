@@ -14,6 +14,7 @@ from robosc.metamodel import robosc as rsc
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
+    from robosc.instances import Resolved
     from robosc.language.building import Name
     from robosc.language.text import Text
 
@@ -58,8 +59,8 @@ class File:
         """
         if self.unread.may_declare(name, kinds):
             return True
-        libraries = self.libraries.values() if imported else ()
-        return any(each is None or each.may_declare(name, *kinds) for each in libraries)
+        files = self._files if imported else ()
+        return any(None in each.libraries.values() or each.unread.may_declare(name, kinds) for each in files)
 
     def may_hold(self, definition: rsc.Definition, name: str, kind: Declared) -> bool:
         """Whether a definition, of this file or of a library, may declare a name in text that could not be read."""
@@ -67,22 +68,28 @@ class File:
         return unread.may_declare(name, (kind,), Span.parse(definition.source))
 
     @cached_property
+    def _files(self) -> list[File]:
+        """The file itself and those of all that it imports, directly or through others."""
+        found, pending = {self: None}, [self]
+        while pending:
+            imported = [each for each in pending.pop().libraries.values() if each is not None and each not in found]
+            found |= dict.fromkeys(imported)
+            pending += imported
+        return list(found)
+
+    @cached_property
     def _homes(self) -> dict[rsc.Base | None, File]:
-        """The files of this base and of all that it imports, also from afar."""
-        homes = {self.base: self}
-        for each in filter(None, self.libraries.values()):
-            homes |= each._homes  # noqa: SLF001  # a file, as this one
-        return homes
+        return {each.base: each for each in self._files}
 
 
 class Scope:
     """The names of one robot or library, whose imports are linked already."""
 
-    def __init__(self, file: File, base: rsc.Base) -> None:
+    def __init__(self, file: File, base: rsc.Base, resolved: Resolved | None = None) -> None:
         self.components: Names = file.declared[rsc.Component]
         self._file = file
         self._imports = [each for each in file.libraries.values() if each is not None]
-        self._instances = Instances(base)
+        self._instances = Instances(base, resolved)
         self._members: dict[rsc.Component, Names] = {}
         self._states: dict[rsc.Component, Names] = {}
         self._communications: dict[rsc.Component, Names] = {}

@@ -139,6 +139,7 @@ class Encoding:
         self.diagrams = diagrams
         self._codes: dict[tuple[Element, int], Diagram] = {}
         self._between: dict[tuple[Element, int, int], Diagram] = {}
+        self._holds: dict[ex.Expression, Diagram] = {}
 
     def bits(self, element: Element) -> tuple[Diagram, ...]:
         """The bits of an element's code, least significant first."""
@@ -254,10 +255,19 @@ class Encoding:
         return arithmetic.choose(arithmetic.less(last, code), last, code)
 
     def holds(self, expression: ex.Expression | None) -> Diagram:
-        """Where a boolean expression is true; an absent one is true everywhere."""
+        """Where a boolean expression is true; an absent one is true everywhere.
+
+        Known from the first time that it is asked for: who asks for all parts of an expression looks at each once.
+        """
+        if expression is None:
+            return self.diagrams.true
+        known = self._holds.get(expression)
+        if known is None:
+            known = self._holds[expression] = self._meaning(expression)
+        return known
+
+    def _meaning(self, expression: ex.Expression) -> Diagram:
         match expression:
-            case None:
-                return self.diagrams.true
             case ex.BooleanLiteral():
                 return self.diagrams.true if expression.value else self.diagrams.false
             case sct.LocationReference():

@@ -161,9 +161,10 @@ class Ranges:
     def _agree(self, cells: frozenset[Cell], group: Sequence[Node], neutral: bool) -> bool:
         """Whether all conditions of the group can be `neutral` for one value of what they depend on."""
         domains = [_domain(cell) for cell in cells]
-        if prod(map(len, domains)) > _TRIED:
+        # No `len`: that of a range ends at 2^63.
+        if prod(domain.high - domain.low + 1 for domain in domains) > _TRIED:
             return True
-        for values in product(*domains):
+        for values in product(*(range(domain.low, domain.high + 1) for domain in domains)):
             at = dict(zip(cells, values, strict=True))
 
             def evaluate(node: Node, at: Mapping[Cell, int] = at) -> Interval:
@@ -175,11 +176,8 @@ class Ranges:
         return False
 
 
-def _domain(cell: Cell) -> range:
-    if isinstance(cell, sct.Plant):
-        return range(len(cell.locations))
-    values = interval_of(cell.type)
-    return range(values.low, values.high + 1)
+def _domain(cell: Cell) -> Interval:
+    return Interval(0, len(cell.locations) - 1) if isinstance(cell, sct.Plant) else interval_of(cell.type)
 
 
 def _cell(node: Node) -> Cell | None:

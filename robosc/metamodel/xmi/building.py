@@ -170,9 +170,8 @@ class _Filling:
         """The class of a child: the one that it names, else its feature's; None with a finding where it can't be."""
         found = feature.eType
         written = child.attributes.get((XSI, "type"))
-        if written is not None:
-            prefix, _, name = written.rpartition(":")
-            found = _classifier(child.prefixes.get(prefix), name)
+        if child.type is not None:
+            found = _classifier(*child.type)
         if found is None or isinstance(found, EEnum):
             self.document.report(child.attribute_span("xsi:type"), f"there is no class '{written}'")
         elif not issubclass(found.python_class, feature.eType.python_class):

@@ -1,13 +1,14 @@
 """XML text to elements that know their place, refusing what a model has no use for and an attacker has."""
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 from xml.parsers import expat
 
 from robosc.diagnostics import Diagnostic, ModelError, Severity, Span
-from robosc.metamodel.xmi.format import DEEPEST
+from robosc.metamodel.xmi.format import DEEPEST, XSI
 
 _NAME = re.compile(r"<[^\s/>]*")
 _ATTRIBUTE_OR_END = re.compile(r"""([^\s=<>"'/]+)\s*=\s*(?:"[^"]*"|'[^']*')|>""")
@@ -16,12 +17,15 @@ _LINE_END = re.compile("\r\n|\r|\n")
 
 @dataclass(eq=False)
 class Element:
-    """An XML element: its namespace and name, attributes by (namespace, name), prefixes in scope, place."""
+    """An XML element: its namespace and name, attributes by (namespace, name), place.
+
+    `type` is what its `xsi:type` names, as (namespace, name); None where it has none.
+    """
 
     namespace: str
     name: str
     attributes: dict[tuple[str, str], str]
-    prefixes: Mapping[str, str]
+    type: tuple[str | None, str] | None
     lines: Sequence[str] = field(repr=False)
     line: int
     column: int
@@ -36,15 +40,19 @@ class Element:
 
     def attribute_span(self, written: str) -> Span:
         """Where an attribute is, by its name as it is written; where the element is, if it is on no one line."""
+        return self._attribute_spans.get(written, self.span)
+
+    @cached_property
+    def _attribute_spans(self) -> dict[str, Span]:
+        spans: dict[str, Span] = {}
         start = self.span.end_column - 1
         for line in range(self.line, len(self.lines) + 1):
             for match in _ATTRIBUTE_OR_END.finditer(self.lines[line - 1], start):
                 if match.group(1) is None:
-                    return self.span
-                if match.group(1) == written:
-                    return Span(line, match.start() + 1, line, match.end() + 1)
+                    return spans
+                spans.setdefault(match.group(1), Span(line, match.start() + 1, line, match.end() + 1))
             start = 0
-        return self.span
+        return spans
 
 
 def parse(data: bytes, file: str) -> Element:
@@ -62,12 +70,13 @@ class _Parser:
         self._file = file
         self._lines: list[str] = []
         self._open: list[Element] = []
-        self._prefixes: list[dict[str, str]] = [{}]
+        #: What each prefix means, outermost first.
+        self._prefixes: dict[str, list[str]] = {}
         self._root: Element | None = None
         self._expat: Any = expat.ParserCreate("utf-8", " ")
         self._expat.buffer_text = True
         self._expat.StartNamespaceDeclHandler = self._declare
-        self._expat.EndNamespaceDeclHandler = lambda _prefix: self._prefixes.pop()
+        self._expat.EndNamespaceDeclHandler = lambda prefix: self._prefixes[prefix or ""].pop()
         self._expat.StartElementHandler = self._start
         self._expat.EndElementHandler = lambda _name: self._open.pop()
         self._expat.CharacterDataHandler = self._characters
@@ -88,14 +97,22 @@ class _Parser:
         return self._root
 
     def _declare(self, prefix: str | None, uri: str | None) -> None:
-        self._prefixes.append({**self._prefixes[-1], prefix or "": uri or ""})
+        self._prefixes.setdefault(prefix or "", []).append(uri or "")
+
+    def _type(self, written: str | None) -> tuple[str | None, str] | None:
+        if written is None:
+            return None
+        prefix, _, name = written.rpartition(":")
+        meanings = self._prefixes.get(prefix)
+        return (meanings[-1] if meanings else None), name
 
     def _start(self, name: str, attributes: dict[str, str]) -> None:
         line, column = self._here()
         if len(self._open) > DEEPEST:
             raise self._error(line, column, f"more than {DEEPEST} elements are inside each other")
         qualified = {_split(key): value for key, value in attributes.items()}
-        element = Element(*_split(name), qualified, self._prefixes[-1], self._lines, line, column)
+        kind = self._type(qualified.get((XSI, "type")))
+        element = Element(*_split(name), qualified, kind, self._lines, line, column)
         if self._open:
             self._open[-1].children.append(element)
         else:

@@ -122,3 +122,16 @@ def test_no_type_is_wider_than_64_bits() -> None:
     with pytest.raises(OverflowError):
         storage(Interval(0, 2**63))
     assert number(-(2**63)) == "(-9223372036854775807 - 1)"
+
+
+@pytest.mark.parametrize("last", [2**31, 2**32, 2**62, 2**63 - 2, 2**63 - 1])
+def test_as_many_values_as_64_bits_have(last) -> None:
+    """`len` of a range ends at 2^63 - 1 values."""
+    kind = ex.IntegerType(minimum=-1, maximum=last)
+    variable = sct.DiscreteVariable(name="v", type=kind, initial=ex.IntegerLiteral(value=0))
+
+    def compared(operator: type[ex.BinaryExpression], value: int) -> ex.Expression:
+        return operator(left=sct.VariableReference(variable=variable), right=ex.IntegerLiteral(value=value))
+
+    node = All([compared(ex.GreaterThan, 3), compared(ex.LessThan, 5)])
+    assert Ranges()(node) == Interval(0, 1)

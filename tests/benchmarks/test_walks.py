@@ -1,0 +1,73 @@
+"""No walk over a model takes a time that grows with the square of its length: counted in calls, never in seconds."""
+
+import sys
+import tracemalloc
+from math import log
+
+import pytest
+
+import robosc
+from benchmarks.walk_families import FAMILIES, write
+from robosc.checks import check
+from robosc.diagnostics import ModelError
+from robosc.language import read
+
+SIZES = (30, 120)
+#: What grows with n·log n, and what is small beside what is done once, may lie a little above 1.
+MOST = 1.3
+
+
+def calls(work, *arguments):
+    """How many functions and built-ins are called; and what came of the work."""
+    count = 0
+
+    def counting(_frame, event, _argument):
+        nonlocal count
+        count += event in ("call", "c_call")
+
+    sys.setprofile(counting)
+    try:
+        result = work(*arguments)
+    finally:
+        sys.setprofile(None)
+    return count, result
+
+
+def exponent(few, many):
+    return log(many / few) / log(SIZES[1] / SIZES[0])
+
+
+def reading(path):
+    if path.suffix == ".xmi":
+        try:
+            return check(robosc.load(path))
+        except ModelError as error:
+            return error.diagnostics
+    found = read(path)
+    return [*found.findings, *check(found.base, found.findings)]
+
+
+def memory(work, *arguments):
+    """The most bytes that Python had at a time."""
+    tracemalloc.start()
+    work(*arguments)
+    most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    return most
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+def test_reading_and_checking(family, tmp_path):
+    counts = []
+    for number in SIZES:
+        (tmp_path / str(number)).mkdir()
+        path = write(family, number, tmp_path / str(number))
+        reading(path)  # What is loaded and built once is no part of it.
+        counts.append(calls(reading, path)[0])
+    assert exponent(*counts) < MOST, counts
+
+
+def test_memory_for_namespaces(tmp_path):
+    path = write("namespaces", 4000, tmp_path)
+    reading(path)
+    assert memory(reading, path) < 50 * path.stat().st_size
