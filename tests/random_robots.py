@@ -102,6 +102,8 @@ class Component:
     communications: list[Communication] = field(default_factory=list)
     variables: list[Variable] = field(default_factory=list)
     states: list[str] = field(default_factory=list)
+    #: States that are not marked, that nothing leads to and nothing leads out of.
+    apart: list[str] = field(default_factory=list)
     text: str = ""
 
 
@@ -241,6 +243,7 @@ class Writer:
             may_be_needed = kind.is_finite and self.one([True, True, False])
             component.variables.append(Variable(self.name(f"x{number}{index}"), kind, may_be_needed))
         component.states = [self.name(f"s{number}{index}") for index in self.many(3, 1)]
+        component.apart = [self.name(f"t{number}")] * (self.random.randrange(3) == 0)
         self.components.append(component)
 
     def component(self, component: Component) -> str:
@@ -262,6 +265,7 @@ class Writer:
             kinds = ["initial "] * (index == 0) + ["marked "] * (state in marked)
             self.random.shuffle(kinds)
             body.append(f"{''.join(kinds)}state {state} {{ {' '.join(inside)} }}")
+        body += [f"state {each} {{ }}" for each in component.apart]
         self.random.shuffle(body)
         return "\n".join([f"component {component.name} {{", *lines, "behaviour {", *body, "}", "}"])
 
@@ -319,7 +323,7 @@ class Writer:
 
     def readable(self, *, finite: bool) -> list[tuple[str, Type]]:
         """What can be read by its full name."""
-        states = [(f"{c.name}.{each}", BOOLEAN) for c in self.components for each in c.states]
+        states = [(f"{c.name}.{each}", BOOLEAN) for c in self.components for each in (*c.states, *c.apart)]
         variables = [
             (f"{c.name}.{each.name}", each.type)
             for c in self.components

@@ -15,15 +15,17 @@ from robosc.resources import locate
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-_COMPARISONS: Mapping[str, type[ex.BinaryExpression]] = {
+_OPERATORS: Mapping[str, type[ex.BinaryExpression]] = {
     "=": ex.Equation,
     "!=": ex.Inequation,
     "<": ex.LessThan,
     "<=": ex.LessOrEqual,
     ">": ex.GreaterThan,
     ">=": ex.GreaterOrEqual,
+    "+": ex.Addition,
+    "-": ex.Subtraction,
 }
-_CHAINS: Mapping[str, type[ex.BinaryExpression]] = {"Or": ex.Disjunction, "And": ex.Conjunction, "Sum": ex.Addition}
+_CHAINS: Mapping[str, type[ex.BinaryExpression]] = {"Or": ex.Disjunction, "And": ex.Conjunction}
 
 
 class CifError(ValueError):
@@ -177,12 +179,12 @@ class _Reading:
         match type(read).__name__:
             case "Expression":
                 return ex.Implication(left=of(read.left), right=of(read.right)) if read.operator else of(read.left)
-            case "Or" | "And" | "Sum" as rule:
+            case "Or" | "And" as rule:
                 return reduce(lambda left, right: _CHAINS[rule](left=left, right=right), map(of, read.operands))
-            case "Compared":
+            case "Compared" | "Sum":
                 made = of(read.left)
                 for operator, right in zip(read.operators, read.rights, strict=True):
-                    made = _COMPARISONS[operator](left=made, right=of(right))
+                    made = _OPERATORS[operator](left=made, right=of(right))
                 return made
             case "Negation":
                 return ex.Negation(operand=of(read.operand))

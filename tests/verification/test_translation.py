@@ -331,19 +331,19 @@ CIF_MUTANTS = {
         ),
     ),
     "a shift is forgotten": (
-        r"elif message_level.i_response = 8: 6 else 7",
-        "elif message_level.i_response = 8: 3 else 7",
+        r"i_response < 2: 2 else message_level.i_response end - 2 goto",
+        "i_response < 2: 5 else message_level.i_response end - 2 goto",
         [],
         (
-            "after `message_level.u_response(i_response = 3)`, the generated CIF has `Gauge.level = 0` and the model"
-            " `Gauge.level = 3` where `Gauge.idle and Gauge.level = 0`"
+            "after `message_level.u_response(i_response = -5)`, the generated CIF has `Gauge.level = 0` and the model"
+            " `Gauge.level = -3` where `Gauge.idle and Gauge.level = 0`"
         ),
     ),
     "a value is outside of its range": (
-        r"elif message_level.i_response = 8: 6 else 7",
-        "elif message_level.i_response = 8: 6 else 8",
+        r"if message_level.i_response > 9: 9 elif",
+        "if message_level.i_response > 9: 10 elif",
         [],
-        f"`message_level.u_response(i_response = 4)` {IN_MODEL} where `Gauge.idle and Gauge.level = 0`",
+        f"`message_level.u_response(i_response = 5)` {IN_MODEL} where `Gauge.idle and Gauge.level = 0`",
     ),
     "a guard changes where nothing leads": (
         r" when strokes != 3 goto rest;",
@@ -382,12 +382,12 @@ def test_changed_cif_is_refuted(pattern: str, replacement: str, trace: list[str]
         (r"^plant message_level(?s:.*?)^end", "", "there is no 'message_level.u_response'"),
         (
             r"^end\n\nsupervisor inv",
-            "end plant x: location: end supervisor inv",
+            "end plant x: location; end supervisor inv",
             "its plants are message_level, message_move",
         ),
         (
             r"^  location run:",
-            "  location more: location run:",
+            "  location more; location run:",
             "its locations of 'component_Pump' are rest, more, run, not",
         ),
         (

@@ -33,17 +33,18 @@ _SMALLER = "give the integers smaller ranges"
 def preconditions(models: Models, _configuration: Configuration) -> list[Diagnostic]:
     """What keeps CIF from the sct model, as errors of the rule `cif`, each at the text that it comes from.
 
-    Numbers beyond 32 bits, names that are none, and expressions that would have to be split into too many cases, since
-    CIF's synthesis can neither subtract nor multiply.
+    No plant at all, numbers beyond 32 bits, names that are none, and expressions that would have to be split into too
+    many cases, since CIF's synthesis can't multiply.
     """
+    if not models.sct.plants:
+        reason = "the robot has neither communications nor behaviours, and CIF takes no specification without a plant"
+        hint = "give it a component with a message, a service, an action or a behaviour"
+        return [_finding(models.sct, reason, hint)]
     elements = [element for _, element in tree(models.sct)]
     declared = [fault for each in elements for fault in _declaration_faults(each)]
     # What is computed from numbers that are too large is too large, too.
     computed = [] if declared else [fault for each in elements for fault in _expression_faults(each)]
-    return [
-        Diagnostic(*place(culprit), Severity.ERROR, "cif", f"this can't be said in CIF: {reason}", hint)
-        for culprit, reason, hint in [*declared, *computed]
-    ]
+    return [_finding(*each) for each in [*declared, *computed]]
 
 
 def generate(models: Models, _configuration: Configuration) -> dict[str, str]:
@@ -58,6 +59,10 @@ def generate(models: Models, _configuration: Configuration) -> dict[str, str]:
         f"{models.sct.name}.{kind}": templates.get_template(f"robot.{kind}.j2").render(specification=specification)
         for kind in kinds
     }
+
+
+def _finding(culprit: Any, reason: str, hint: str) -> Diagnostic:
+    return Diagnostic(*place(culprit), Severity.ERROR, "cif", f"this can't be said in CIF: {reason}", hint)
 
 
 def _declaration_faults(element: Any) -> Iterator[tuple[Any, str, str]]:

@@ -1,8 +1,8 @@
-"""Rewrites expressions into what CIF's data-based synthesis accepts: no negative number, no `-`, no `*`.
+"""Rewrites expressions into what CIF's data-based synthesis accepts: no negative number, no `*`, one `-` at most.
 
 A comparison becomes one of two sums, what is subtracted having moved to the other side; a product of variables is split
-by the values of one of them; a value to be assigned saturates, and where something is subtracted it is found by
-comparing. An expression that needs none of this stays as it is.
+by the values of one of them; a value to be assigned saturates, and what is subtracted in it is subtracted at the end,
+the only place where synthesis takes a `-`. An expression that needs none of this stays as it is.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
 
 #: Cases that one expression may be split into.
 MOST_CASES = 1024
@@ -71,8 +71,18 @@ def assigned(variable: sct.DiscreteVariable, value: ex.Expression) -> ex.Express
         least, greatest = pieces[0][1].range()
         if low <= least and greatest <= high:
             return copied(value)
-    shifted: _Pieces = [(guard, each + Linear(shift(variable))) for guard, each in pieces]
-    return _first(shifted, lambda each: _saturated(each, low, high, value))
+    guards = [guard for guard, _ in pieces]
+    parts = [_saturated(each + Linear(shift(variable)), low, high, value) for _, each in pieces]
+    minuend = _first(zip(guards, (each for each, _ in parts), strict=True))
+    subtrahends = [each for _, each in parts]
+    if not any(each.factors or each.constant for each in subtrahends):
+        return minuend
+    if all(each == subtrahends[0] for each in subtrahends):
+        return ex.Subtraction(left=minuend, right=_written(subtrahends[0], value))
+    return ex.Subtraction(
+        left=minuend,
+        right=_first((guard, _written(each, value)) for guard, each in zip(guards, subtrahends, strict=True)),
+    )
 
 
 def held(variable: sct.DiscreteVariable) -> ex.Expression:
@@ -109,7 +119,7 @@ def _comparison(expression: ex.BinaryExpression) -> ex.Expression:
     if _is_plain(expression.left) and _is_plain(expression.right):
         return copied(expression)
     pieces = _sum(expression, _linear(expression.left), _scaled(_linear(expression.right), -1))
-    return _first(pieces, lambda each: _against_zero(type(expression), each, expression))
+    return _first((guard, _against_zero(type(expression), each, expression)) for guard, each in pieces)
 
 
 def _against_zero(operator: _Comparison, value: Linear, origin: ex.Expression) -> ex.Expression:
@@ -135,41 +145,32 @@ _HOLDS: dict[_Comparison, Callable[[int], bool]] = {
 }
 
 
-def _saturated(value: Linear, low: int, high: int, origin: ex.Expression) -> ex.Expression:
-    """The value, or the nearest bound, in terms that are never negative."""
+def _saturated(value: Linear, low: int, high: int, origin: ex.Expression) -> tuple[ex.Expression, Linear]:
+    """Two terms, neither of them ever negative, whose difference is the value or the nearest bound."""
     least, greatest = value.range()
     if least >= high or greatest <= low:
-        return ex.IntegerLiteral(value=high if least >= high else low)
-
-    def compared(operator: _Comparison, to: int) -> ex.Expression:
-        return _against_zero(operator, value + Linear(-to), origin)
-
-    cases: list[tuple[ex.Expression, int]] = []
-    if value.constant >= 0 and all(factor > 0 for factor in value.factors.values()):
-        result = _written(value, origin)
-        if greatest > high:
-            cases.append((compared(ex.GreaterThan, high), high))
-        if least < low:
-            cases.append((compared(ex.LessThan, low), low))
-    else:
-        first, last = max(least, low), min(greatest, high)
-        _limit(origin, last - first + 1)
-        result = ex.IntegerLiteral(value=last)
-        cases.append((compared(ex.LessOrEqual, first), first))
-        cases += [(compared(ex.Equation, each), each) for each in range(first + 1, last)]
-    for guard, constant in reversed(cases):
-        result = ex.Conditional(condition=guard, then=ex.IntegerLiteral(value=constant), otherwise=result)
-    return result
+        return ex.IntegerLiteral(value=high if least >= high else low), Linear(0)
+    kept, subtracted = value.sides()
+    result = _written(kept, origin)
+    # What is kept is at least, and at most, what a bound and all that is subtracted from it come to.
+    for outside, operator, bound in ((least < low, ex.LessThan, low), (greatest > high, ex.GreaterThan, high)):
+        if outside:
+            result = ex.Conditional(
+                condition=_against_zero(operator, value + Linear(-bound), origin),
+                then=_written(subtracted + Linear(bound), origin),
+                otherwise=result,
+            )
+    return result, subtracted
 
 
-def _first(pieces: _Pieces, text: Callable[[Linear], ex.Expression]) -> ex.Expression:
+def _first(alternatives: Iterable[tuple[ex.Expression | None, ex.Expression]]) -> ex.Expression:
     """The expression of the first alternative whose condition holds."""
     result: ex.Expression | None = None
-    for guard, value in reversed(pieces):
-        made = text(value)
-        result = (
-            made if guard is None or result is None else ex.Conditional(condition=guard, then=made, otherwise=result)
-        )
+    for guard, made in reversed(list(alternatives)):
+        if guard is None or result is None:
+            result = made
+        else:
+            result = ex.Conditional(condition=copied(guard), then=made, otherwise=result)
     assert result is not None
     return result
 
@@ -246,4 +247,4 @@ def _limited(origin: ex.Expression, pieces: _Pieces) -> _Pieces:
 
 def _limit(origin: ex.Expression, cases: int) -> None:
     if cases > MOST_CASES:
-        raise Unsupported(origin, f"it would take {cases} cases to say it without - and *; {MOST_CASES} are the most")
+        raise Unsupported(origin, f"it would have to be split into {cases} cases; {MOST_CASES} are the most")

@@ -28,6 +28,7 @@ class CifPrinter(ExpressionPrinter):
         ex.GreaterThan: ">",
         ex.GreaterOrEqual: ">=",
         ex.Addition: "+",
+        ex.Subtraction: "-",
         ex.Negation: "not ",
     }
 

@@ -77,12 +77,12 @@ class Plant:
 
 @dataclass(frozen=True)
 class Restriction:
-    """A requirement, of the model or as the supervisor keeps it; `text` is its meaning in the robot model's words."""
+    """A requirement, of the model or as the supervisor keeps it; `texts` are its meaning in the robot model's words."""
 
     event: str
     kind: str
     condition: str
-    text: str
+    texts: Sequence[str]
 
 
 @dataclass(frozen=True)
@@ -106,12 +106,13 @@ class Writer:
         self._model = model
         self._names = CifNames(model)
         self._outside = CifPrinter(self._names, None)
+        self._impossible = impossible(model)
         self._referred = {each.location for _, each in tree(model) if isinstance(each, sct.LocationReference)}
 
     def specification(self) -> Specification:
         """All of it."""
         model, supervisor = self._model, self._model.supervisor
-        guards = supervisor.guards if supervisor else []
+        guards = [each for each in supervisor.guards if each.event not in self._impossible] if supervisor else []
         return Specification(
             name=model.name,
             enumerations=[
@@ -119,9 +120,9 @@ class Writer:
                 for each in model.enumerations
             ],
             plants=[self.plant(each) for each in model.plants],
-            requirements=[self.requirement(each) for each in model.requirements],
+            requirements=self.requirements(),
             kept=[
-                Restriction(self._names.used(each.event, None), "needs", self._condition(each.requirement), "")
+                Restriction(self._names.used(each.event, None), "needs", self._condition(each.requirement), ())
                 for each in guards
                 if each.requirement is not None
             ],
@@ -132,12 +133,13 @@ class Writer:
             states=f"{supervisor.controlledStates} of {supervisor.uncontrolledStates}" if supervisor else "",
         )
 
-    def requirement(self, requirement: sct.Requirement) -> Restriction:
-        """A requirement of the model."""
-        event = self._names.used(requirement.event, None)
-        return Restriction(
-            event, str(requirement.kind), self._condition(requirement.condition), remark(requirement.text)
-        )
+    def requirements(self) -> list[Restriction]:
+        """The requirements of the model; what several of them ask of an event alike stands there once."""
+        texts: dict[tuple[str, str, str], list[str]] = {}
+        for each in self._model.requirements:
+            said = self._names.used(each.event, None), str(each.kind), self._condition(each.condition)
+            texts.setdefault(said, []).append(remark(each.text))
+        return [Restriction(*said, list(dict.fromkeys(filter(None, found)))) for said, found in texts.items()]
 
     def plant(self, plant: sct.Plant) -> Plant:
         """A plant with all that is in it."""
@@ -146,12 +148,15 @@ class Writer:
             name=self._names.declared(plant),
             events=[
                 Events(controllable, [self._names.declared(each) for each in events])
-                for controllable, events in groupby(plant.events, key=lambda each: each.controllable)
+                for controllable, events in groupby(self._possible(plant), key=lambda each: each.controllable)
             ],
             inputs=[self._variable(each, "") for each in plant.inputs],
             variables=[self._variable(each, printer(held(each))) for each in plant.variables],
             locations=[self._location(each, plant, printer) for each in plant.locations],
         )
+
+    def _possible(self, plant: sct.Plant) -> list[sct.Event]:
+        return [each for each in plant.events if each not in self._impossible]
 
     def _condition(self, expression: ex.Expression | None) -> str:
         return "" if expression is None else self._outside(condition(expression))
@@ -173,7 +178,11 @@ class Writer:
             name="" if alone and location not in self._referred else self._names.declared(location),
             initial=location.initial,
             marked=location.marked,
-            edges=[self._edge(each, location, plant, printer) for each in location.edges],
+            edges=[
+                self._edge(each, location, plant, printer)
+                for each in location.edges
+                if each.event not in self._impossible
+            ],
         )
 
     def _edge(self, edge: sct.Edge, location: sct.Location, plant: sct.Plant, printer: CifPrinter) -> Edge:
@@ -186,6 +195,21 @@ class Writer:
             ],
             target="" if edge.target is location else self._names.declared(edge.target),
         )
+
+
+def impossible(model: sct.SupervisoryControlModel) -> set[sct.Event]:
+    """The events of which all edges have the guard `false` and which nothing else speaks of: they need not be said.
+
+    So it is with `c_none` where a provide statement has no condition. CIF warns of an event that can never happen.
+    """
+    found = {event for plant in model.plants for event in plant.events}
+    found -= {each.event for each in model.requirements}
+    for plant in model.plants:
+        for edge in (edge for location in plant.locations for edge in location.edges):
+            never = isinstance(edge.guard, ex.BooleanLiteral) and not edge.guard.value
+            if not never or edge.event.eContainer() is not plant:
+                found.discard(edge.event)
+    return found
 
 
 def remark(text: str | None) -> str:

@@ -142,7 +142,9 @@ class _Comparison:
 
     def _their_transition(self, event: sct.Event, theirs: Encoding) -> Transition:
         """What the event does in CIF: only automata that have it take part, and one of them at least."""
-        twin, diagrams = self._twins[event], theirs.diagrams
+        twin, diagrams = self._twins.event(event), theirs.diagrams
+        if twin is None:
+            return Transition(diagrams.false, {})
         transition = together(self._edges.get(twin, []), theirs, saturates=False)
         enabled = transition.enabled if twin in self._edges or twin in self._alphabet else diagrams.false
         if twin in self._alphabet:

@@ -19,7 +19,8 @@ class Twins:
 
     Plants and their members are those of the model in its order, with its names, but that underscores may follow, and
     that a plant's only location needs none. An integer has the same range, or in place of one that begins below 0 one
-    of the same size from 0 on: then the first value stands for the first, and so on.
+    of the same size from 0 on: then the first value stands for the first, and so on. An event may be missing: in the
+    specification it never happens.
     """
 
     def __init__(self, model: sct.SupervisoryControlModel, specification: sct.SupervisoryControlModel) -> None:
@@ -37,6 +38,10 @@ class Twins:
         """What stands for an element of the model."""
         return self._twins[ours]
 
+    def event(self, ours: sct.Event) -> sct.Event | None:
+        """What stands for an event of the model, None where it is missing."""
+        return self._twins.get(ours)
+
     def original(self, theirs: Any) -> Any:
         """What an element of the specification stands for."""
         return self._originals[theirs]
@@ -49,7 +54,7 @@ class Twins:
 
     def _pair_members(self, ours: sct.Plant, theirs: sct.Plant) -> None:
         of = f"of '{ours.name}'"
-        self._pair(f"events {of}", ours.events, theirs.events)
+        self._pair_events(of, ours, theirs)
         self._pair(f"inputs {of}", ours.inputs, theirs.inputs)
         self._pair(f"variables {of}", ours.variables, theirs.variables)
         if [each.name for each in theirs.locations] != [""]:
@@ -58,9 +63,6 @@ class Twins:
             self._twins[ours.locations[0]] = theirs.locations[0]
         else:
             raise CifError(f"it has one location {of} only")
-        for event in ours.events:
-            if event.controllable != self[event].controllable:
-                raise CifError(f"it has '{event.name}' {of} {'un' * event.controllable}controllable")
         for location in ours.locations:
             for word in ("initial", "marked"):
                 if getattr(location, word) != getattr(self[location], word):
@@ -69,6 +71,14 @@ class Twins:
         for each in members:
             if not self._same_values(each, self[each]):
                 raise CifError(f"the values of '{each.name}' {of} are others")
+
+    def _pair_events(self, of: str, ours: sct.Plant, theirs: sct.Plant) -> None:
+        left = list(theirs.events)
+        there = [each for each in ours.events if left and _same_name(each, left[0]) and left.pop(0)]
+        self._pair(f"events {of}", there if not left else ours.events, theirs.events)
+        for event in there:
+            if event.controllable != self[event].controllable:
+                raise CifError(f"it has '{event.name}' {of} {'un' * event.controllable}controllable")
 
     def _same_values(self, ours: sct.DiscreteVariable | sct.Input, theirs: sct.DiscreteVariable | sct.Input) -> bool:
         if type(ours.type) is not type(theirs.type) or domain_size(ours) != domain_size(theirs):

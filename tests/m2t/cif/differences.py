@@ -27,7 +27,14 @@ def differences(
 class _Comparison:
     def __init__(self, one: Any, other: Any, exact: bool) -> None:
         self.one, self.other, self.exact = one, other, exact
-        self.twins = {(type(each), _name(each)): each for _, each in tree(other) if isinstance(each, ex.NamedElement)}
+        events = {_name(event) for plant in other.plants for event in plant.events}
+        #: Events that CIF need not have, since they can't happen.
+        self.absent = {
+            event
+            for plant in one.plants
+            for event in plant.events
+            if _name(event) not in events and _never(event, one.plants)
+        }
 
     def run(self) -> Iterator[str]:
         yield from self.names("the model", [self.one], [self.other])
@@ -38,16 +45,27 @@ class _Comparison:
         for mine, yours in zip(self.one.plants, self.other.plants, strict=False):
             yield from self.plant(mine, yours)
         supervised = self.other.supervisor is not None
-        for mine, yours in zip_longest([] if supervised else self.one.requirements, self.other.requirements):
-            if _name(mine.event) != _name(yours.event) or str(mine.kind) != str(yours.kind):
-                yield f"{mine.kind} {_name(mine.event)} is {yours.kind} {_name(yours.event)}"
-            yield from self.expression("requirement", mine.condition, yours.condition)
+        if not supervised:
+            yield from self.requirements()
         if supervised:
-            for mine, yours in zip_longest(self.one.supervisor.guards, self.other.supervisor.guards):
+            guards = [each for each in self.one.supervisor.guards if each.event not in self.absent]
+            for mine, yours in zip_longest(guards, self.other.supervisor.guards):
                 if _name(mine.event) != _name(yours.event):
                     yield f"guard of {_name(mine.event)} is of {_name(yours.event)}"
                 yield from self.expression("requirement part", mine.requirement, yours.requirement)
                 yield from self.expression("synthesis part", mine.synthesis, yours.synthesis)
+
+    def requirements(self) -> Iterator[str]:
+        """What is asked of one event twice in the same words may stand there once."""
+        mine, yours = [], list(self.other.requirements)
+        for each in self.one.requirements:
+            again = [one for one in mine if (one.event, str(one.kind)) == (each.event, str(each.kind))]
+            if not any(_shape(one.condition) == _shape(each.condition) for one in again):
+                mine.append(each)
+        for each, other in zip_longest(mine, yours):
+            if _name(each.event) != _name(other.event) or str(each.kind) != str(other.kind):
+                yield f"{each.kind} {_name(each.event)} is {other.kind} {_name(other.event)}"
+            yield from self.expression("requirement", each.condition, other.condition)
 
     def names(self, what: str, mine: Any, yours: Any) -> Iterator[str]:
         first, second = [each.name for each in mine], [each.name for each in yours]
@@ -58,8 +76,10 @@ class _Comparison:
         for members in ("events", "inputs", "variables", "locations"):
             if mine.kind == sct.PlantKind.message and members == "locations":
                 continue  # its only location has no name in CIF
-            yield from self.names(f"{members} of {mine.name}", getattr(mine, members), getattr(yours, members))
-        for one, other in zip(mine.events, yours.events, strict=False):
+            there = [each for each in getattr(mine, members) if each not in self.absent]
+            yield from self.names(f"{members} of {mine.name}", there, getattr(yours, members))
+        events = [each for each in mine.events if each not in self.absent]
+        for one, other in zip(events, yours.events, strict=False):
             if one.controllable != other.controllable:
                 yield f"{_name(one)} is controllable or not"
         for one, other in zip([*mine.inputs, *mine.variables], [*yours.inputs, *yours.variables], strict=False):
@@ -73,7 +93,7 @@ class _Comparison:
     def location(self, mine: sct.Location, yours: sct.Location) -> Iterator[str]:
         if (mine.initial, mine.marked) != (yours.initial, yours.marked):
             yield f"location {_name(mine)} is marked or initial or not"
-        for one, other in zip_longest(mine.edges, yours.edges):
+        for one, other in zip_longest([each for each in mine.edges if each.event not in self.absent], yours.edges):
             where = f"{_name(mine)} -{_name(one.event)}->"
             if _name(one.event) != _name(other.event) or _index(one.target) != _index(other.target):
                 yield f"{where} is for {_name(other.event)} to {_name(other.target)}"
@@ -96,6 +116,15 @@ class _Comparison:
                 if first != second:
                     yield f"{what} is {second}, not {first}, where {state}"
                     return
+
+
+def _never(event: Any, plants: Any) -> bool:
+    guards = [
+        edge.guard for plant in plants for location in plant.locations for edge in location.edges if edge.event is event
+    ]
+    return bool(guards) and not any(
+        guard is None or any(_value(guard, state, None) for state in _states(guard, guard)) for guard in guards
+    )
 
 
 def _name(element: Any) -> str:

@@ -154,7 +154,11 @@ def test_plain_models_come_back_as_they_were() -> None:
 def test_every_model_keeps_its_meaning(given: sct.SupervisoryControlModel) -> None:
     text = generated(given)["robot.cif"]
     assert differences(given, rebuild(text)) == []
-    assert not re.search(r"[-*]", re.sub("//.*", "", text))
+    # Synthesis takes no `*`, and a `-` only between the two sides of what is assigned.
+    plain = re.sub("//.*", "", text)
+    assert "*" not in plain
+    assert all(re.fullmatch(r"[^()]*? - [^-]*", each) for each in re.findall(":= ([^,;]*-[^,;]*)", plain))
+    assert "-" not in re.sub(":= [^,;]*", "", plain)
 
 
 ROOT = HERE.parents[2]
@@ -227,18 +231,25 @@ def test_conditions(text: str, wanted: str) -> None:
         ("0..2", "7", "2"),
         ("0..2", "-7", "0"),
         ("3..4", "-a", "3"),
-        ("0..2", "a - 1", "if a <= 1: 0 else 1 end"),
-        ("0..3", "b - a", "if b <= a: 0 elif b = a + 1: 1 elif b = a + 2: 2 else 3 end"),
+        ("0..2", "a - 1", "if a < 1: 1 else a end - 1"),
+        ("0..1999", "t - 1", "if t < 1: 1 else t end - 1"),
+        ("0..5", "b - a", "if b < a: a else b end - a"),
+        ("-2..5", "b - a", "(b + 2) - a"),
+        ("0..9", "9 - a", "9 - a"),
+        ("0..3", "b - a", "if b > a + 3: a + 3 elif b < a: a else b end - a"),
+        ("0..5", "b - a if c else b", "if c: if b < a: a else b end else b end - if c: a else 0 end"),
+        ("0..5", "b - a if c else 0 - a", "if c: if b < a: a else b end else 0 end - if c: a else 0 end"),
+        ("0..9", "b - (1 if c else 2)", "if c: if b < 1: 1 else b end elif b < 2: 2 else b end - if c: 1 else 2 end"),
         ("-1..1", "a", "if a > 1: 2 else a + 1 end"),
         ("-3..3", "s", "s"),
         ("-3..3", "s + 0", "s"),
-        ("0..6", "s", "if s <= 3: 0 elif s = 4: 1 elif s = 5: 2 else 3 end"),
+        ("0..6", "s", "if s < 3: 3 else s end - 3"),
         ("0..9", "a * b", "if a = 0: 0 elif a = 1: b elif b + b > 9: 9 else b + b end"),
         ("bool", "a > b", "a > b"),
     ],
 )
 def test_updates(target: str, text: str, wanted: str) -> None:
-    assert said(updated(target, text, a="0..2", b="0..5", s="-3..3")) == wanted
+    assert said(updated(target, text, a="0..2", b="0..5", c="bool", s="-3..3")) == wanted
 
 
 def test_a_negative_range_is_shifted_and_says_so() -> None:
@@ -252,11 +263,12 @@ def test_a_negative_range_is_shifted_and_says_so() -> None:
         (expression("a * b > c", a="0..99", b="0..99", c="0..2"), None),
         (
             expression("a * b * c > 0", a="0..99", b="0..99", c="0..99"),
-            "it would take 10000 cases to say it without - and *; 1024 are the most",
+            "it would have to be split into 10000 cases; 1024 are the most",
         ),
+        (updated("0..5000", "a - 1", a="0..5000"), None),
         (
-            updated("0..5000", "a - 1", a="0..5000"),
-            "it would take 5000 cases to say it without - and *; 1024 are the most",
+            updated("0..5000", "a * b", a="0..5000", b="0..5000"),
+            "it would have to be split into 5001 cases; 1024 are the most",
         ),
         (expression("a + a > 3", a="0..2147483646"), None),
         (expression("a - 3 + a > 3", a="0..2147483646"), "its numbers do not fit 32 bits"),
@@ -297,6 +309,70 @@ def test_expressions_of_too_large_a_number_draw_nothing_further() -> None:
     assert [each.message for each in cif.preconditions(Models(given), Configuration())] == [
         "this can't be said in CIF: its range does not fit 32 bits"
     ]
+
+
+def test_a_location_without_anything_ends_with_a_semicolon() -> None:
+    given = model([plant("p", {"a": [edge("e", "b")], "b": [], "c": []}, controllable=["e"], marked=["a", "c"])])
+    text = generated(given)["robot.cif"]
+    assert "\n  location b;\n  location c:\n    marked;\nend\n" in text
+    assert differences(given, rebuild(text)) == []
+
+
+def test_a_robot_without_a_plant_is_no_cif(tmp_path: Path) -> None:
+    (tmp_path / "model.rscd").write_text("\nrobot R { }")
+    models = Models(robosc_to_sct.transform(read(tmp_path / "model.rscd").base)[0])
+    [finding] = cif.preconditions(models, Configuration())
+    assert (finding.rule, finding.span, finding.severity) == ("cif", Span(2, 1, 2, 12), Severity.ERROR)
+    assert "CIF takes no specification without a plant" in finding.message
+
+
+def provided(*conditions: str) -> sct.SupervisoryControlModel:
+    """A data plant with the event `c_none` under the last condition."""
+    names = [f"c_d{number}" for number, _ in enumerate(conditions[:-1], 1)] + ["c_none"]
+    edges = [edge(name, name[2:], when=condition) for name, condition in zip(names, conditions, strict=True)]
+    locations = ["none", *(name[2:] for name in names[:-1])]
+    return model(
+        [
+            plant("data_x", dict.fromkeys(locations, edges), controllable=names, kind="data", marked=locations),
+            plant("p", {"l": [edge("e")]}, controllable=["e"], variables={"b": "bool"}),
+        ],
+        guards={},
+    )
+
+
+def test_an_event_that_can_never_happen_is_left_out() -> None:
+    given = provided("True", "False")
+    given.supervisor = synthesize(given).supervisor
+    for text in generated(given).values():
+        assert "c_none" not in text
+        assert "  location none:\n    initial; marked;\n    edge c_d1 when true goto d1;\n  location d1:\n" in text
+        assert differences(given, rebuild(text)) == []
+    assert "c_none" in generated(provided("p.b", "not p.b"))["robot.cif"]
+
+
+@pytest.mark.parametrize("how", ["asked for", "elsewhere"])
+def test_an_impossible_event_that_others_speak_of_stays(how: str) -> None:
+    first = plant("p", {"l": [edge("e", when="False"), edge("f")]}, controllable=["e", "f"])
+    second = plant("q", {"l": [edge("p.e" if how == "elsewhere" else "p.f", when="False")]})
+    given = model([first, second], [needs("p.e", "p.l")] if how == "asked for" else [])
+    text = generated(given)["robot.cif"]
+    assert "edge e when false;" in text
+    assert differences(given, rebuild(text)) == []
+
+
+def test_what_is_asked_twice_stands_there_once_with_all_its_words() -> None:
+    asked = [needs("e", "p.b", "one"), needs("f", "p.b", "other"), needs("e", "p.b", "two"), needs("e", "p.b", "one")]
+    asked += [disables("e", "p.b", "three"), needs("e", "not p.b")]
+    given = model([plant("p", {"l": [edge("e"), edge("f")]}, controllable=["e", "f"], variables={"b": "bool"})], asked)
+    text = generated(given)["robot.cif"]
+    assert re.findall("requirement .*", text) == [
+        "requirement p.e needs p.b;",
+        "requirement p.f needs p.b;",
+        "requirement p.b disables p.e;",
+        "requirement p.e needs not p.b;",
+    ]
+    assert text.index("one") < text.index("two") < text.index("requirement p.e") < text.index("three")
+    assert differences(given, rebuild(text)) == []
 
 
 def test_names_that_clash_are_told_apart(golden) -> None:
