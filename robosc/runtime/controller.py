@@ -341,6 +341,8 @@ class Controller:
             direction = "out"
             self._cancels[event].cancel()
         self._log.write(self._port.now(), direction, name, noted if direction != "internal" else None)
+        if lost := self._log.lost():
+            self._port.warn(f"the event log lost {lost} events")
         self._reports.note(name)
 
     def _livelock(self) -> None:

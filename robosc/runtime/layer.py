@@ -176,6 +176,8 @@ class Layer:
             self.cancels[event]()
         direction = "out" if event in self._sent else "in" if event in self._incoming else "internal"
         self._log.write(self._port.now(), direction, name, noted)
+        if lost := self._log.lost():
+            self._port.warn(f"the event log lost {lost} events")
         self._reports.note(name)
 
     def _livelock(self) -> None:

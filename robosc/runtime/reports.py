@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import os
+import time
 from contextlib import suppress
 from pathlib import Path
+from threading import Condition, Thread
 from typing import IO, TYPE_CHECKING
 
 from robosc.metamodel import expression as ex
@@ -41,32 +43,113 @@ def default_log(node: str, package: str) -> str:
     return str(Path(folder) / f"{'.'.join(parts)}-events.jsonl")
 
 
-class EventLog:
-    """A file that gets a line of JSON for each event; without a name, none. Raises OSError."""
+#: From one flush of a log to the next, in seconds, and what it keeps of what the disk does not take, in characters.
+_FLUSH, _KEPT = 0.02, 8 << 20
+
+
+class _LineWriter(Thread):
+    """Writes lines to the end of a file in a thread of its own, so that a slow disk delays nobody. Raises OSError."""
 
     def __init__(self, path: str) -> None:
-        self._file: IO[str] | None = (
-            os.fdopen(open_log(path), "a", encoding="utf-8", errors="replace", buffering=1) if path else None
-        )
+        super().__init__(name="event log", daemon=True)
+        self._file: IO[bytes] = os.fdopen(open_log(path), "ab", buffering=0)
+        self._changed = Condition()
+        self._lines: list[str] = []
+        self._size = 0
+        self._lost = 0
+        self._told = -1.0
+        self._busy = self._ending = False
+        self.start()
+
+    def write(self, line: str) -> None:
+        """Has a line written, soon."""
+        with self._changed:
+            if self._size + len(line) > _KEPT:
+                self._lost += 1
+                return
+            self._lines.append(line)
+            self._size += len(line)
+            if len(self._lines) == 1:
+                self._changed.notify_all()
+
+    def lost(self) -> int:
+        """How many lines were lost that were not told yet, once a second; else 0."""
+        with self._changed:
+            if not self._lost or time.monotonic() < self._told + 1:
+                return 0
+            self._told = time.monotonic()
+            lost, self._lost = self._lost, 0
+            return lost
+
+    def flush(self) -> None:
+        """Waits until all is written that can be."""
+        with self._changed:
+            self._changed.wait_for(lambda: not self._lines and not self._busy)
+
+    def close(self) -> None:
+        """Waits until all is written; nothing more will be."""
+        with self._changed:
+            self._ending = True
+            self._changed.notify_all()
+        self.join()
+
+    def run(self) -> None:
+        flushed = 0.0
+        while True:
+            with self._changed:
+                self._changed.wait_for(lambda: self._ending or self._lines)
+                self._changed.wait_for(lambda: self._ending, max(0.0, flushed + _FLUSH - time.monotonic()))
+                lines, self._lines, self._size = self._lines, [], 0
+                self._busy, ending = True, self._ending
+            try:
+                left = memoryview("".join(lines).encode(errors="replace"))
+                while left:
+                    left = left[self._file.write(left) :]
+            except OSError:
+                with self._changed:
+                    self._lost += len(lines)
+            flushed = time.monotonic()
+            with self._changed:
+                self._busy = False
+                self._changed.notify_all()
+            if ending:
+                self._file.close()
+                return
+
+
+class EventLog:
+    """A file that gets a line of JSON for each event; without a name, none. Raises OSError where it can't be opened."""
+
+    def __init__(self, path: str) -> None:
+        self._writer = _LineWriter(path) if path else None
 
     @property
     def active(self) -> bool:
         """Whether anything is written."""
-        return self._file is not None
+        return self._writer is not None
 
     def write(self, time: float, direction: str, event: str, data: Mapping[str, Json] | None = None) -> None:
         """A line; `data` is what came in or went out with the event, as `{"value": ...}`."""
-        if self._file is not None:
+        if self._writer is not None:
             entry: dict[str, Json] = {"time": time, "direction": direction, "event": event}
             if data is not None:
                 entry["data"] = data
-            self._file.write(json_text(entry) + "\n")
+            self._writer.write(json_text(entry) + "\n")
+
+    def lost(self) -> int:
+        """How many events the file could not take that were not told yet, once a second; else 0."""
+        return self._writer.lost() if self._writer is not None else 0
+
+    def flush(self) -> None:
+        """Waits until all is written that can be."""
+        if self._writer is not None:
+            self._writer.flush()
 
     def close(self) -> None:
         """Nothing more will be written."""
-        if self._file is not None:
-            self._file.close()
-            self._file = None
+        if self._writer is not None:
+            self._writer.close()
+            self._writer = None
 
 
 class ReceivedData:

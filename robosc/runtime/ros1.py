@@ -14,7 +14,7 @@ from robosc.metamodel import rosgraph
 from robosc.runtime.agenda import Agenda
 from robosc.runtime.port import CallHandlers, Endpoint, GoalHandlers, Part
 from robosc.runtime.settings import check
-from robosc.runtime.starting import StartError, interface_class
+from robosc.runtime.starting import StartError, ending_signals, interface_class
 
 #: Where Debian has the Python of ROS 1; appended, so that nothing of this Python's own is hidden.
 _DEBIAN = "/usr/lib/python3/dist-packages"
@@ -151,8 +151,8 @@ class Ros1Node:
             interrupted.append(number)
             self.agenda.post(lambda: None)
 
-        for each in (signal.SIGINT, signal.SIGTERM):
-            signal.signal(each, interrupt)
+        for number in ending_signals():
+            signal.signal(number, interrupt)
         acting.start()
         while not interrupted and not rospy.is_shutdown():
             self._spin_once()

@@ -12,7 +12,7 @@ from robosc.metamodel import rosgraph
 from robosc.runtime.agenda import Agenda
 from robosc.runtime.port import CallHandlers, Endpoint, GoalHandlers, Outcome, Part
 from robosc.runtime.settings import check
-from robosc.runtime.starting import StartError, interface_class
+from robosc.runtime.starting import StartError, ending_signals, interface_class
 
 try:
     import rclpy
@@ -179,8 +179,8 @@ class Ros2Node:
     def spin(self, acting: Acting) -> None:
         """Lets somebody act until the user interrupts it; it stops before the node ends."""
         interrupted: list[int] = []
-        for each in (signal.SIGINT, signal.SIGTERM):
-            signal.signal(each, lambda number, _: interrupted.append(number))
+        for number in ending_signals():
+            signal.signal(number, lambda number, _: interrupted.append(number))
         acting.start()
         while not interrupted and rclpy.ok():
             self._spin_once()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
@@ -17,6 +18,12 @@ class StartError(Exception):
     def __init__(self, message: str, hint: str | None = None) -> None:
         super().__init__(message)
         self.hint = hint
+
+
+def ending_signals() -> list[signal.Signals]:
+    """The signals that ask a node to end: Ctrl-C, SIGTERM and, unless it is ignored (nohup), a hangup."""
+    hangup = [signal.SIGHUP] if signal.getsignal(signal.SIGHUP) != signal.SIG_IGN else []
+    return [signal.SIGINT, signal.SIGTERM, *hangup]
 
 
 def interface_class(interface: rosgraph.Interface, suffix: str, hint: str) -> Any:

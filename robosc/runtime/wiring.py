@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 from robosc.metamodel import rosgraph
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from robosc.runtime.agenda import Agenda
     from robosc.runtime.port import Endpoint, Port
 
@@ -46,7 +48,8 @@ class Wiring:
         if endpoints:
             self._heard.add(topic)
         elif topic not in self._heard and self._looks >= _PATIENCE:
-            self._report(f"{topic}: nobody publishes it after {_PATIENCE} s")
+            # It may tell what seldom happens, such as that a button was pressed.
+            self._report(f"{topic}: nobody publishes it after {_PATIENCE} s", self._port.info)
         for each in endpoints:
             self._compare(subscription, each, "publishes", "offers")
 
@@ -64,7 +67,7 @@ class Wiring:
         elif other.incompatible:
             self._report(f"{topic}: {other.node} {has} a quality of service that does not fit: {other.incompatible}")
 
-    def _report(self, text: str) -> None:
+    def _report(self, text: str, tell: Callable[[str], None] | None = None) -> None:
         if text not in self._reported:
             self._reported.add(text)
-            self._port.warn(text)
+            (tell or self._port.warn)(text)

@@ -35,6 +35,7 @@ def courier(tmp_path: Path) -> World:
 
 
 def events(world: World) -> list[dict[str, Any]]:
+    world.controller._log.flush()
     return [json.loads(line) for line in world.log.read_text().splitlines()]
 
 

@@ -57,6 +57,7 @@ class Passage:
         return [json.loads(text) for what, text in self.port.told if what == "blocked"]
 
     def directions(self) -> list[tuple[str, str]]:
+        self.layer._log.flush()
         lines = [json.loads(line) for line in self.log.read_text().splitlines()]
         return [(each["direction"], each["event"]) for each in lines]
 
