@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import os
+import signal
 import subprocess
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -21,6 +23,8 @@ if TYPE_CHECKING:
 HERE = Path(__file__).parent
 #: Transitions of managed nodes, as lifecycle_msgs numbers them.
 CONFIGURE, CLEAN_UP, ACTIVATE, DEACTIVATE = 1, 2, 3, 4
+#: How often components come and go; a multi-threaded container without their guard does not outlive ten times.
+ROUNDS = os.environ.get("ROBOSC_ROUNDS", "20")
 HALT = ("outside", "message_halt.c_trigger")
 
 
@@ -89,10 +93,14 @@ def last(log: Path) -> tuple[str, str]:
     return entry["direction"], entry["event"]
 
 
-def test_two_components_in_one_container(graph: Graph) -> None:
+def start_container(graph: Graph, program: str) -> subprocess.Popen[bytes]:
     prefixes = map(Path, graph.processes.environment["AMENT_PREFIX_PATH"].split(":"))
-    containers = [each / "lib/rclcpp_components/component_container" for each in prefixes]
-    container = graph.processes.start("container", [next(each for each in containers if each.exists())])
+    containers = [prefix / "lib/rclcpp_components" / program for prefix in prefixes]
+    return graph.processes.start(program, [next(path for path in containers if path.exists())])
+
+
+def test_two_components_in_one_container(graph: Graph) -> None:
+    container = start_container(graph, "component_container")
     logs = {side: graph.folder / f"{side}.jsonl" for side in ("left", "right")}
     loaded = {side: graph.manage("load", "scout_controller", f"/{side}", log) for side, log in logs.items()}
     assert [each["error"] for each in loaded.values()] == ["", ""]
@@ -106,6 +114,26 @@ def test_two_components_in_one_container(graph: Graph) -> None:
     graph.processes.wait_until(lambda: logs["right"].stat().st_size > size, "the other component goes on")
     assert graph.processes.stop(container) == 0
     assert last(logs["right"]) == HALT
+
+
+@pytest.mark.parametrize("program", ["component_container", "component_container_mt"])
+def test_components_come_and_go_under_load(graph: Graph, program: str) -> None:
+    container = start_container(graph, program)
+    churning = [graph.workspace.ros.python, HERE / "churn_ros2.py", ROUNDS]
+    done = subprocess.run(
+        churning, env=graph.processes.environment, capture_output=True, text=True, check=False, timeout=3600
+    )
+    assert (done.returncode, done.stdout) == (0, str(3 * int(ROUNDS))), done.stderr + graph.processes.logs()
+    assert container.poll() is None
+    assert graph.processes.stop(container) == 0
+
+
+def test_a_hangup_stops_the_robot(graph: Graph) -> None:
+    node, log = graph.start("scout_controller", "hung_up")
+    graph.processes.wait_until(lambda: log.exists() and log.stat().st_size > 0, "events happen")
+    os.kill(node.pid, signal.SIGHUP)
+    assert node.wait(30) == 0
+    assert last(log) == HALT
 
 
 def test_a_managed_node_acts_while_it_is_active(graph: Graph) -> None:

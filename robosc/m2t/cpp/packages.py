@@ -63,7 +63,7 @@ def package(
         "service_client.hpp": node.services,
         "watchdog.hpp": node.subscriptions,
     }
-    headers = ["data.hpp", "fields.hpp", "json.hpp", "parameters.hpp", *target.headers]
+    headers = ["data.hpp", "event_log.hpp", "fields.hpp", "json.hpp", "parameters.hpp", *target.headers]
     headers += [header for header, is_used in optional.items() if is_used]
     files = {
         "package.xml": "package.xml.j2",

@@ -23,7 +23,7 @@ class Target:
 
     package: str
     launch_file: str
-    #: Headers of its own, each with what of a `LayerNode` it is there for.
+    #: Headers of its own, each with what of a `LayerNode` it is there for; empty: always.
     headers: Mapping[str, str]
     #: Where templates lie that it shares with others, beside those of all layers.
     shared: tuple[str, ...] = ()
@@ -42,11 +42,12 @@ def package(
         "blocked.hpp": layer.passages,
         "data.hpp": True,
         "definition.hpp": configuration.publish_state_information,
+        "event_log.hpp": True,
         "json.hpp": True,
         "message_relay.hpp": layer.inward or layer.outward,
         "parameters.hpp": True,
         "service_proxy.hpp": layer.services,
-        **{header: getattr(layer, what) for header, what in target.headers.items()},
+        **{header: not what or getattr(layer, what) for header, what in target.headers.items()},
     }
     headers = sorted(header for header, is_used in used.items() if is_used)
     files = {

@@ -30,7 +30,7 @@ def generate(models: Models, configuration: Configuration, tests: TraceTest | No
     graph = models.rosgraph
     assert graph is not None
     node = Node(graph, configuration.on_shutdown)
-    own = ("shutdown_hook.hpp", "wiring.hpp")
+    own = ("callback_guard.hpp", "hangup.hpp", "shutdown_hook.hpp", "wiring.hpp")
     more = _FILES | (_TEST_FILES if tests else {})
     target = Target("robosc.m2t.ros2", ".launch.py", own, more, ("robosc.m2t.rclcpp",))
     messages = message_packages(node, configuration)

@@ -21,7 +21,13 @@ __all__ = ["generate", "preconditions"]
 _TARGET = Target(
     "robosc.m2t.ros2_layer",
     ".launch.py",
-    {"clock.hpp": "actions", "countdown.hpp": "services", "service_client.hpp": "services"},
+    {
+        "callback_guard.hpp": "",
+        "clock.hpp": "actions",
+        "countdown.hpp": "services",
+        "hangup.hpp": "",
+        "service_client.hpp": "services",
+    },
     ("robosc.m2t.rclcpp",),
 )
 #: The services and topics of an action (they are re-mapped, the action's own name is not).

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "courier_controller/data.hpp"
+#include "courier_controller/event_log.hpp"
 #include "courier_controller/fields.hpp"
 #include "courier_controller/json.hpp"
 

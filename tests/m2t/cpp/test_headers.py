@@ -17,19 +17,36 @@ if TYPE_CHECKING:
 WARNINGS = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror"]
 
 
+def run(compiler: str, source: str, sanitizers: str, files: dict[str, str], folder: Path) -> tuple[int, str, str]:
+    """Builds a program with the headers of a package, runs it in a folder; how it ends and what it prints."""
+    for path, text in files.items():
+        if path.startswith("include/"):
+            (folder / path).parent.mkdir(parents=True, exist_ok=True)
+            (folder / path).write_text(text, encoding="utf-8")
+    program = folder / "program"
+    options = ["-std=c++17", "-g", *WARNINGS, f"-fsanitize={sanitizers}", "-pthread", f"-I{folder / 'include'}"]
+    subprocess.run([compiler, *options, Path(__file__).parent / source, "-o", program], check=True)
+    # The program's addresses stay where ThreadSanitizer expects them.
+    command = ["setarch", "--addr-no-randomize", program, folder]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=300)
+    return done.returncode, done.stdout, done.stderr
+
+
 @pytest.mark.parametrize("compiler", ["g++", "clang++"])
 def test_numbers_arrays_fields_and_json(
     compiler: str, courier: robosc.Models, settings: Configuration, tmp_path: Path
 ) -> None:
     if shutil.which(compiler) is None:
         pytest.skip(f"no {compiler}")
-    for path, text in robosc.generate("ros1", courier, settings).items():
-        if path.startswith("include/"):
-            (tmp_path / path).parent.mkdir(parents=True, exist_ok=True)
-            (tmp_path / path).write_text(text, encoding="utf-8")
-    program = tmp_path / "headers"
-    source = Path(__file__).parent / "headers.cpp"
-    options = ["-std=c++17", *WARNINGS, "-fsanitize=undefined", f"-I{tmp_path / 'include'}"]
-    subprocess.run([compiler, *options, source, "-o", program], check=True)
-    done = subprocess.run([program], capture_output=True, text=True, check=False)
-    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+    files = robosc.generate("ros1", courier, settings)
+    assert run(compiler, "headers.cpp", "undefined", files, tmp_path) == (0, "", "")
+
+
+@pytest.mark.parametrize("sanitizers", ["address,undefined", "thread"])
+def test_what_threads_and_signals_touch(
+    sanitizers: str, courier: robosc.Models, settings: Configuration, tmp_path: Path
+) -> None:
+    if shutil.which("g++") is None:
+        pytest.skip("no g++")
+    files = robosc.generate("ros2", courier, settings)
+    assert run("g++", "threads.cpp", sanitizers, files, tmp_path) == (0, "", "")

@@ -172,7 +172,8 @@ def test_leaves_out_what_is_not_asked_for(usher: robosc.Models, tmp_path: Path) 
         assert "state_report_" not in silent["src/usher_layer_node.cpp"]
         assert "Threads" not in robosc.generate(target, models_of(ear))["CMakeLists.txt"]
         headers = {path for path in robosc.generate(target, models_of(ear)) if path.startswith("include")}
-        names = {"data", "definition", "json", "message_relay", "parameters"}
+        names = {"data", "definition", "event_log", "json", "message_relay", "parameters"}
+        names |= {"callback_guard", "hangup"} if target == "ros2-layer" else set()
         assert headers == {f"include/ear_layer/{each}.hpp" for each in names}
 
 

@@ -108,8 +108,9 @@ def scout(under_way: Scout, request: pytest.FixtureRequest) -> Iterator[Scout]:
 
 @pytest.fixture(scope="session")
 def with_guard(controller: Controller, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Scout]:
-    """A node that stops when its sensor is silent, and for tests that end it."""
-    with scouting(controller, tmp_path_factory.mktemp("guarded") / "run", "watchdog_stops:=true") as scout:
+    """A node that stops when its sensor is silent, and for tests that end it; it waits long for a goal's acceptance."""
+    parameters = ["watchdog_stops:=true", "action_timeout_ms:=15000"]
+    with scouting(controller, tmp_path_factory.mktemp("guarded") / "run", *parameters) as scout:
         yield scout.ready()
 
 

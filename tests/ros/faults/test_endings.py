@@ -14,6 +14,9 @@ if TYPE_CHECKING:
     from tests.ros.faults.partners import Peer, Scout
 
 
+HALT = ("outside", "message_halt.c_trigger")
+
+
 def under_way(scout: Scout) -> tuple[Peer, int]:
     """Sets off: the robot drives, and a goal is under way; the server and the number of the goal."""
     scout.rest()
@@ -26,7 +29,7 @@ def under_way(scout: Scout) -> tuple[Peer, int]:
     return server, number
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_shutdown_while_driving(guarded: Scout, number: signal.Signals) -> None:
     server, goal = under_way(guarded)
     since = guarded.now()
@@ -36,7 +39,7 @@ def test_shutdown_while_driving(guarded: Scout, number: signal.Signals) -> None:
     server.wait("cancel", value=goal)
     guarded.until(lambda: guarded.speeds(since)[-1] == 0.0, "the last command is to halt")
     last = [each for each in guarded.log(since) if each["direction"] in ("out", "outside")][-1]
-    assert (last["event"], last["direction"]) == ("message_halt.c_trigger", "outside")
+    assert (last["direction"], last["event"]) == HALT
     assert last["data"] == {"value": {"linear": {"x": 0.0}}}
     assert "Traceback" not in guarded.output()
 
@@ -47,8 +50,10 @@ def test_shutdown_before_acceptance(guarded: Scout) -> None:
     heard = len(server.said)
     guarded.send("/travel_order", data=True)
     goal = server.wait("goal", heard)["goal"]
+    since = guarded.now()
     os.kill(guarded.process.pid, signal.SIGINT)
-    guarded.nothing(0.6)
+    # It waits no longer than `action_timeout_ms` for the goal's acceptance: this is decided as soon as it ends.
+    guarded.until(lambda: HALT in [(each["direction"], each["event"]) for each in guarded.log(since)], "it stops")
     server.do("decide", number=goal, accept=True)
     server.wait("cancel", heard, value=goal)
     assert guarded.process.wait(10) == 0

@@ -29,6 +29,7 @@
 #include "usher_layer/data.hpp"
 #include "usher_layer/deadline.hpp"
 #include "usher_layer/definition.hpp"
+#include "usher_layer/event_log.hpp"
 #include "usher_layer/event_queue.hpp"
 #include "usher_layer/json.hpp"
 #include "usher_layer/message_relay.hpp"
@@ -297,6 +298,7 @@ class Layer {
         break;
     }
     log_.write(seconds(), direction, usher_event_name(event));
+    if (const std::size_t lost = log_.lost(); lost > 0) ROS_WARN("the event log lost %zu events", lost);
     transitions_.push_back(event);
     // Where the period is long, many come before the next report.
     if (transitions_.size() > kTransitionsKept) transitions_.pop_front();

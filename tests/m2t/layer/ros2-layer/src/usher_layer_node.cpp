@@ -24,10 +24,13 @@
 
 #include "usher_layer/action_proxy.hpp"
 #include "usher_layer/blocked.hpp"
+#include "usher_layer/callback_guard.hpp"
 #include "usher_layer/clock.hpp"
 #include "usher_layer/countdown.hpp"
 #include "usher_layer/data.hpp"
 #include "usher_layer/definition.hpp"
+#include "usher_layer/event_log.hpp"
+#include "usher_layer/hangup.hpp"
 #include "usher_layer/json.hpp"
 #include "usher_layer/message_relay.hpp"
 #include "usher_layer/parameters.hpp"
@@ -95,19 +98,19 @@ class Layer : public rclcpp::Node {
     usher_settle(&supervisor_);
 
     message_stop_ = std::make_unique<MessageRelay<std_msgs::msg::Empty>>(
-        *this, "/stop", "~/controller/stop", rclcpp::QoS(10), rclcpp::QoS(10),
+        *this, guard_, "/stop", "~/controller/stop", rclcpp::QoS(10), rclcpp::QoS(10),
         [this](const auto& message) { return on_message_stop(message); });
     message_resume_ = std::make_unique<MessageRelay<std_msgs::msg::Empty>>(
-        *this, "/resume", "~/controller/resume", rclcpp::QoS(10).best_effort(), rclcpp::QoS(10),
+        *this, guard_, "/resume", "~/controller/resume", rclcpp::QoS(10).best_effort(), rclcpp::QoS(10),
         [this](const auto& message) { return on_message_resume(message); });
     message_battery_ = std::make_unique<MessageRelay<std_msgs::msg::Int16>>(
-        *this, "battery", "~/controller/battery", rclcpp::QoS(10), rclcpp::QoS(10),
+        *this, guard_, "battery", "~/controller/battery", rclcpp::QoS(10), rclcpp::QoS(10),
         [this](const auto& message) { return on_message_battery(message); });
     message_speed_ = std::make_unique<MessageRelay<std_msgs::msg::Float32>>(
-        *this, "~/controller/speed", "/speed", rclcpp::QoS(10).keep_last(20).best_effort(), rclcpp::QoS(20),
+        *this, guard_, "~/controller/speed", "/speed", rclcpp::QoS(10).keep_last(20).best_effort(), rclcpp::QoS(20),
         [this](const auto&) { return pass_message_speed(); });
     message_label_ = std::make_unique<MessageRelay<std_msgs::msg::String>>(
-        *this, "~/controller/label", "label", rclcpp::QoS(10), rclcpp::QoS(10),
+        *this, guard_, "~/controller/label", "label", rclcpp::QoS(10), rclcpp::QoS(10),
         [this](const auto&) { return pass_message_label(); });
     using service_light_type = std_srvs::srv::SetBool;
     ServiceProxy<service_light_type>::Handlers service_light;
@@ -116,7 +119,7 @@ class Layer : public rclcpp::Node {
     service_light.response = [this](const auto& message) { on_service_light_response(message); };
     service_light.error = [this](const std::string& why) { on_service_light_error(why); };
     service_light_ = std::make_unique<ServiceProxy<service_light_type>>(
-        *this, "~/controller/lamp/light", "/lamp/light",
+        *this, guard_, "~/controller/lamp/light", "/lamp/light",
         rclcpp::ServicesQoS().keep_last(20), service_timeout, service_light);
     using action_go_to_type = nav2_msgs::action::NavigateToPose;
     ActionProxy<action_go_to_type>::Handlers action_go_to;
@@ -129,9 +132,18 @@ class Layer : public rclcpp::Node {
       RCLCPP_WARN(get_logger(), "%s: %s", "/go_to", why.c_str());
     };
     action_go_to_ = std::make_unique<ActionProxy<action_go_to_type>>(
-        *this, "~/controller/go_to", "/go_to",
+        *this, guard_, "~/controller/go_to", "/go_to",
         rclcpp::QoS(10).keep_last(20).best_effort(), action_timeout, action_go_to);
-    timer_ = create_wall_timer(period, [this] { publish_state(); });
+    timer_ = create_wall_timer(period, guard_([this] { publish_state(); }));
+  }
+
+  Layer(const Layer&) = delete;
+  Layer& operator=(const Layer&) = delete;
+
+  // Executors may call back until the end of this.
+  ~Layer() override {
+    guard_.close();
+    withdraw(*get_node_base_interface()->get_default_callback_group());
   }
 
  private:
@@ -306,6 +318,8 @@ class Layer : public rclcpp::Node {
         break;
     }
     log_.write(seconds(), direction, usher_event_name(event));
+    if (const std::size_t lost = log_.lost(); lost > 0)
+        RCLCPP_WARN(get_logger(), "the event log lost %zu events", lost);
     transitions_.push_back(event);
     // Where the period is long, many come before the next report.
     if (transitions_.size() > kTransitionsKept) transitions_.pop_front();
@@ -377,6 +391,8 @@ class Layer : public rclcpp::Node {
   std::unique_ptr<ServiceProxy<std_srvs::srv::SetBool>> service_light_;
   std::unique_ptr<ActionProxy<nav2_msgs::action::NavigateToPose>> action_go_to_;
   rclcpp::TimerBase::SharedPtr timer_;
+  Hangup hangup_;
+  CallbackGuard guard_;
 };
 
 }  // namespace usher_layer

@@ -28,6 +28,7 @@
 #include "courier_controller/data.hpp"
 #include "courier_controller/defaults.hpp"
 #include "courier_controller/definition.hpp"
+#include "courier_controller/event_log.hpp"
 #include "courier_controller/fields.hpp"
 #include "courier_controller/interruption.hpp"
 #include "courier_controller/json.hpp"
@@ -127,18 +128,18 @@ class Controller {
 
     watchdog_stops_ = parameter<bool>(private_, "watchdog_stops", false);
     const auto hints = ros::TransportHints().tcpNoDelay();
-    scan_watchdog_.emplace(node_, parameter(private_, "watchdog_ms/scan", 0, 0, kDay),
-        [this](const Watchdog& watchdog) { on_silence("/scan", watchdog); });
+    scan_watchdog_.emplace(parameter(private_, "watchdog_ms/scan", 0, 0, kDay),
+        [this](const Watchdog& watchdog) { on_silence("/scan", watchdog); }, node_);
     scan_subscription_ = node_.subscribe("/scan", 10, &Controller::on_scan, this, hints);
     scan_watchdog_->start();
     wiring_.listens_to<sensor_msgs::LaserScan>("/scan");
-    count_watchdog_.emplace(node_, parameter(private_, "watchdog_ms/count", 0, 0, kDay),
-        [this](const Watchdog& watchdog) { on_silence("count", watchdog); });
+    count_watchdog_.emplace(parameter(private_, "watchdog_ms/count", 0, 0, kDay),
+        [this](const Watchdog& watchdog) { on_silence("count", watchdog); }, node_);
     count_subscription_ = node_.subscribe("count", 10, &Controller::on_count, this, hints);
     count_watchdog_->start();
     wiring_.listens_to<std_msgs::Int16>("count");
-    word_watchdog_.emplace(node_, parameter(private_, "watchdog_ms/word", 0, 0, kDay),
-        [this](const Watchdog& watchdog) { on_silence("word", watchdog); });
+    word_watchdog_.emplace(parameter(private_, "watchdog_ms/word", 0, 0, kDay),
+        [this](const Watchdog& watchdog) { on_silence("word", watchdog); }, node_);
     word_subscription_ = node_.subscribe("word", 10, &Controller::on_word, this, hints);
     word_watchdog_->start();
     wiring_.listens_to<std_msgs::String>("word");
@@ -365,6 +366,7 @@ class Controller {
         break;
     }
     log_.write(seconds(), direction, courier_event_name(event));
+    if (const std::size_t lost = log_.lost(); lost > 0) ROS_WARN("the event log lost %zu events", lost);
     transitions_.push_back(event);
     // Where simulated time stands still, nobody is told for long.
     if (transitions_.size() > kTransitionsKept) transitions_.pop_front();

@@ -29,6 +29,7 @@
 #include "porter_controller/data.hpp"
 #include "porter_controller/defaults.hpp"
 #include "porter_controller/definition.hpp"
+#include "porter_controller/event_log.hpp"
 #include "porter_controller/event_queue.hpp"
 #include "porter_controller/fields.hpp"
 #include "porter_controller/interruption.hpp"
@@ -102,13 +103,13 @@ class Controller {
 
     watchdog_stops_ = parameter<bool>(private_, "watchdog_stops", true);
     const auto hints = ros::TransportHints().tcpNoDelay();
-    order_watchdog_.emplace(node_, parameter(private_, "watchdog_ms/order", 0, 0, kDay),
-        [this](const Watchdog& watchdog) { on_silence("order", watchdog); });
+    order_watchdog_.emplace(parameter(private_, "watchdog_ms/order", 0, 0, kDay),
+        [this](const Watchdog& watchdog) { on_silence("order", watchdog); }, node_);
     order_subscription_ = node_.subscribe("order", 10, &Controller::on_order, this, hints);
     order_watchdog_->start();
     wiring_.listens_to<std_msgs::Float32>("order");
-    stop_watchdog_.emplace(node_, parameter(private_, "watchdog_ms/stop", 400, 0, kDay),
-        [this](const Watchdog& watchdog) { on_silence("/stop", watchdog); });
+    stop_watchdog_.emplace(parameter(private_, "watchdog_ms/stop", 400, 0, kDay),
+        [this](const Watchdog& watchdog) { on_silence("/stop", watchdog); }, node_);
     stop_subscription_ = node_.subscribe("/stop", 10, &Controller::on_stop, this, hints);
     stop_watchdog_->start();
     wiring_.listens_to<std_msgs::Empty>("/stop");
@@ -347,6 +348,7 @@ class Controller {
         break;
     }
     log_.write(seconds(), direction, porter_event_name(event));
+    if (const std::size_t lost = log_.lost(); lost > 0) ROS_WARN("the event log lost %zu events", lost);
     transitions_.push_back(event);
     // Where simulated time stands still, nobody is told for long.
     if (transitions_.size() > kTransitionsKept) transitions_.pop_front();

@@ -28,11 +28,14 @@
 #include <std_srvs/srv/trigger.hpp>
 
 #include "managed_porter/action_client.hpp"
+#include "managed_porter/callback_guard.hpp"
 #include "managed_porter/countdown.hpp"
 #include "managed_porter/data.hpp"
 #include "managed_porter/defaults.hpp"
 #include "managed_porter/definition.hpp"
+#include "managed_porter/event_log.hpp"
 #include "managed_porter/fields.hpp"
+#include "managed_porter/hangup.hpp"
 #include "managed_porter/json.hpp"
 #include "managed_porter/parameters.hpp"
 #include "managed_porter/service_client.hpp"
@@ -57,12 +60,23 @@ class Controller : public rclcpp_lifecycle::LifecycleNode {
   explicit Controller(const rclcpp::NodeOptions& options = rclcpp::NodeOptions())
       : rclcpp_lifecycle::LifecycleNode("managed_porter", options) {
     shutdown_hook_.emplace(*this, [this] {
+      const auto lock = guard_.hold();
       if (active_) {
         stop();
       } else if (wiring_) {
         wiring_->stop();
       }
     }, [this] { return waits(); });
+  }
+
+  Controller(const Controller&) = delete;
+  Controller& operator=(const Controller&) = delete;
+
+  // Executors may call back until the end of this.
+  ~Controller() override {
+    shutdown_hook_.reset();
+    guard_.close();
+    withdraw(*get_node_base_interface()->get_default_callback_group());
   }
 
   using CallbackReturn = rclcpp_lifecycle::node_interfaces::LifecycleNodeInterface::CallbackReturn;
@@ -95,6 +109,13 @@ class Controller : public rclcpp_lifecycle::LifecycleNode {
       RCLCPP_ERROR(get_logger(), "not cleaned up: a goal that is to be cancelled is not accepted yet");
       return CallbackReturn::FAILURE;
     }
+    release();
+    return CallbackReturn::SUCCESS;
+  }
+
+  CallbackReturn on_error(const rclcpp_lifecycle::State&) override {
+    if (active_) deactivate();
+    if (waits()) return CallbackReturn::FAILURE;
     release();
     return CallbackReturn::SUCCESS;
   }
@@ -327,6 +348,8 @@ class Controller : public rclcpp_lifecycle::LifecycleNode {
         break;
     }
     log_.write(seconds(), direction, porter_event_name(event));
+    if (const std::size_t lost = log_.lost(); lost > 0)
+        RCLCPP_WARN(get_logger(), "the event log lost %zu events", lost);
     transitions_.push_back(event);
     // Where simulated time stands still, nobody is told for long.
     if (transitions_.size() > kTransitionsKept) transitions_.pop_front();
@@ -437,7 +460,7 @@ class Controller : public rclcpp_lifecycle::LifecycleNode {
     porter_init(&supervisor_, &settings, &hooks);
     data_ = decltype(data_)();
 
-    wiring_.emplace(*this);
+    wiring_.emplace(*this, guard_);
     rclcpp::PublisherOptions sending;
     sending.qos_overriding_options = rclcpp::QosOverridingOptions::with_default_policies();
     sending.use_default_callbacks = false;  // The wiring says what does not fit.
@@ -445,23 +468,23 @@ class Controller : public rclcpp_lifecycle::LifecycleNode {
     wiring_->command("cmd_vel", "geometry_msgs/msg/Twist", cmd_vel_publisher_->get_actual_qos(),
         cmd_vel_publisher_->get_gid());
 
-    grip_client_.emplace(*this, "/gripper/grip", rclcpp::ServicesQoS(), service_timeout,
+    grip_client_.emplace(*this, guard_, "/gripper/grip", rclcpp::ServicesQoS(), service_timeout,
         ServiceClient<std_srvs::srv::SetBool>::Handlers{
         [this](const std_srvs::srv::SetBool::Response& message) { on_grip_response(message); },
         [this](const std::string& why) { on_grip_error(why); }});
-    grip_retry_.emplace(*this, retry, [this] { wake(); });
-    release_client_.emplace(*this, "release", rclcpp::ServicesQoS(), service_timeout,
+    grip_retry_.emplace(*this, guard_, retry, [this] { wake(); });
+    release_client_.emplace(*this, guard_, "release", rclcpp::ServicesQoS(), service_timeout,
         ServiceClient<std_srvs::srv::Trigger>::Handlers{
         [this](const std_srvs::srv::Trigger::Response& message) { on_release_response(message); },
         [this](const std::string& why) { on_release_error(why); }});
-    release_retry_.emplace(*this, retry, [this] { wake(); });
-    travel_client_.emplace(*this, "/travel", rclcpp::QoS(10), action_timeout,
+    release_retry_.emplace(*this, guard_, retry, [this] { wake(); });
+    travel_client_.emplace(*this, guard_, "/travel", rclcpp::QoS(10), action_timeout,
         ActionClient<nav2_msgs::action::NavigateToPose>::Handlers{
         [this](const nav2_msgs::action::NavigateToPose::Feedback& message) { on_travel_feedback(message); },
         [this](const nav2_msgs::action::NavigateToPose::Result& message) { on_travel_response(message); },
         [this](const std::string& why) { on_travel_error(why); },
         [this] { wake(); }});
-    travel_retry_.emplace(*this, retry, [this] { wake(); });
+    travel_retry_.emplace(*this, guard_, retry, [this] { wake(); });
 
     rclcpp::PublisherOptions reporting;
     reporting.use_intra_process_comm = rclcpp::IntraProcessSetting::Disable;
@@ -477,22 +500,22 @@ class Controller : public rclcpp_lifecycle::LifecycleNode {
     rclcpp::SubscriptionOptions hearing;
     hearing.qos_overriding_options = rclcpp::QosOverridingOptions::with_default_policies();
     hearing.use_default_callbacks = false;
-    order_watchdog_.emplace(*this,
-        parameter(*this, "watchdog_ms.order", 0, 0, 24 * 3600 * 1000, "Longest silence of the topic; 0: any."),
-        [this](const Watchdog& watchdog) { on_silence("order", watchdog); });
+    order_watchdog_.emplace(parameter(*this, "watchdog_ms.order", 0, 0, 24 * 3600 * 1000,
+        "Longest silence of the topic; 0: any."), [this](const Watchdog& watchdog) { on_silence("order", watchdog); },
+        *this, guard_);
     order_subscription_ = create_subscription<std_msgs::msg::Float32>(
         "order", rclcpp::QoS(10),
-        [this](const std_msgs::msg::Float32& message) { on_order(message); }, hearing);
+        guard_([this](const std_msgs::msg::Float32& message) { on_order(message); }), hearing);
     wiring_->hear("order", "std_msgs/msg/Float32", order_subscription_->get_actual_qos());
-    stop_watchdog_.emplace(*this,
-        parameter(*this, "watchdog_ms.stop", 0, 0, 24 * 3600 * 1000, "Longest silence of the topic; 0: any."),
-        [this](const Watchdog& watchdog) { on_silence("/stop", watchdog); });
+    stop_watchdog_.emplace(parameter(*this, "watchdog_ms.stop", 0, 0, 24 * 3600 * 1000,
+        "Longest silence of the topic; 0: any."), [this](const Watchdog& watchdog) { on_silence("/stop", watchdog); },
+        *this, guard_);
     stop_subscription_ = create_subscription<std_msgs::msg::Empty>(
         "/stop", rclcpp::QoS(10),
-        [this](const std_msgs::msg::Empty& message) { on_stop(message); }, hearing);
+        guard_([this](const std_msgs::msg::Empty& message) { on_stop(message); }), hearing);
     wiring_->hear("/stop", "std_msgs/msg/Empty", stop_subscription_->get_actual_qos());
 
-    const auto tick = [this] { this->tick(); };
+    const auto tick = guard_([this] { this->tick(); });
     if (get_parameter("use_sim_time").as_bool()) {
       timer_ = rclcpp::create_timer(this, get_clock(), period, tick);
     } else {
@@ -515,6 +538,7 @@ class Controller : public rclcpp_lifecycle::LifecycleNode {
 
   // Connected to nothing, with nothing kept.
   void release() {
+    guard_.close();
     timer_.reset();
     order_subscription_.reset();
     order_watchdog_.reset();
@@ -581,7 +605,9 @@ class Controller : public rclcpp_lifecycle::LifecycleNode {
   std::optional<Wiring> wiring_;
   rclcpp::TimerBase::SharedPtr timer_;
   bool active_ = false;
-  std::optional<ShutdownHook> shutdown_hook_;  // The last member: it goes first.
+  Hangup hangup_;
+  CallbackGuard guard_;
+  std::optional<ShutdownHook> shutdown_hook_;
 };
 
 }  // namespace managed_porter

@@ -25,11 +25,14 @@
 #include <std_srvs/srv/trigger.hpp>
 
 #include "porter_controller/action_client.hpp"
+#include "porter_controller/callback_guard.hpp"
 #include "porter_controller/countdown.hpp"
 #include "porter_controller/data.hpp"
 #include "porter_controller/defaults.hpp"
 #include "porter_controller/definition.hpp"
+#include "porter_controller/event_log.hpp"
 #include "porter_controller/fields.hpp"
+#include "porter_controller/hangup.hpp"
 #include "porter_controller/json.hpp"
 #include "porter_controller/parameters.hpp"
 #include "porter_controller/service_client.hpp"
@@ -56,8 +59,19 @@ class Controller : public rclcpp::Node {
     configure();
     activate();
     shutdown_hook_.emplace(*this, [this] {
+      const auto lock = guard_.hold();
       if (active_) stop();
     }, [this] { return waits(); });
+  }
+
+  Controller(const Controller&) = delete;
+  Controller& operator=(const Controller&) = delete;
+
+  // Executors may call back until the end of this.
+  ~Controller() override {
+    shutdown_hook_.reset();
+    guard_.close();
+    withdraw(*get_node_base_interface()->get_default_callback_group());
   }
 
  private:
@@ -282,6 +296,8 @@ class Controller : public rclcpp::Node {
         break;
     }
     log_.write(seconds(), direction, porter_event_name(event));
+    if (const std::size_t lost = log_.lost(); lost > 0)
+        RCLCPP_WARN(get_logger(), "the event log lost %zu events", lost);
     transitions_.push_back(event);
     // Where simulated time stands still, nobody is told for long.
     if (transitions_.size() > kTransitionsKept) transitions_.pop_front();
@@ -391,7 +407,7 @@ class Controller : public rclcpp::Node {
     };
     porter_init(&supervisor_, &settings, &hooks);
 
-    wiring_.emplace(*this);
+    wiring_.emplace(*this, guard_);
     rclcpp::PublisherOptions sending;
     sending.qos_overriding_options = rclcpp::QosOverridingOptions::with_default_policies();
     sending.use_default_callbacks = false;  // The wiring says what does not fit.
@@ -399,23 +415,23 @@ class Controller : public rclcpp::Node {
     wiring_->command("cmd_vel", "geometry_msgs/msg/Twist", cmd_vel_publisher_->get_actual_qos(),
         cmd_vel_publisher_->get_gid());
 
-    grip_client_.emplace(*this, "/gripper/grip", rclcpp::ServicesQoS(), service_timeout,
+    grip_client_.emplace(*this, guard_, "/gripper/grip", rclcpp::ServicesQoS(), service_timeout,
         ServiceClient<std_srvs::srv::SetBool>::Handlers{
         [this](const std_srvs::srv::SetBool::Response& message) { on_grip_response(message); },
         [this](const std::string& why) { on_grip_error(why); }});
-    grip_retry_.emplace(*this, retry, [this] { wake(); });
-    release_client_.emplace(*this, "release", rclcpp::ServicesQoS(), service_timeout,
+    grip_retry_.emplace(*this, guard_, retry, [this] { wake(); });
+    release_client_.emplace(*this, guard_, "release", rclcpp::ServicesQoS(), service_timeout,
         ServiceClient<std_srvs::srv::Trigger>::Handlers{
         [this](const std_srvs::srv::Trigger::Response& message) { on_release_response(message); },
         [this](const std::string& why) { on_release_error(why); }});
-    release_retry_.emplace(*this, retry, [this] { wake(); });
-    travel_client_.emplace(*this, "/travel", rclcpp::QoS(10), action_timeout,
+    release_retry_.emplace(*this, guard_, retry, [this] { wake(); });
+    travel_client_.emplace(*this, guard_, "/travel", rclcpp::QoS(10), action_timeout,
         ActionClient<nav2_msgs::action::NavigateToPose>::Handlers{
         [this](const nav2_msgs::action::NavigateToPose::Feedback& message) { on_travel_feedback(message); },
         [this](const nav2_msgs::action::NavigateToPose::Result& message) { on_travel_response(message); },
         [this](const std::string& why) { on_travel_error(why); },
         [this] { wake(); }});
-    travel_retry_.emplace(*this, retry, [this] { wake(); });
+    travel_retry_.emplace(*this, guard_, retry, [this] { wake(); });
 
     rclcpp::PublisherOptions reporting;
     reporting.use_intra_process_comm = rclcpp::IntraProcessSetting::Disable;
@@ -431,22 +447,22 @@ class Controller : public rclcpp::Node {
     rclcpp::SubscriptionOptions hearing;
     hearing.qos_overriding_options = rclcpp::QosOverridingOptions::with_default_policies();
     hearing.use_default_callbacks = false;
-    order_watchdog_.emplace(*this,
-        parameter(*this, "watchdog_ms.order", 0, 0, 24 * 3600 * 1000, "Longest silence of the topic; 0: any."),
-        [this](const Watchdog& watchdog) { on_silence("order", watchdog); });
+    order_watchdog_.emplace(parameter(*this, "watchdog_ms.order", 0, 0, 24 * 3600 * 1000,
+        "Longest silence of the topic; 0: any."), [this](const Watchdog& watchdog) { on_silence("order", watchdog); },
+        *this, guard_);
     order_subscription_ = create_subscription<std_msgs::msg::Float32>(
         "order", rclcpp::QoS(10),
-        [this](const std_msgs::msg::Float32& message) { on_order(message); }, hearing);
+        guard_([this](const std_msgs::msg::Float32& message) { on_order(message); }), hearing);
     wiring_->hear("order", "std_msgs/msg/Float32", order_subscription_->get_actual_qos());
-    stop_watchdog_.emplace(*this,
-        parameter(*this, "watchdog_ms.stop", 400, 0, 24 * 3600 * 1000, "Longest silence of the topic; 0: any."),
-        [this](const Watchdog& watchdog) { on_silence("/stop", watchdog); });
+    stop_watchdog_.emplace(parameter(*this, "watchdog_ms.stop", 400, 0, 24 * 3600 * 1000,
+        "Longest silence of the topic; 0: any."), [this](const Watchdog& watchdog) { on_silence("/stop", watchdog); },
+        *this, guard_);
     stop_subscription_ = create_subscription<std_msgs::msg::Empty>(
         "/stop", rclcpp::QoS(10),
-        [this](const std_msgs::msg::Empty& message) { on_stop(message); }, hearing);
+        guard_([this](const std_msgs::msg::Empty& message) { on_stop(message); }), hearing);
     wiring_->hear("/stop", "std_msgs/msg/Empty", stop_subscription_->get_actual_qos());
 
-    const auto tick = [this] { this->tick(); };
+    const auto tick = guard_([this] { this->tick(); });
     if (get_parameter("use_sim_time").as_bool()) {
       timer_ = rclcpp::create_timer(this, get_clock(), period, tick);
     } else {
@@ -503,7 +519,9 @@ class Controller : public rclcpp::Node {
   std::optional<Wiring> wiring_;
   rclcpp::TimerBase::SharedPtr timer_;
   bool active_ = false;
-  std::optional<ShutdownHook> shutdown_hook_;  // The last member: it goes first.
+  Hangup hangup_;
+  CallbackGuard guard_;
+  std::optional<ShutdownHook> shutdown_hook_;
 };
 
 }  // namespace porter_controller

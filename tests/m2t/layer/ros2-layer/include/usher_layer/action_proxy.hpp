@@ -6,6 +6,8 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
+#include <deque>
+#include <exception>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -16,6 +18,7 @@
 #include <action_msgs/msg/goal_status.hpp>
 #include <rclcpp/rclcpp.hpp>
 
+#include "usher_layer/callback_guard.hpp"
 #include "usher_layer/clock.hpp"
 
 namespace usher_layer {
@@ -40,9 +43,11 @@ class ActionProxy {
   };
 
   /// `quality`: of the feedback that the robot sends.
-  ActionProxy(rclcpp::Node& node, const std::string& controller_side, const std::string& robot_side,
-              const rclcpp::QoS& quality, std::chrono::milliseconds timeout, Handlers handlers)
-      : clock_(waiting_clock(node)),
+  ActionProxy(rclcpp::Node& node, const CallbackGuard& guard, const std::string& controller_side,
+              const std::string& robot_side, const rclcpp::QoS& quality, std::chrono::milliseconds timeout,
+              Handlers handlers)
+      : guard_(guard),
+        clock_(waiting_clock(node)),
         timeout_(timeout),
         within_(" within " + std::to_string(timeout.count()) + " ms"),
         handlers_(std::move(handlers)) {
@@ -57,25 +62,26 @@ class ActionProxy {
 
     feedback_subscription_ = node.create_subscription<FeedbackMessage>(
         outside + "feedback", quality,
-        [this](std::shared_ptr<const FeedbackMessage> message) { on_feedback(*message); });
+        guard([this](std::shared_ptr<const FeedbackMessage> message) { on_feedback(*message); }));
     status_subscription_ = node.create_subscription<StatusArray>(
-        outside + "status", lasting, [this](std::shared_ptr<const StatusArray> message) { on_status(*message); });
+        outside + "status", lasting,
+        guard([this](std::shared_ptr<const StatusArray> message) { on_status(*message); }));
     goal_service_ = node.create_service<SendGoal>(
         inside + "send_goal",
-        [this](std::shared_ptr<rmw_request_id_t> caller, std::shared_ptr<typename SendGoal::Request> request) {
+        guard([this](std::shared_ptr<rmw_request_id_t> caller, std::shared_ptr<typename SendGoal::Request> request) {
           on_goal(*caller, std::move(request));
-        });
+        }));
     result_service_ = node.create_service<GetResult>(
         inside + "get_result",
-        [this](std::shared_ptr<rmw_request_id_t> caller, std::shared_ptr<typename GetResult::Request> request) {
+        guard([this](std::shared_ptr<rmw_request_id_t> caller, std::shared_ptr<typename GetResult::Request> request) {
           on_result_wanted(*caller, request->goal_id.uuid);
-        });
+        }));
     cancel_service_ = node.create_service<CancelGoal>(
         inside + "cancel_goal",
-        [this](std::shared_ptr<rmw_request_id_t> caller, std::shared_ptr<typename CancelGoal::Request> request) {
+        guard([this](std::shared_ptr<rmw_request_id_t> caller, std::shared_ptr<typename CancelGoal::Request> request) {
           on_cancel(*caller, std::move(request));
-        });
-    timer_ = rclcpp::create_timer(&node, clock_, kLook, [this] { look(); });
+        }));
+    timer_ = rclcpp::create_timer(&node, clock_, kLook, guard([this] { look(); }));
     timer_->cancel();
   }
 
@@ -111,6 +117,14 @@ class ActionProxy {
     typename GetResult::Response result;
   };
 
+  /// A request to cancel that the robot has not answered; of the controller where there is a `caller`.
+  struct Cancelling {
+    std::uint64_t number;
+    std::int64_t request;
+    std::optional<rmw_request_id_t> caller;
+    rclcpp::Time deadline;
+  };
+
   // From the controller.
 
   void on_goal(const rmw_request_id_t& caller, std::shared_ptr<typename SendGoal::Request> request) {
@@ -141,16 +155,7 @@ class ActionProxy {
 
   // The controller's own requests to cancel always pass.
   void on_cancel(const rmw_request_id_t& caller, std::shared_ptr<typename CancelGoal::Request> request) {
-    if (!cancel_client_->service_is_ready()) {
-      typename CancelGoal::Response response;
-      response.return_code = CancelGoal::Response::ERROR_REJECTED;
-      answer_cancel(caller, response);
-      return;
-    }
-    cancel_client_->async_send_request(
-        request, [this, caller](typename rclcpp::Client<CancelGoal>::SharedFuture answer) {
-          answer_cancel(caller, *answer.get());
-        });
+    if (!cancel_client_->service_is_ready() || !ask_to_cancel(request, caller)) reject_cancel(caller);
   }
 
   // From the robot.
@@ -169,11 +174,11 @@ class ActionProxy {
     goal_->deadline = clock_->now() + timeout_;
     auto request = std::make_shared<typename GetResult::Request>();
     request->goal_id.uuid = id;
-    result_client_->async_send_request(
-        request, [this, id](typename rclcpp::Client<GetResult>::SharedFuture answer) {
-          if (is_running(id)) on_result(*answer.get());
-        });
-    if (goal_->cancelled) send_cancel(id);
+    const auto asked = ask<GetResult>(*result_client_, request, [this, id](const typename GetResult::Response& response) {
+      if (is_running(id)) on_result(response);
+    });
+    if (goal_->cancelled || !asked) send_cancel(id);
+    if (!asked) fail("its result can't be asked for");
   }
 
   void on_feedback(const FeedbackMessage& message) {
@@ -211,8 +216,10 @@ class ActionProxy {
   // Waiting.
 
   void look() {
+    const rclcpp::Time now = clock_->now();
+    forget_cancels(now);
     if (!goal_) {
-      timer_->cancel();
+      if (cancels_.empty()) timer_->cancel();
       return;
     }
     if (goal_->cancelled && !goal_->sent) {
@@ -220,15 +227,12 @@ class ActionProxy {
       return;
     }
     if (!goal_->sent && goal_client_->service_is_ready()) {
-      goal_->sent = true;
       const Id id = goal_->id;
-      goal_client_->async_send_request(
-          goal_->request, [this, id](typename rclcpp::Client<SendGoal>::SharedFuture answer) {
-            on_accepted(id, *answer.get());
-          });
-      return;
+      goal_->sent = ask<SendGoal>(*goal_client_, goal_->request, [this, id](const typename SendGoal::Response& response) {
+        on_accepted(id, response);
+      }).has_value();
+      if (goal_->sent) return;
     }
-    const rclcpp::Time now = clock_->now();
     if (goal_->accepted && result_client_->service_is_ready()) goal_->deadline = now + timeout_;
     if (now < goal_->deadline) return;
     fail(goal_->accepted ? "the server is gone" : (goal_->sent ? "not accepted" : "no server") + within_);
@@ -245,8 +249,9 @@ class ActionProxy {
   void finish(const typename GetResult::Response& response) {
     const Running goal = *goal_;
     goal_.reset();
-    timer_->cancel();
     result_client_->prune_pending_requests();
+    // One that is accepted late is cancelled; after this time it is taken for lost.
+    goal_client_->prune_requests_older_than(std::chrono::system_clock::now() - std::chrono::seconds(30));
     ended_ = Ended{goal.id, response};
     for (auto& each : statuses_.status_list) {
       if (each.goal_info.goal_id.uuid == goal.id) each.status = response.status;
@@ -258,16 +263,67 @@ class ActionProxy {
   void send_cancel(const Id& id) {
     auto request = std::make_shared<typename CancelGoal::Request>();
     request->goal_info.goal_id.uuid = id;
-    cancel_client_->async_send_request(
-        request, [this](typename rclcpp::Client<CancelGoal>::SharedFuture answer) {
-          const auto response = answer.get();
-          using Answer = typename CancelGoal::Response;
-          // A goal that has ended meanwhile needs none.
-          const bool none = response->return_code == Answer::ERROR_NONE && response->goals_canceling.empty();
-          if (none || response->return_code == Answer::ERROR_REJECTED) {
-            handlers_.refused("the server refuses to cancel the goal");
+    if (!ask_to_cancel(request, std::nullopt)) handlers_.refused("the request to cancel the goal can't be sent");
+  }
+
+  bool ask_to_cancel(std::shared_ptr<typename CancelGoal::Request> request, std::optional<rmw_request_id_t> caller) {
+    const auto sent = ask<CancelGoal>(
+        *cancel_client_, request, [this, caller, number = ++cancel_number_](const typename CancelGoal::Response& response) {
+          cancels_.erase(std::remove_if(cancels_.begin(), cancels_.end(),
+                                        [number](const Cancelling& waiting) { return waiting.number == number; }),
+                         cancels_.end());
+          if (caller) {
+            answer_cancel(*caller, response);
+          } else {
+            on_cancelling(response);
           }
         });
+    if (!sent) return false;
+    cancels_.push_back({cancel_number_, *sent, caller, clock_->now() + timeout_});
+    timer_->reset();
+    return true;
+  }
+
+  void on_cancelling(const typename CancelGoal::Response& response) {
+    using Answer = typename CancelGoal::Response;
+    // A goal that has ended meanwhile needs none.
+    const bool none = response.return_code == Answer::ERROR_NONE && response.goals_canceling.empty();
+    if (none || response.return_code == Answer::ERROR_REJECTED) {
+      handlers_.refused("the server refuses to cancel the goal");
+    }
+  }
+
+  /// Nobody waits longer for what the robot does not answer.
+  void forget_cancels(const rclcpp::Time& now) {
+    while (!cancels_.empty() && cancels_.front().deadline <= now) {
+      const Cancelling late = cancels_.front();
+      cancels_.pop_front();
+      cancel_client_->remove_pending_request(late.request);
+      if (late.caller) {
+        reject_cancel(*late.caller);
+      } else {
+        handlers_.refused("the server does not answer the request to cancel the goal" + within_);
+      }
+    }
+  }
+
+  void reject_cancel(const rmw_request_id_t& caller) {
+    typename CancelGoal::Response response;
+    response.return_code = CancelGoal::Response::ERROR_REJECTED;
+    answer_cancel(caller, response);
+  }
+
+  /// Sends a request; its number for rclcpp, or nothing where it can't be sent.
+  template <typename Service, typename Answered>
+  std::optional<std::int64_t> ask(rclcpp::Client<Service>& client, std::shared_ptr<typename Service::Request> request,
+                                  Answered answered) {
+    try {
+      return client.async_send_request(request, guard_([answered](typename rclcpp::Client<Service>::SharedFuture answer) {
+        answered(*answer.get());
+      })).request_id;
+    } catch (const std::exception&) {
+      return std::nullopt;
+    }
   }
 
   bool is_running(const Id& id) const { return goal_ && goal_->id == id; }
@@ -282,6 +338,7 @@ class ActionProxy {
     cancel_service_->send_response(caller, response);
   }
 
+  const CallbackGuard& guard_;
   rclcpp::Clock::SharedPtr clock_;
   rclcpp::Duration timeout_;
   std::string within_;
@@ -299,6 +356,8 @@ class ActionProxy {
   rclcpp::TimerBase::SharedPtr timer_;
   std::optional<Running> goal_;
   std::optional<Ended> ended_;
+  std::deque<Cancelling> cancels_;  ///< The oldest first.
+  std::uint64_t cancel_number_ = 0;
   StatusArray statuses_;
 };
 

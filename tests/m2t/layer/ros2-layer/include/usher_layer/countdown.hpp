@@ -8,21 +8,24 @@
 
 #include <rclcpp/rclcpp.hpp>
 
+#include "usher_layer/callback_guard.hpp"
+
 namespace usher_layer {
 
 /// Calls a function once, some time after each start: on the steady clock, or in ROS time with `use_sim_time`.
 class Countdown {
  public:
   template <typename Node>
-  Countdown(Node& node, std::chrono::milliseconds time, std::function<void()> over) : over_(std::move(over)) {
-    const auto expire = [this] {
+  Countdown(Node& node, const CallbackGuard& guard, std::chrono::milliseconds time, std::function<void()> over)
+      : over_(std::move(over)) {
+    const auto expire = guard([this] {
       stop();
       if (began_) {
         over_();
       } else {
         start();
       }
-    };
+    });
     if (node.get_parameter("use_sim_time").as_bool()) {
       clock_ = node.get_clock();
       timer_ = rclcpp::create_timer(&node, node.get_clock(), time, expire);

@@ -12,6 +12,8 @@
 
 #include <rclcpp/rclcpp.hpp>
 
+#include "usher_layer/callback_guard.hpp"
+
 namespace usher_layer {
 
 /// Takes messages from one topic to another.
@@ -22,20 +24,25 @@ template <typename Message>
 class MessageRelay {
  public:
   /// `pass`: whether a message goes on.
-  MessageRelay(rclcpp::Node& node, const std::string& from, const std::string& to, const rclcpp::QoS& received,
-               const rclcpp::QoS& sent, std::function<bool(const Message&)> pass)
-      : node_(node), from_(from), to_(to), received_(received), sent_(sent), pass_(std::move(pass)) {
+  MessageRelay(rclcpp::Node& node, const CallbackGuard& guard, const std::string& from, const std::string& to,
+               const rclcpp::QoS& received, const rclcpp::QoS& sent, std::function<bool(const Message&)> pass)
+      : node_(node),
+        guard_(guard),
+        from_(from),
+        to_(to),
+        received_(received),
+        sent_(sent),
+        pass_(std::move(pass)),
+        // Here, since the first one of a context takes locks of it that its closing takes in another order.
+        graph_(node.get_graph_event()) {
+    graph_->set();  // for those who are there already
     publisher_ = node.create_publisher<Message>(to, sent_);
-    look_ = node.create_wall_timer(std::chrono::milliseconds(20), [this] { look(); });
+    look_ = node.create_wall_timer(std::chrono::milliseconds(20), guard([this] { look(); }));
   }
 
  private:
   void look() {
-    if (graph_ == nullptr) {
-      graph_ = node_.get_graph_event();
-    } else if (!graph_->check_and_clear()) {
-      return;
-    }
+    if (!graph_->check_and_clear()) return;
     std::vector<rclcpp::TopicEndpointInfo> publishers;
     try {
       publishers = node_.get_publishers_info_by_topic(from_);
@@ -54,20 +61,21 @@ class MessageRelay {
       sent_.durability(durability);
       publisher_ = node_.create_publisher<Message>(to_, sent_);
     }
-    const auto received = [this](std::shared_ptr<const Message> message) {
+    const auto received = guard_([this](std::shared_ptr<const Message> message) {
       if (pass_(*message)) publisher_->publish(*message);
-    };
+    });
     subscription_ = node_.create_subscription<Message>(from_, received_, received);
   }
 
   rclcpp::Node& node_;
+  const CallbackGuard& guard_;
   std::string from_;
   std::string to_;
   rclcpp::QoS received_;
   rclcpp::QoS sent_;
   std::function<bool(const Message&)> pass_;
-  bool lasting_ = false;
   rclcpp::Event::SharedPtr graph_;
+  bool lasting_ = false;
   std::shared_ptr<rclcpp::Publisher<Message>> publisher_;
   std::shared_ptr<rclcpp::Subscription<Message>> subscription_;
   rclcpp::TimerBase::SharedPtr look_;

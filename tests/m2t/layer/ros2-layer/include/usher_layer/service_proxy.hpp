@@ -11,6 +11,7 @@
 
 #include <rclcpp/rclcpp.hpp>
 
+#include "usher_layer/callback_guard.hpp"
 #include "usher_layer/service_client.hpp"
 
 namespace usher_layer {
@@ -32,10 +33,11 @@ class ServiceProxy {
   };
 
   /// `quality`: of calls of the robot's service.
-  ServiceProxy(rclcpp::Node& node, const std::string& controller_side, const std::string& robot_side,
-               const rclcpp::QoS& quality, std::chrono::milliseconds timeout, Handlers handlers)
+  ServiceProxy(rclcpp::Node& node, const CallbackGuard& guard, const std::string& controller_side,
+               const std::string& robot_side, const rclcpp::QoS& quality, std::chrono::milliseconds timeout,
+               Handlers handlers)
       : handlers_(std::move(handlers)),
-        robot_(node, robot_side, quality, timeout,
+        robot_(node, guard, robot_side, quality, timeout,
                {
                    [this](const Response& response) {
                      handlers_.response(response);
@@ -47,9 +49,9 @@ class ServiceProxy {
                    },
                }) {
     service_ = node.create_service<Type>(
-        controller_side, [this](std::shared_ptr<rmw_request_id_t> caller, std::shared_ptr<Request> request) {
+        controller_side, guard([this](std::shared_ptr<rmw_request_id_t> caller, std::shared_ptr<Request> request) {
           called(*caller, *request);
-        });
+        }));
   }
 
  private:

@@ -8,11 +8,7 @@
 #include <cstddef>
 #include <cstdio>
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <stdexcept>
 #include <string>
-#include <system_error>
 
 #include "courier_controller/data.hpp"
 
@@ -142,53 +138,6 @@ class JsonTree {
 
   std::string text_ = "{";
   std::string open_;
-};
-
-/// Where a log goes that nobody named: the folder of ROS's own logs. `node` is the node's full name, such as `/left/base`;
-/// where it was renamed, its package is told, too.
-inline std::string default_log(std::string node, const std::string& package) {
-  const auto variable = [](const char* name) {
-    const char* value = std::getenv(name);
-    return std::string(value == nullptr ? "" : value);
-  };
-  std::filesystem::path folder = variable("ROS_LOG_DIR");
-  if (folder.empty() && !variable("ROS_HOME").empty()) folder = std::filesystem::path(variable("ROS_HOME")) / "log";
-  if (folder.empty()) folder = std::filesystem::path(variable("HOME")) / ".ros" / "log";
-  std::error_code failed;  // the log itself complains
-  std::filesystem::create_directories(folder, failed);
-  node.erase(0, node.find_first_not_of('/'));
-  if (node.substr(node.rfind('/') + 1) != package) node += "/" + package;
-  std::replace(node.begin(), node.end(), '/', '.');
-  return folder / (node + "-events.jsonl");
-}
-
-/// A file that gets a line of JSON for each event; without a name, none.
-class EventLog {
- public:
-  explicit EventLog(const std::string& path = "") {
-    if (path.empty()) return;
-    file_.open(path, std::ios::app);
-    if (!file_) throw std::runtime_error("the event log " + path + " can't be written");
-  }
-
-  bool active() const { return file_.is_open(); }
-
-  /// The data that comes with the next event.
-  template <typename Value>
-  void note(const Value& value) {
-    data_ = ",\"data\":{\"value\":" + to_json(value) + '}';
-  }
-
-  void write(double time, const char* direction, const char* event) {
-    if (!active()) return;
-    file_ << "{\"time\":" << to_json(time) << ",\"direction\":\"" << direction << "\",\"event\":" << to_json(event);
-    file_ << data_ << '}' << std::endl;
-    data_.clear();
-  }
-
- private:
-  std::ofstream file_;
-  std::string data_;
 };
 
 }  // namespace courier_controller

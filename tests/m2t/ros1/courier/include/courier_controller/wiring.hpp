@@ -89,7 +89,10 @@ class Wiring {
     }
     for (const auto& [topic, type] : listened_) {
       if (!publishers[topic].empty()) published_.insert(topic);
-      if (patient && published_.count(topic) == 0) report(topic, "nobody publishes it after 5 s");
+      if (patient && published_.count(topic) == 0 && is_new(topic, "nobody publishes it after 5 s")) {
+        // It may tell what seldom happens, such as that a button was pressed.
+        ROS_INFO("%s: nobody publishes it after 5 s", topic.c_str());
+      }
       for (const std::string& other : publishers[topic]) {
         if (!asked_.emplace(topic, other).second) continue;
         const std::string found = type_at(other, topic);
@@ -124,8 +127,10 @@ class Wiring {
   }
 
   void report(const std::string& topic, const std::string& what) {
-    if (reported_.emplace(topic, what).second) ROS_WARN("%s: %s", topic.c_str(), what.c_str());
+    if (is_new(topic, what)) ROS_WARN("%s: %s", topic.c_str(), what.c_str());
   }
+
+  bool is_new(const std::string& topic, const std::string& what) { return reported_.emplace(topic, what).second; }
 
   ros::NodeHandle node_;
   Types listened_;

@@ -12,6 +12,8 @@
 
 #include <rclcpp/rclcpp.hpp>
 
+#include "courier_controller/callback_guard.hpp"
+
 namespace courier_controller {
 
 /// Calls a function once before the context closes, or when the node goes: while it can still send. The context stays
@@ -24,13 +26,13 @@ class ShutdownHook {
   template <typename Node>
   ShutdownHook(Node& node, std::function<void()> function, std::function<bool()> waits = [] { return false; })
       : function_(std::move(function)), context_(node.get_node_base_interface()->get_context()) {
-    timer_ = node.create_wall_timer(std::chrono::milliseconds(1), [this, waits = std::move(waits)] {
+    timer_ = node.create_wall_timer(std::chrono::milliseconds(1), guard_([this, waits = std::move(waits)] {
       served_ = true;
       run();
       if (waits()) return;
       timer_->cancel();
       done_.set_value();
-    });
+    }));
     timer_->cancel();
     handle_ = context_->add_pre_shutdown_callback([this] {
       const std::future<void> done = done_.get_future();
@@ -46,6 +48,7 @@ class ShutdownHook {
 
   ~ShutdownHook() {
     context_->remove_pre_shutdown_callback(handle_);
+    guard_.close();
     run();
   }
 
@@ -66,6 +69,7 @@ class ShutdownHook {
   std::atomic<bool> started_{false};
   std::atomic<bool> served_{false};
   std::promise<void> done_;
+  CallbackGuard guard_;
 };
 
 }  // namespace courier_controller

@@ -18,6 +18,7 @@
 #include <rclcpp/rclcpp.hpp>
 #include <rclcpp_action/rclcpp_action.hpp>
 
+#include "porter_controller/callback_guard.hpp"
 #include "porter_controller/countdown.hpp"
 
 namespace porter_controller {
@@ -40,24 +41,23 @@ class ActionClient {
 
   /// `timeout`: from the start of a goal to its acceptance; the server, too, may appear in this time.
   template <typename Node>
-  ActionClient(Node& node, const std::string& name, const rclcpp::QoS& quality, std::chrono::milliseconds timeout,
-               Handlers handlers)
-      : handlers_(std::move(handlers)),
+  ActionClient(Node& node, const CallbackGuard& guard, const std::string& name, const rclcpp::QoS& quality,
+               std::chrono::milliseconds timeout, Handlers handlers)
+      : guard_(guard),
+        handlers_(std::move(handlers)),
         name_(name),
         logger_(node.get_logger()),
         timeout_(timeout),
         client_(rclcpp_action::create_client<Type>(&node, name, nullptr, options(quality))),
         heard_(node.template create_subscription<FeedbackMessage>(
             name + "/_action/feedback", quality,
-            [this, alive = std::weak_ptr<char>(alive_)](const FeedbackMessage& message) {
-              if (!alive.expired()) hear(message);
-            })),
+            guard([this](const FeedbackMessage& message) { hear(message); }))),
         servers_([&node, name] { return node.get_publishers_info_by_topic(name + "/_action/status"); }),
         limit_(" within " + std::to_string(timeout.count()) + " ms"),
-        deadline_(node, timeout, [this] { give_up(); }),
-        search_(node, std::chrono::milliseconds(20), [this] { send(); }),
-        guard_(node, std::chrono::milliseconds(200), [this] { look_for_server(); }),
-        lost_(node, std::chrono::seconds(30), [this] { finish([] {}); }) {}
+        deadline_(node, guard, timeout, [this] { give_up(); }),
+        search_(node, guard, std::chrono::milliseconds(20), [this] { send(); }),
+        watch_(node, guard, std::chrono::milliseconds(200), [this] { look_for_server(); }),
+        lost_(node, guard, std::chrono::seconds(30), [this] { finish([] {}); }) {}
 
   /// A goal that did not end has to be waited for: see `busy`.
   void start(const Goal& goal) {
@@ -114,20 +114,19 @@ class ActionClient {
     }
     server_ = servers_();
     typename Client::SendGoalOptions options;
-    options.goal_response_callback = [this, alive = std::weak_ptr<char>(alive_), number = number_](const Handle& handle) {
-      if (alive.expired()) return;
+    options.goal_response_callback = guard_([this, number = number_](const Handle& handle) {
       if (number == number_) {
         answered(handle);
       } else if (handle) {
         cancel_stray(handle);
       }
-    };
+    });
     options.result_callback = mine<typename Client::WrappedResult>([this](const auto& result) { ended(result); });
     try {
       client_->async_send_goal(goal_, options);
       phase_ = Phase::asked;
       fault_ = "not accepted";
-      guard_.start();
+      watch_.start();
     } catch (const std::exception&) {
       fault_ = "the goal can't be sent";
       search_.start();
@@ -137,9 +136,9 @@ class ActionClient {
   /// A callback that only runs while the goal at hand is this client's.
   template <typename Value, typename Function>
   auto mine(Function function) {
-    return [this, function, alive = std::weak_ptr<char>(alive_), number = number_](const Value& value) {
-      if (!alive.expired() && number == number_) function(value);
-    };
+    return guard_([this, function, number = number_](const Value& value) {
+      if (number == number_) function(value);
+    });
   }
 
   void answered(const Handle& handle) {
@@ -225,7 +224,7 @@ class ActionClient {
       return;  // The context is closed: the node is at its end.
     }
     if (std::any_of(now.begin(), now.end(), is_left)) {
-      guard_.start();
+      watch_.start();
     } else {
       finish([this] { handlers_.error("the server is gone"); });
     }
@@ -240,7 +239,7 @@ class ActionClient {
     early_.clear();
     deadline_.stop();
     search_.stop();
-    guard_.stop();
+    watch_.stop();
     lost_.stop();
     if (std::exchange(matters_, false)) {
       tell();
@@ -253,7 +252,7 @@ class ActionClient {
   // What a goal comes to that was interrupted: the node has stopped the robot.
   static constexpr const char* kOwn = "cancelled by the controller itself, an error to the model";
 
-  std::shared_ptr<char> alive_ = std::make_shared<char>();
+  const CallbackGuard& guard_;
   Handlers handlers_;
   std::string name_;
   rclcpp::Logger logger_;
@@ -274,7 +273,7 @@ class ActionClient {
   std::uint64_t number_ = 0;
   Countdown deadline_;
   Countdown search_;
-  Countdown guard_;
+  Countdown watch_;
   Countdown lost_;
 };
 

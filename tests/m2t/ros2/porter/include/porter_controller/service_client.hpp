@@ -12,6 +12,7 @@
 
 #include <rclcpp/rclcpp.hpp>
 
+#include "porter_controller/callback_guard.hpp"
 #include "porter_controller/countdown.hpp"
 
 namespace porter_controller {
@@ -30,13 +31,14 @@ class ServiceClient {
 
   /// `timeout`: from a call to its answer; the server, too, may appear in this time.
   template <typename Node>
-  ServiceClient(Node& node, const std::string& name, const rclcpp::QoS& quality, std::chrono::milliseconds timeout,
-                Handlers handlers)
-      : handlers_(std::move(handlers)),
+  ServiceClient(Node& node, const CallbackGuard& guard, const std::string& name, const rclcpp::QoS& quality,
+                std::chrono::milliseconds timeout, Handlers handlers)
+      : guard_(guard),
+        handlers_(std::move(handlers)),
         client_(node.template create_client<Type>(name, quality)),
         limit_(" within " + std::to_string(timeout.count()) + " ms"),
-        deadline_(node, timeout, [this] { give_up(); }),
-        search_(node, std::chrono::milliseconds(20), [this] { send(); }) {}
+        deadline_(node, guard, timeout, [this] { give_up(); }),
+        search_(node, guard, std::chrono::milliseconds(20), [this] { send(); }) {}
 
   /// One of the handlers is called then; an answer that comes after an error is dropped.
   void call(const Request& request) {
@@ -53,12 +55,11 @@ class ServiceClient {
       return;
     }
     try {
-      const auto answered = [this, alive = std::weak_ptr<char>(alive_),
-                             number = ++calls_](typename rclcpp::Client<Type>::SharedFuture answer) {
-        if (alive.expired() || number != calls_) return;
+      const auto answered = guard_([this, number = ++calls_](typename rclcpp::Client<Type>::SharedFuture answer) {
+        if (number != calls_) return;
         deadline_.stop();
         handlers_.response(*answer.get());
-      };
+      });
       pending_ = client_->async_send_request(request_, answered).request_id;
       fault_ = "no answer";
     } catch (const std::exception&) {
@@ -74,6 +75,7 @@ class ServiceClient {
     handlers_.error(fault_ + limit_);
   }
 
+  const CallbackGuard& guard_;
   Handlers handlers_;
   typename rclcpp::Client<Type>::SharedPtr client_;
   std::string limit_;
@@ -83,7 +85,6 @@ class ServiceClient {
   std::int64_t pending_ = 0;
   Countdown deadline_;
   Countdown search_;
-  std::shared_ptr<char> alive_ = std::make_shared<char>();
 };
 
 }  // namespace porter_controller

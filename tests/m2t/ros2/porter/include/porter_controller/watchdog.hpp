@@ -15,11 +15,12 @@ namespace porter_controller {
 class Watchdog {
  public:
   /// `patience` is the longest silence in milliseconds, 0 any; `fell_silent` is called once for each longer one.
-  template <typename Node>
-  Watchdog(Node& node, int patience, std::function<void(const Watchdog&)> fell_silent)
+  /// `place`: what a countdown begins with.
+  template <typename... Place>
+  Watchdog(int patience, std::function<void(const Watchdog&)> fell_silent, Place&... place)
       : patience_(patience), fell_silent_(std::move(fell_silent)) {
     if (patience == 0) return;
-    countdown_.emplace(node, std::chrono::milliseconds(patience), [this] {
+    countdown_.emplace(place..., std::chrono::milliseconds(patience), [this] {
       silent_ = true;
       fell_silent_(*this);
     });

@@ -12,17 +12,19 @@
 
 #include <rclcpp/rclcpp.hpp>
 
+#include "porter_controller/callback_guard.hpp"
+
 namespace porter_controller {
 
 /// Looks once a second at who else is on the node's topics, and says once, by name, what keeps them from working.
 class Wiring {
  public:
   template <typename Node>
-  explicit Wiring(Node& node)
+  Wiring(Node& node, const CallbackGuard& guard)
       : logger_(node.get_logger()),
         publishers_([&node](const std::string& topic) { return node.get_publishers_info_by_topic(topic); }),
         subscriptions_([&node](const std::string& topic) { return node.get_subscriptions_info_by_topic(topic); }),
-        timer_(node.create_wall_timer(std::chrono::seconds(1), [this] { look(); })) {}
+        timer_(node.create_wall_timer(std::chrono::seconds(1), guard([this] { look(); }))) {}
 
   Wiring(const Wiring&) = delete;
   Wiring& operator=(const Wiring&) = delete;
@@ -53,7 +55,10 @@ class Wiring {
     seconds_ += 1;
     for (const Topic& each : heard_) {
       const auto others = publishers_(each.name);
-      if (others.empty() && seconds_ == 5) tell(each.name + ": nobody publishes it after 5 s");
+      if (others.empty() && seconds_ == 5) {
+        // It may tell what seldom happens, such as that a button was pressed.
+        RCLCPP_INFO(logger_, "%s: nobody publishes it after 5 s", each.name.c_str());
+      }
       for (const auto& other : others) {
         if (fits(each, other, "publishes")) meets(each, other, other.qos_profile(), each.quality, "offers");
       }

@@ -1,0 +1,80 @@
+"""Loads components into the container `/ComponentManager` and unloads them again, while messages rain on them.
+
+python3 churn_ros2.py ROUNDS
+
+In each round a controller, a managed one that is activated, and a layer come and go. Prints how often something was
+unloaded.
+"""
+
+import sys
+import threading
+
+import rclpy
+from composition_interfaces.srv import LoadNode, UnloadNode
+from lifecycle_msgs.msg import Transition
+from lifecycle_msgs.srv import ChangeState
+from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
+from std_msgs.msg import Bool, Empty, Int32
+
+PATIENCE = 60.0
+COMPONENTS = [("scout_controller", "Controller"), ("managed_porter", "Controller"), ("usher_layer", "Layer")]
+RAIN = [("/pulse", Int32), ("/light", Bool), ("/stop", Empty), ("/resume", Empty)]
+
+
+class Operator:
+    """Asks, and waits for the answer."""
+
+    def __init__(self):
+        self.node = rclpy.create_node("operator")
+        manager = "/ComponentManager/_container"
+        self.loading = self.node.create_client(LoadNode, f"{manager}/load_node")
+        self.unloading = self.node.create_client(UnloadNode, f"{manager}/unload_node")
+        self.changing = self.node.create_client(ChangeState, "/managed_porter/change_state")
+
+    def ask(self, client, request):
+        if not client.wait_for_service(PATIENCE):
+            raise TimeoutError(f"nobody offers {client.srv_name}")
+        answer = client.call_async(request)
+        rclpy.spin_until_future_complete(self.node, answer, timeout_sec=PATIENCE)
+        if not answer.done():
+            raise TimeoutError(f"{client.srv_name} does not answer")
+        return answer.result()
+
+    def load(self, package, plugin):
+        fast = ParameterValue(type=ParameterType.PARAMETER_INTEGER, integer_value=1)
+        parameters = [Parameter(name="period_ms", value=fast)]
+        request = LoadNode.Request(package_name=package, plugin_name=f"{package}::{plugin}", parameters=parameters)
+        loaded = self.ask(self.loading, request)
+        assert loaded.success, loaded.error_message
+        return loaded.unique_id
+
+    def unload(self, number):
+        unloaded = self.ask(self.unloading, UnloadNode.Request(unique_id=number))
+        assert unloaded.success, unloaded.error_message
+
+
+def rain(node, ended):
+    publishers = [(node.create_publisher(kind, topic, 10), kind()) for topic, kind in RAIN]
+    while not ended.wait(0.001):
+        for publisher, message in publishers:
+            publisher.publish(message)
+
+
+if __name__ == "__main__":
+    rclpy.init()
+    operator, ended, unloaded = Operator(), threading.Event(), 0
+    weather = threading.Thread(target=rain, args=[rclpy.create_node("weather"), ended])
+    weather.start()
+    try:
+        for _ in range(int(sys.argv[1])):
+            numbers = [operator.load(package, plugin) for package, plugin in COMPONENTS]
+            for transition in (Transition.TRANSITION_CONFIGURE, Transition.TRANSITION_ACTIVATE):
+                request = ChangeState.Request(transition=Transition(id=transition))
+                assert operator.ask(operator.changing, request).success
+            for number in numbers:
+                operator.unload(number)
+                unloaded += 1
+    finally:
+        ended.set()
+        weather.join()
+    sys.stdout.write(str(unloaded))
