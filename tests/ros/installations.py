@@ -20,11 +20,15 @@ class Ros:
     build: list[str]
 
     def built(self, workspace: Path) -> str:
-        """Builds the packages below `src` of a workspace; what the build said. Fails where the build does."""
+        """Builds the packages below `src` of a workspace; what the build said. Fails where the build does.
+
+        `CFLAGS` and `CXXFLAGS` of whoever runs this are added to.
+        """
+        flags = {name: f"{os.environ.get(name, '')} -Wconversion" for name in ("CFLAGS", "CXXFLAGS")}
         done = subprocess.run(
             self.build,
             cwd=workspace,
-            env={**self.environment, "CXXFLAGS": "-Wconversion", "CFLAGS": "-Wconversion"},
+            env={**self.environment, **flags},
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             text=True,
