@@ -108,7 +108,8 @@ class Possibility:
     `nearest` is a state where it is allowed; else where only synthesis forbids it; else only requirements; else one
     that the supervisor never lets the robot get to, where the plants allow it. None where they never do: `plants` says
     why. `beyond` is, where its requirements forbid it, the nearest state in which they would not; None where there is
-    none, whatever the supervisor does. `loosenings` are requirements without which it could happen, as for `Emptiness`.
+    none, whatever the supervisor does; then `conflict` are the requirements on it that allow it nowhere, alone or
+    together. `loosenings` are requirements without which it could happen, as for `Emptiness`.
     """
 
     event: sct.Event
@@ -116,6 +117,7 @@ class Possibility:
     plants: tuple[Note, ...] = ()
     beyond: Explanation | None = None
     loosenings: tuple[Loosening, ...] | None = ()
+    conflict: tuple[Note, ...] = ()
 
     @property
     def possible(self) -> bool:

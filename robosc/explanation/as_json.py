@@ -62,6 +62,7 @@ def _possibility(told: Possibility, at: At) -> dict[str, Any]:
         "possible": told.possible,
         "nearest": told.nearest and _explanation(told.nearest, at),
         "beyond": told.beyond and _explanation(told.beyond, at),
+        "conflict": _notes(told.conflict, at),
         "plants": _notes(told.plants, at),
         "loosenings": _loosenings(told.loosenings, at),
     }

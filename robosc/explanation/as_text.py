@@ -145,8 +145,11 @@ class Teller:
             yield from ["", f"The supervisor lets the robot get to no state where they allow it. {_ELSE} {after}:"]
             yield from self._state(told.beyond.situation)
             yield from self._refused(told.beyond.refusal)
-        elif nearest.by is Blocked.REQUIREMENT and nearest.situation.reach is Reach.SUPERVISED:
-            yield from ["", "In no state that the robot could ever get to they allow it."]
+        elif told.conflict:
+            all_of = "this allows it:" if len(told.conflict) == 1 else "all of these allow it:"
+            yield from self._section(
+                f"In no state that the robot could ever get to {all_of}", self._notes(told.conflict)
+            )
         yield from self._loosened(told.loosenings)
 
     def _nearest(self, nearest: Explanation) -> Iterator[str]:

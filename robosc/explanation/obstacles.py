@@ -12,7 +12,7 @@ from robosc.metamodel import sct
 from robosc.supervision.wording import in_words, listed, name, what_is, words
 from robosc.synthesis.decoding import pick, text, value
 from robosc.synthesis.encoding import referenced
-from robosc.synthesis.fixpoint import reachable
+from robosc.synthesis.explanation import forbidden_from
 from robosc.synthesis.paths import Path, trace
 
 if TYPE_CHECKING:
@@ -172,13 +172,9 @@ class Obstacles:
 
 def blamed(space: Space, end: Codes) -> list[Note]:
     """The requirements that forbid something which the plants would do from a state on."""
-    diagrams = space.encoding.diagrams
-    onwards = reachable(diagrams, [step for _, step in space.moves], space.encoding.state(end), diagrams.true)
     return [
-        Note(requirement, requirement.text or "a requirement", (f"forbids the {words(event)}",))
-        for event, relation in space.relations.items()
-        for requirement, asked in relation.asked.items()
-        if (onwards & relation.enabled & ~asked).satisfiable()
+        Note(each, each.text or "a requirement", (f"forbids the {words(each.event)}",))
+        for each in forbidden_from(space.encoding, space.moves, space.relations.values(), end)
     ]
 
 

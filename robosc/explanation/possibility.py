@@ -9,6 +9,7 @@ from robosc.explanation.answers import Note, Possibility
 from robosc.explanation.explaining import explain_after, explain_beyond
 from robosc.explanation.loosening import loosenings
 from robosc.supervision.wording import name, words
+from robosc.synthesis.observations import forbidding
 from robosc.synthesis.paths import shortest_path
 
 if TYPE_CHECKING:
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from robosc.explanation.space import Space
     from robosc.metamodel import sct
     from robosc.synthesis.bdd import Diagram
+    from robosc.synthesis.relation import EventRelation
 
 
 def possibility(space: Space, event: sct.Event) -> Possibility:
@@ -33,12 +35,20 @@ def possibility(space: Space, event: sct.Event) -> Possibility:
             nearest = explain_after(space, event, way)
             if nearest.allowed:
                 return Possibility(event, nearest)
-            beyond = _beyond(space, event, relation.requirement) if nearest.by is Blocked.REQUIREMENT else None
-            return Possibility(event, nearest, (), beyond, _loosenings(space, event))
+            required = nearest.by is Blocked.REQUIREMENT
+            beyond = _beyond(space, event, relation.requirement) if required else None
+            conflict = _conflict(space, relation) if required and beyond is None else ()
+            return Possibility(event, nearest, (), beyond, _loosenings(space, event), conflict)
     beyond = _beyond(space, event, space.encoding.diagrams.true)
     if beyond is not None:
         return Possibility(event, beyond, loosenings=_loosenings(space, event))
     return Possibility(event, None, tuple(_never(space, event)))
+
+
+def _conflict(space: Space, relation: EventRelation) -> tuple[Note, ...]:
+    """The requirements that allow an event in no state in which the plants do, with or without a supervisor."""
+    at_fault = forbidding(relation, space.uncontrolled & relation.enabled)
+    return tuple(Note(each, each.text or "a requirement") for each in at_fault)
 
 
 def _beyond(space: Space, event: sct.Event, wanted: Diagram) -> Explanation | None:

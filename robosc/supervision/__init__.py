@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from robosc.diagnostics import Diagnostic, ModelError, Severity, has_errors
 from robosc.metamodel.places import place
 from robosc.supervision.findings import findings_of
-from robosc.supervision.wording import blocking, in_words, trouble_in_words
+from robosc.supervision.wording import blocking, forbid, in_words, trouble_in_words
 from robosc.synthesis import MEMORY, Statistics, Synthesis, synthesize
 
 if TYPE_CHECKING:
@@ -33,6 +33,8 @@ class EmptySupervisorError(ModelError):
         trace = f"; a shortest trace: {in_words(reason.trace, model)}" if reason.trace else ""
         file, span = place(reason.event or model)
         message = f"the supervisor is empty: {blocking(reason)}{trace}"
+        if reason.requirements and not (reason.event and reason.event.controllable):
+            message += f"; from there on {forbid(reason.requirements, 'something')}"
         hint = (
             "loosen a requirement, or give every component a way back to a marked state; `robosc explain --why-empty`"
             " tells more"

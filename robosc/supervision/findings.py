@@ -8,7 +8,7 @@ from robosc.diagnostics import Diagnostic, Severity, in_order
 from robosc.metamodel import sct
 from robosc.metamodel.places import place
 from robosc.roles import plant_of
-from robosc.supervision.wording import condition, listed, name, trouble_in_words, way_out
+from robosc.supervision.wording import condition, forbid, listed, name, trouble_in_words, way_out, words
 from robosc.synthesis.encoding import referenced
 from robosc.synthesis.observations import Forbidden
 
@@ -19,11 +19,13 @@ if TYPE_CHECKING:
     from robosc.synthesis.encoding import Element
     from robosc.synthesis.observations import (
         Example,
+        Hindrance,
         NeverEnabled,
         ProvideGap,
         SelfCancelling,
         SharedTopicConflict,
         SilentRestricted,
+        UnreachableState,
     )
 
 _DONE = {sct.PlantKind.service: "called", sct.PlantKind.action: "started"}
@@ -44,6 +46,7 @@ def findings_of(model: sct.SupervisoryControlModel, observations: Observations) 
             *map(words_for.provide_gap, observations.provide_gaps),
             *map(words_for.shared_topic_conflict, observations.shared_topic_conflicts),
             *map(words_for.unrestricted_call, observations.unrestricted_calls),
+            *map(words_for.unreachable_state, observations.unreachable_states),
         ]
     )
 
@@ -58,7 +61,7 @@ class _Findings:
         subject = f"this transition of `{name(plant)}`" if silent else f"`{name(plant)}`"
         done = "taken" if silent else _DONE.get(plant.kind, "sent")
         if observed.forbidden is Forbidden.BY_REQUIREMENTS:
-            why, hint = f"wherever it could be, {_broken(observed.requirements)}", "loosen what it needs"
+            why, hint = f"wherever it could be, {forbid(observed.requirements, 'it')}", "loosen what it needs"
         elif observed.trouble is not None:
             why, hint = trouble_in_words(observed.trouble, self._model), way_out(observed.trouble)
         elif observed.kept_away:
@@ -95,7 +98,7 @@ class _Findings:
             _blamed(observed.requirements, observed.event),
             "self-cancelling",
             f"`{name(plant_of(observed.event))}` is cancelled as soon as it has started: right after its start "
-            f"{_broken(observed.requirements)}",
+            f"{forbid(observed.requirements, 'it')}",
             f"what an action needs must hold while it runs, too: {led}",
             Severity.ERROR,
         )
@@ -136,6 +139,36 @@ class _Findings:
             f"add `requirement {called} needs ...`, or `on request to {called}` in the states that allow it",
         )
 
+    def unreachable_state(self, observed: UnreachableState) -> Diagnostic:
+        state, plant = observed.location, observed.location.eContainer()
+        why = "; ".join(dict.fromkeys(map(self._hindrance, observed.hindrances))) or "no transition leads to it"
+        first = "allow a transition that leads to it" if observed.hindrances else f"write `goto {state.name}` somewhere"
+        return _finding(
+            state,
+            "unreachable-state",
+            f"`{name(plant)}` is never in `{state.name}`: {why}",
+            f"{first}, or leave the state out",
+        )
+
+    def _hindrance(self, observed: Hindrance) -> str:
+        """Why a transition never leads to a state."""
+        here: sct.Location = observed.edge.eContainer()
+        event, own = observed.edge.event, here.eContainer()
+        if observed.forbidden is None:
+            return f"a transition leads there from `{here.name}`, but it is never in that either"
+        if observed.forbidden is Forbidden.BY_REQUIREMENTS:
+            return f"in `{here.name}` {forbid(observed.requirements, f'the {words(event)}')}"
+        if observed.trouble is not None:
+            held_back = f"in `{here.name}` the supervisor holds back the {words(event)}"
+            return f"{held_back}, since {trouble_in_words(observed.trouble, self._model)}"
+        if own in observed.plants:
+            return f"in `{here.name}` the guard of the {words(event)} never holds"
+        others = [f"`{name(each)}`" for each in observed.plants]
+        who = (
+            f"{listed(others)} never {'takes' if len(others) == 1 else 'take'} part" if others else "not all take part"
+        )
+        return f"in `{here.name}` the {words(event)} never happens: {who} in it then"
+
     def _requirements(self, event: sct.Event) -> list[sct.Requirement]:
         return [each for each in self._model.requirements if each.event is event]
 
@@ -155,11 +188,6 @@ def _finding(element: Any, rule: str, message: str, hint: str, severity: Severit
 
 def _blamed(requirements: Sequence[sct.Requirement], event: sct.Event) -> Any:
     return requirements[0] if len(requirements) == 1 else event
-
-
-def _broken(requirements: Sequence[sct.Requirement]) -> str:
-    texts = [f"`{each.text}`" for each in requirements if each.text]
-    return f"{texts[0]} forbids it" if len(texts) == 1 else "its requirements forbid it"
 
 
 def _guard(event: sct.Event) -> str:

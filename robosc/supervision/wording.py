@@ -68,13 +68,32 @@ def change(event: sct.Event) -> str:
     return f"{name(plant)} changes by itself: {', '.join(own)}" + (f" ({where})" if where else "")
 
 
+def called(requirements: Sequence[sct.Requirement]) -> str:
+    """Requirements, each in its own words and with its line: "`requirement move needs Lidar.free` (line 12)"."""
+    named = [_called(each) for each in requirements[:_NAMED]]
+    if len(requirements) > _NAMED:
+        named.append(f"{len(requirements) - _NAMED} more")
+    return listed(named)
+
+
+def _called(requirement: sct.Requirement) -> str:
+    span = Span.parse(requirement.source)
+    text = f"`{requirement.text}`" if requirement.text else f"a requirement on the {words(requirement.event)}"
+    return f"{text} (line {span.line})" if span else text
+
+
+def forbid(requirements: Sequence[sct.Requirement], what: str) -> str:
+    """That they forbid something."""
+    return f"{called(requirements)} {'forbids' if len(requirements) == 1 else 'forbid'} {what}"
+
+
 def blocking(reason: Reason) -> str:
     """Why there is no supervisor, in a sentence without its trace."""
     problem = "no marked state can be reached"
     if reason.event is None:
         problem += " at all"
     elif reason.event.controllable:
-        problem += f": the shortest way to one needs {words(reason.event)} where its requirement forbids it"
+        problem += f": the shortest way to one needs {words(reason.event)} where {forbid(reason.requirements, 'it')}"
     else:
         problem = f"{words(reason.event)} can't be prevented, and after it {problem}"
     named = [_stuck(each, reason) for each in reason.unmarked[:_NAMED]]

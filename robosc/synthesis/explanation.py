@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from robosc.roles import event_name
@@ -11,13 +11,14 @@ from robosc.synthesis.fixpoint import reachable
 from robosc.synthesis.paths import Path, TraceStep, shortest_path, trace
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from robosc.metamodel import sct
     from robosc.synthesis.bdd import Diagram
     from robosc.synthesis.encoding import Element, Encoding
     from robosc.synthesis.fixpoint import SupervisedStates
     from robosc.synthesis.paths import Move
+    from robosc.synthesis.relation import EventRelation
 
 #: How many plants a sentence names.
 _NAMED = 4
@@ -32,7 +33,8 @@ class Reason:
     no marked state. `unmarked` are the plants that can't be in a marked location any more once the event happened, or
     at all; none if each can be but never all at once. `trace` is a shortest one from the initial state, the event
     last; `state` is where it ends, before an event that a requirement forbids: the location of every plant with several
-    of them, and the value of every variable. `codes` are those of that state.
+    of them, and the value of every variable. `codes` are those of that state. `requirements` forbid the event at fault
+    there, or else something from there on.
     """
 
     message: str
@@ -41,6 +43,7 @@ class Reason:
     trace: tuple[TraceStep, ...]
     state: Mapping[str, Value]
     codes: Mapping[Element, int] = field(repr=False)
+    requirements: tuple[sct.Requirement, ...] = ()
 
 
 class EmptySupervisor:
@@ -70,13 +73,16 @@ class EmptySupervisor:
         last = self._path(uncontrollable, before, blocked, everything)
         event = last.moves[0][0].event
         unmarked = never_marked(self._encoding, self._moves, last.states[-1])
-        return self._described(
+        reason = self._described(
             f"{event_name(event)} can't be prevented, and after it no marked state can be reached",
             event,
             unmarked,
             trace(self._encoding, first) + trace(self._encoding, last),
             last.states[-1],
         )
+        relations = [each for each, _ in self._plant_moves]
+        at_fault = forbidden_from(self._encoding, self._moves, relations, last.states[-1])
+        return replace(reason, requirements=tuple(at_fault))
 
     def _blocked_from_the_start(self) -> Reason:
         path = shortest_path(
@@ -92,8 +98,9 @@ class EmptySupervisor:
             return self._described(f"{problem} at all", None, unmarked, [], self._encoding.initial_codes)
         steps = trace(self._encoding, path)
         for index, ((relation, _), state) in enumerate(zip(path.moves, path.states, strict=False)):
-            if not (self._encoding.state(state) & relation.requirement).satisfiable():
-                return self._described(
+            here = self._encoding.state(state)
+            if not (here & relation.requirement).satisfiable():
+                reason = self._described(
                     f"{problem}: the shortest way to one needs {event_name(relation.event)} where its requirement"
                     " forbids it",
                     relation.event,
@@ -101,6 +108,8 @@ class EmptySupervisor:
                     steps[: index + 1],
                     path.states[index],
                 )
+                at_fault = [each for each, asked in relation.asked.items() if not (here & asked).satisfiable()]
+                return replace(reason, requirements=tuple(at_fault))
         raise AssertionError("the requirements forbid nothing on the way")
 
     def _path(self, moves: Sequence[Move], start: Diagram, goal: Diagram, within: Diagram) -> Path:
@@ -133,6 +142,20 @@ class EmptySupervisor:
             for variable in plant.variables:
                 state[f"{plant.name}.{variable.name}"] = value(variable, codes[variable])
         return Reason(f"{problem}; {who}", event, tuple(unmarked), tuple(steps), state, codes)
+
+
+def forbidden_from(
+    encoding: Encoding, moves: Sequence[Move], relations: Iterable[EventRelation], codes: Mapping[Element, int]
+) -> list[sct.Requirement]:
+    """The requirements that forbid something which the plants would do from a state on, in the order of the events."""
+    steps = [step for _, step in moves]
+    onwards = reachable(encoding.diagrams, steps, encoding.state(codes), encoding.diagrams.true)
+    return [
+        requirement
+        for relation in relations
+        for requirement, asked in relation.asked.items()
+        if (onwards & relation.enabled & ~asked).satisfiable()
+    ]
 
 
 def unavoidable(

@@ -60,8 +60,8 @@ class Forbidden(Enum):
 class NeverEnabled:
     """A trigger or tau event that is allowed in no controlled state.
 
-    `plants` and `requirements` are those which forbid it alone: the plants wherever the robot may come, the
-    requirements wherever the plants enable it, be it only in states that the supervisor keeps the robot from.
+    `plants` are those which forbid it alone wherever the robot may come, `requirements` those which forbid it wherever
+    the plants enable it, be it only in states that the supervisor keeps the robot from: see `forbidding`.
     `kept_away` says that the plants forbid it for that reason only. `trouble` is there where synthesis forbids it.
     """
 
@@ -85,7 +85,7 @@ class SilentRestricted:
 class SelfCancelling:
     """An action, by its trigger, whose requirement holds in no state right after it.
 
-    `requirements` are those on it which alone hold in none of these states.
+    `requirements` are those on it which hold in none of these states: see `forbidding`.
     """
 
     event: sct.Event
@@ -122,6 +122,30 @@ class SharedTopicConflict:
 
 
 @dataclass(frozen=True)
+class Hindrance:
+    """Why a transition that leads to a state from another is never taken.
+
+    `forbidden` is None where its own state is never reached. `plants` are those, its own among them, that are never
+    ready for it there, none if each is but never all at once; `requirements` forbid it there, as `forbidding` says;
+    `trouble` is there where synthesis does.
+    """
+
+    edge: sct.Edge
+    forbidden: Forbidden | None
+    plants: tuple[sct.Plant, ...] = ()
+    requirements: tuple[sct.Requirement, ...] = ()
+    trouble: Trouble | None = None
+
+
+@dataclass(frozen=True)
+class UnreachableState:
+    """A location of a component in no controlled state, and why none of the transitions to it is ever taken."""
+
+    location: sct.Location
+    hindrances: tuple[Hindrance, ...]
+
+
+@dataclass(frozen=True)
 class Observations:
     """All of them, each kind in the order of the model. `unrestricted_calls` are triggers of services and actions.
 
@@ -135,6 +159,7 @@ class Observations:
     provide_gaps: tuple[ProvideGap, ...]
     shared_topic_conflicts: tuple[SharedTopicConflict, ...]
     unrestricted_calls: tuple[sct.Event, ...]
+    unreachable_states: tuple[UnreachableState, ...]
     troubles: Mapping[sct.Event, Trouble]
 
 
@@ -154,6 +179,7 @@ class Observer:
         self._moves = moves
         self._found = found
         self._permissions = {each.relation.event: each for each in permissions}
+        self._model = model
         self._roles = Roles(model)
         self._troubles: dict[sct.Event, Trouble] = {}
         self._triggers = [each for each in self._roles.triggers if each in self._permissions]
@@ -167,6 +193,7 @@ class Observer:
             tuple(self._provide_gaps()),
             tuple(self._shared_topic_conflicts()),
             tuple(self._unrestricted_calls()),
+            tuple(self._unreachable_states()),
             dict(self._affordable_troubles()),
         )
 
@@ -184,7 +211,9 @@ class Observer:
                 kept_away = enabled.satisfiable()
                 yield NeverEnabled(event, Forbidden.BY_PLANTS, plants=tuple(plants), kept_away=kept_away)
             elif forbidden:
-                yield NeverEnabled(event, Forbidden.BY_REQUIREMENTS, requirements=_broken(permission, enabled))
+                yield NeverEnabled(
+                    event, Forbidden.BY_REQUIREMENTS, requirements=forbidding(permission.relation, enabled)
+                )
             else:
                 yield NeverEnabled(event, Forbidden.BY_SYNTHESIS, trouble=self._trouble(permission))
 
@@ -201,7 +230,7 @@ class Observer:
                 continue
             after = permission.where if step is None else step.image(permission.where)
             if not (after & permission.relation.requirement).satisfiable():
-                yield SelfCancelling(event, _broken(permission, after))
+                yield SelfCancelling(event, forbidding(permission.relation, after))
 
     def _provide_gaps(self) -> Iterator[ProvideGap]:
         for event in self._triggers:
@@ -229,6 +258,46 @@ class Observer:
             restricted = permission.relation.requirements or not alone
             if plant.kind in _CALLS and not restricted and permission.guard.everEnabled:
                 yield event
+
+    def _unreachable_states(self) -> Iterator[UnreachableState]:
+        for plant in self._model.plants:
+            if plant.kind != sct.PlantKind.behaviour:
+                continue
+            reached = [(self._found.controlled & self._encoding.location(each)) for each in plant.locations]
+            if all(each.satisfiable() for each in reached):
+                continue
+            states = dict(zip(plant.locations, reached, strict=True))
+            for location in plant.locations:
+                if not states[location].satisfiable():
+                    leading = (
+                        edge
+                        for other in plant.locations
+                        for edge in other.edges
+                        if edge.target is location and other is not location
+                    )
+                    hindrances = [self._hindrance(each, states[each.eContainer()]) for each in leading]
+                    yield UnreachableState(location, tuple(hindrances))
+
+    def _hindrance(self, edge: sct.Edge, here: Diagram) -> Hindrance:
+        """Why an edge is never taken in the controlled states in which its plant is in its location."""
+        if not here.satisfiable():
+            return Hindrance(edge, None)
+        relation = self._relations[edge.event]
+        enabled = here & relation.enabled
+        if not enabled.satisfiable():
+            plants = [each for each, own in relation.enabled_by.items() if not (here & own).satisfiable()]
+            return Hindrance(edge, Forbidden.BY_PLANTS, plants=tuple(plants))
+        if not (enabled & relation.requirement).satisfiable():
+            return Hindrance(edge, Forbidden.BY_REQUIREMENTS, requirements=forbidding(relation, enabled))
+        way = self._layers.path_to(held_back(self._permissions[edge.event], self._found) & here)
+        assert way is not None
+        found = trouble(self._encoding, self._moves, self._found, relation, way)
+        return Hindrance(edge, Forbidden.BY_SYNTHESIS, trouble=found)
+
+    @cached_property
+    def _relations(self) -> dict[sct.Event, EventRelation]:
+        known = {relation.event: relation for relation, _ in self._moves}
+        return known | {event: each.relation for event, each in self._permissions.items()}
 
     def _example(self, states: Diagram) -> Example:
         settled = states & ~self._unsettled
@@ -295,9 +364,22 @@ def trouble(
     )
 
 
-def _broken(permission: Permission, states: Diagram) -> tuple[sct.Requirement, ...]:
-    """The requirements on an event that each let it happen in none of the states."""
-    return tuple(each for each, asked in permission.relation.asked.items() if not (states & asked).satisfiable())
+def forbidding(relation: EventRelation, states: Diagram) -> tuple[sct.Requirement, ...]:
+    """Of the requirements on an event, which allow it in none of these states, those at fault.
+
+    That are all that alone allow it in none; where there is none, some that do not together, and no fewer of them.
+    """
+    alone = [each for each, asked in relation.asked.items() if not (states & asked).satisfiable()]
+    if alone:
+        return tuple(alone)
+    together = dict(relation.asked)
+    for each in relation.asked:
+        rest = states
+        for other, asked in together.items():
+            rest = rest if other is each else rest & asked
+        if not rest.satisfiable():
+            del together[each]
+    return tuple(together)
 
 
 def _provides_something(plant: sct.Plant, event: sct.Event) -> bool:

@@ -235,7 +235,7 @@ def test_no_supervisor(run: Run, stuck: Path) -> None:
     assert answer.exit_code == 3
     said = json.loads(answer.stdout)
     assert (said["empty"], said["controlled_states"], said["events"]) == (True, 0, [])
-    assert "needs request to `Leaf.open` where its requirement forbids it; never in a marked" in answer.stderr
+    assert "needs request to `Leaf.open` where `requirement open needs Leaf.opened` (line " in answer.stderr
     assert "component_" not in answer.stderr
     assert "[empty-supervisor]" in answer.stderr
     assert f"{stuck}:3:5: error: " in answer.stderr

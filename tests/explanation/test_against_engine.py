@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from robosc.engine import Blocked, Engine
 from robosc.engine.state import State
-from robosc.explanation.answers import Explanation, Reach
+from robosc.explanation.answers import Explanation, Possibility, Reach
 from robosc.explanation.emptiness import emptiness
 from robosc.explanation.explaining import explain
 from robosc.explanation.names import state_given, whole_state
@@ -227,6 +227,7 @@ def test_what_never_happens(model):
             if not ever:
                 assert (told.nearest.by is Blocked.SYNTHESIS) == bool(definitions.held_back(each))
                 check_beyond(oracle, each, told.beyond)
+                check_conflict(oracle, each, told)
                 check_loosenings(model, told.loosenings, partial(possible, event_name(each)))
 
     explored(model, look)
@@ -243,6 +244,20 @@ def check_beyond(oracle: Oracle, each: sct.Event, beyond: Explanation | None) ->
         replay = Replay(oracle.model, beyond.situation.trace)
         assert replay.after(len(replay.trace), requirements=False) in willing
         assert beyond.refusal is not None
+
+
+def check_conflict(oracle: Oracle, each: sct.Event, told: Possibility) -> None:
+    """It is there where the requirements on the event allow it nowhere; what it names suffices for that."""
+    willing = [state for state in oracle.uncontrolled if oracle.edges(each, state) is not None]
+    assert bool(told.conflict) == (told.nearest.by is Blocked.REQUIREMENT and told.beyond is None)
+    if told.conflict:
+        assert not any(
+            all(
+                oracle.value(note.element.condition, state, {}) == (note.element.kind == sct.RequirementKind.needs)
+                for note in told.conflict
+            )
+            for state in willing
+        )
 
 
 def possible(name: str, model: sct.SupervisoryControlModel) -> bool:
@@ -292,6 +307,15 @@ def test_why_there_is_no_supervisor(model):
             for state in onwards
         )
     }
+    at_fault = {each.element for each in told.blamed}
+    if before:
+        at_fault = {
+            each
+            for each in model.requirements
+            if each.event is told.reason.event
+            and oracle.value(each.condition, end, {}) != (each.kind == sct.RequirementKind.needs)
+        }
+    assert set(told.reason.requirements) == (at_fault if told.reason.event is not None else set())
     event(f"loosenings {told.loosenings and len(told.loosenings)}")
     check_loosenings(model, told.loosenings, lambda other: synthesize(other).supervisor is not None)
     for each in told.loosenings or ():

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from robosc.metamodel import sct
 from robosc.roles import event_name, plant_of
 from robosc.synthesis import Observations, observations, synthesize
-from robosc.synthesis.observations import Example, Forbidden, Trouble
+from robosc.synthesis.observations import Example, Forbidden, Trouble, UnreachableState
 from tests.random_sct import sct_models
 from tests.sct_models import edge, model, needs, plant
 from tests.synthesis.classics import philosophers
@@ -54,6 +54,15 @@ class Definitions:
         self.oracle = oracle
         self.controllable = [each for each in oracle.events if each.controllable]
         self.triggers = [each for each in self.controllable if each.kind == sct.EventKind.trigger]
+
+    def unreachable_states(self) -> list[sct.Location]:
+        return [
+            location
+            for each in self.oracle.model.plants
+            if each.kind == sct.PlantKind.behaviour
+            for location in each.locations
+            if not any(state[self.oracle.places[each]] is location for state in self.oracle.controlled)
+        ]
 
     def allowed(self, each: sct.Event) -> set[State]:
         return {state for state in self.oracle.controlled if self.oracle.allows(each, state)}
@@ -148,6 +157,7 @@ def test_random_models(random_model):
     assert {(each.first, each.second) for each in observed.shared_topic_conflicts} == set(conflicts)
     assert len(observed.shared_topic_conflicts) == len(conflicts)
     assert list(observed.unrestricted_calls) == definitions.unrestricted_calls()
+    assert [each.location for each in observed.unreachable_states] == definitions.unreachable_states()
     for name in vars(observed):
         event(name if getattr(observed, name) else f"no {name}")
     check_details(definitions, observed)
@@ -172,7 +182,7 @@ def check_details(definitions: Definitions, observed: Observations) -> None:
         )
         assert each.kept_away == (not enabled and asked)
         if each.forbidden is Forbidden.BY_REQUIREMENTS:
-            assert list(each.requirements) == broken(oracle, each.event, states)
+            check_forbidding(oracle, each.event, each.requirements, states)
         assert (each.trouble is not None) == bool(required)
         if each.trouble is not None:
             check_trouble(definitions, each.event, each.trouble)
@@ -182,7 +192,9 @@ def check_details(definitions: Definitions, observed: Observations) -> None:
     for each, trouble in observed.troubles.items():
         check_trouble(definitions, each, trouble)
     for each in observed.self_cancelling:
-        assert list(each.requirements) == broken(oracle, each.event, definitions.after(each.event))
+        check_forbidding(oracle, each.event, each.requirements, definitions.after(each.event))
+    for each in observed.unreachable_states:
+        check_hindrances(definitions, each)
     for each in observed.provide_gaps:
         check_example(definitions, each.example, definitions.gap(each.event, each.data))
     for each in observed.shared_topic_conflicts:
@@ -190,17 +202,55 @@ def check_details(definitions: Definitions, observed: Observations) -> None:
         check_example(definitions, each.example, both)
 
 
-def broken(oracle, each, states):
-    """The requirements that hold in none of the states."""
-    return [
-        requirement
-        for requirement in oracle.model.requirements
-        if requirement.event is each
-        and not any(
-            oracle.value(requirement.condition, state, {}) == (requirement.kind == sct.RequirementKind.needs)
-            for state in states
+def holds(oracle, requirement, state):
+    return oracle.value(requirement.condition, state, {}) == (requirement.kind == sct.RequirementKind.needs)
+
+
+def check_forbidding(oracle, each, told, states):
+    """Those told are all that alone hold in none of the states; else some that do not together, none too many."""
+    own = [requirement for requirement in oracle.model.requirements if requirement.event is each]
+    alone = [one for one in own if not any(holds(oracle, one, state) for state in states)]
+    if alone:
+        assert list(told) == alone
+        return
+    assert len(told) > 1
+    assert not any(all(holds(oracle, one, state) for one in told) for state in states)
+    for left_out in told:
+        assert any(all(holds(oracle, one, state) for one in told if one is not left_out) for state in states)
+
+
+def check_hindrances(definitions: Definitions, observed: UnreachableState) -> None:
+    """They are all transitions to the state, and what is said of each keeps it from ever being taken."""
+    oracle, location = definitions.oracle, observed.location
+    component = location.eContainer()
+    assert {each.edge for each in observed.hindrances} == {
+        edge
+        for other in component.locations
+        if other is not location
+        for edge in other.edges
+        if edge.target is location
+    }
+    for each in observed.hindrances:
+        happens = each.edge.event
+        here = [s for s in oracle.controlled if s[oracle.places[component]] is each.edge.eContainer()]
+        enabled = [state for state in here if oracle.edges(happens, state) is not None]
+        required = [state for state in enabled if oracle.required(happens, state)]
+        assert each.forbidden is (
+            Forbidden.BY_SYNTHESIS
+            if required
+            else Forbidden.BY_REQUIREMENTS
+            if enabled
+            else Forbidden.BY_PLANTS
+            if here
+            else None
         )
-    ]
+        event(f"unreachable {each.forbidden}")
+        if each.forbidden is Forbidden.BY_REQUIREMENTS:
+            check_forbidding(oracle, happens, each.requirements, enabled)
+        assert (each.trouble is not None) == bool(required)
+        if each.trouble is not None:
+            replay = Replay(oracle.model, each.trouble.trace)
+            assert replay.after(len(replay.trace) - 1, requirements=True) in required
 
 
 def check_example(definitions: Definitions, example: Example, states: set[State]) -> None:
