@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
@@ -39,11 +39,26 @@ class ArrayType:
         return f"array({self.element})"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class ObjectType:
-    """An object data type."""
+    """An object data type; where ROS defines it, the same in each place that names its ROS type."""
 
     definition: rsc.ObjectDataType
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, ObjectType) and self._identity == other._identity
+
+    def __hash__(self) -> int:
+        return hash(self._identity)
+
+    @property
+    def _identity(self) -> Any:
+        home: Any = self.definition.eContainer()
+        if not isinstance(home, rsc.InterfaceTypeReference):
+            return self.definition
+        owner = home.eContainer()
+        part = home.eContainmentFeature().name if isinstance(owner, (rsc.Service, rsc.Action)) else ""
+        return home.package, home.rosType, part
 
     def __str__(self) -> str:
         return f"object {self.definition.name}"

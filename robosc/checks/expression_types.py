@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
+from typing import Any
 
 from robosc.checks.libraries import instances
 from robosc.checks.rule import Finding
@@ -194,7 +195,9 @@ def names(first: Type, second: Type) -> tuple[str, str]:
 def _with_home(each: Type) -> str:
     if not isinstance(each, (EnumType, ObjectType)):
         return str(each)
-    home = each.definition.eContainer()
+    home: Any = each.definition.eContainer()
+    if isinstance(home, rsc.InterfaceTypeReference):
+        return f"{each} of package {home.package}"
     return f"{each} of {type(home).__name__.lower()} {home.name}" if home else str(each)
 
 
