@@ -13,8 +13,8 @@ from pydantic.alias_generators import to_camel
 
 from robosc import files
 from robosc.diagnostics import Diagnostic, ModelError, Severity, Span
+from robosc.json_reading import JsonError, json_value
 from robosc.naming import controller_name, layer_name
-from robosc.nesting import too_deep
 
 if TYPE_CHECKING:
     from robosc.metamodel.expression import NamedElement
@@ -231,14 +231,12 @@ def read(file: Path) -> Configuration:
     name = str(file)
     try:
         text = files.read(file).decode("utf-8")
-        if too_deep(text):
-            raise ModelError([_error(name, "nested too deeply")])
-        values = json.loads(text)
+        values = json_value(text)
     except UnicodeDecodeError as error:
         raise ModelError([_error(name, f"not UTF-8: {error.reason} at byte {error.start}")]) from error
-    except json.JSONDecodeError as error:
-        span = Span(error.lineno, error.colno, error.lineno, error.colno + 1)
-        raise ModelError([_error(name, f"not JSON: {error.msg}", span)]) from error
+    except JsonError as error:
+        line, column = _position(text, error.position)
+        raise ModelError([_error(name, str(error), Span(line, column, line, column + 1))]) from error
     findings = [_error(name, f'the key "{key}" stands twice', span) for key, span in _duplicates(text, _skip(text, 0))]
     try:
         configuration = Configuration.model_validate(values, context=(name, text), by_alias=True, by_name=False)

@@ -57,8 +57,8 @@ class ObjectType:
         if not isinstance(home, rsc.InterfaceTypeReference):
             return self.definition
         owner = home.eContainer()
-        part = home.eContainmentFeature().name if isinstance(owner, (rsc.Service, rsc.Action)) else ""
-        return home.package, home.rosType, part
+        parts = ("requestType", "responseType", "feedbackType")
+        return home.package, home.rosType, next((each for each in parts if getattr(owner, each, None) is home), "")
 
     def __str__(self) -> str:
         return f"object {self.definition.name}"

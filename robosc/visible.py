@@ -10,7 +10,9 @@ HIDDEN = (
     *((0x180B, 0x180F), (0x200B, 0x200F), (0x2028, 0x202E), (0x2060, 0x206F), (0x3164, 0x3164), (0xFE00, 0xFE0F)),
     *((0xFEFF, 0xFEFF), (0xFFA0, 0xFFA0), (0xFFF0, 0xFFFB), (0xFFFE, 0xFFFF), (0xE0000, 0xE0FFF)),
 )
-_HIDDEN = re.compile(f"[{''.join(f'{chr(first)}-{chr(last)}' for first, last in HIDDEN)}]")
+#: A regular expression for one of them.
+HIDDEN_PATTERN = f"[{''.join(f'{chr(first)}-{chr(last)}' for first, last in HIDDEN)}]"
+_HIDDEN = re.compile(HIDDEN_PATTERN)
 
 
 def visible(text: str) -> str:

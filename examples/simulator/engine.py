@@ -43,7 +43,7 @@ def play(simulation, until, models=None, kind=Controller, quiet=False):
             node.work()
             if not quiet:
                 told = tell(simulation, told)
-        return [json.loads(line) for line in log.read_text(encoding="utf-8").splitlines()]
+        return [json.loads(line) for line in log.read_text(encoding="utf-8").split("\n")[:-1]]
 
 
 def model_of(scenario):

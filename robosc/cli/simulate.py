@@ -128,6 +128,8 @@ def _run(simulation: Simulation, number: int, seed: int) -> None:
 def _converse(simulation: Simulation, seed: int) -> None:
     session = Session(simulation, seed)
     interactive = sys.stdin.isatty()
+    if hasattr(sys.stdin, "reconfigure"):
+        sys.stdin.reconfigure(errors="replace")
     if interactive:
         say(f"{simulation.engine.model.name}: h for help, q to end")
     say(session.enabled())
@@ -139,7 +141,7 @@ def _converse(simulation: Simulation, seed: int) -> None:
             return
         try:
             answer = session.do(line)
-        except (OSError, UnicodeDecodeError) as error:
+        except (OSError, ValueError) as error:  # no such file, or nothing that can be the name or the text of one
             answer = str(error)
         if answer:
             say(answer)

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
 
+from robosc.json_reading import JsonError, json_value
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
-from robosc.nesting import too_deep
 from robosc.roles import Roles, event_name, plant_of
 from robosc.synthesis.decoding import Value, text, value
 from robosc.synthesis.encoding import domain_size, smallest
@@ -122,12 +121,10 @@ def _elements(model: sct.SupervisoryControlModel) -> dict[str, list[Element]]:
 
 def _pairs(given: str) -> list[tuple[str, Any]]:
     if given.lstrip().startswith("{"):
-        if too_deep(given):
-            raise NamingError("the state is nested too deeply", "write `Component=state,Component.variable=3`")
         try:
-            read = json.loads(given)
-        except ValueError as error:
-            raise NamingError("the state is no JSON", str(error)) from None
+            read = json_value(given)
+        except JsonError as error:
+            raise NamingError("the state can't be read", f"{error} (character {error.position + 1})") from None
         inner = read.get("state", read)
         return list((inner if isinstance(inner, dict) else read).items())
     pairs = []

@@ -7,9 +7,12 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import TypeAlias
 
+from robosc.visible import HIDDEN_PATTERN, code
+
 Json: TypeAlias = bool | int | float | str | Mapping[str, "Json"] | Sequence["Json"] | None
 
-_ESCAPED = re.compile(r'["\\\x00-\x1f]')
+#: Nothing that a reader could take for the end of a line, and nothing that a terminal obeys, goes out as it is.
+_ESCAPED = re.compile(r'["\\]|' + HIDDEN_PATTERN)
 
 
 def json_text(value: Json) -> str:
@@ -39,5 +42,4 @@ def _number(value: float) -> str:
 
 
 def _escape(found: re.Match[str]) -> str:
-    character = found[0]
-    return f"\\{character}" if character in '"\\' else f"\\u{ord(character):04x}"
+    return f"\\{found[0]}" if found[0] in '"\\' else code(found[0])

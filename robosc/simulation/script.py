@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
 
 from robosc.diagnostics import Diagnostic, Severity, Span
-from robosc.nesting import too_deep
+from robosc.json_reading import JsonError, json_lines, json_value
 from robosc.simulation.data import DataError
 
 if TYPE_CHECKING:
@@ -17,8 +16,6 @@ if TYPE_CHECKING:
     from robosc.simulation.data import EventData
 
 RULE = "script"
-#: No number of a script has more; Python itself refuses to read some thousand.
-_DIGITS = 1000
 
 
 @dataclass(frozen=True)
@@ -42,7 +39,7 @@ def read_script(
     """
     steps: list[Step] = []
     findings: list[Diagnostic] = []
-    for number, line in enumerate(text.splitlines(), 1):
+    for number, line in enumerate(json_lines(text), 1):
         if not line.strip() or line.lstrip().startswith("#"):
             continue
         read = _Line(file, number, line, events, others)
@@ -102,16 +99,10 @@ class _Line:
         return False
 
     def _json(self, column: int) -> dict[str, Any] | None:
-        if too_deep(self._line):
-            self._fault(column, "nested too deeply")
-            return None
         try:
-            read = json.loads(self._line[column:], parse_constant=_refuse, parse_int=_integer)
-        except json.JSONDecodeError as error:
-            self._fault(column + error.pos, f"not JSON: {error.msg}")
-            return None
-        except ValueError as error:
-            self._fault(column, f"not JSON: {error}")
+            read = json_value(self._line[column:])
+        except JsonError as error:
+            self._fault(column + error.position, str(error))
             return None
         if not isinstance(read, dict):
             self._fault(column, "data is an object", f'write {{"value": {self._line[column:].strip()}}}')
@@ -121,13 +112,3 @@ class _Line:
     def _fault(self, column: int, message: str, hint: str | None = None, length: int = 1) -> None:
         span = Span(self._number, column + 1, self._number, column + 1 + length)
         self.findings.append(Diagnostic(self._file, span, Severity.ERROR, RULE, message, hint))
-
-
-def _integer(digits: str) -> int:
-    if len(digits) > _DIGITS:
-        raise ValueError(f"a number of {len(digits)} digits is too long")
-    return int(digits)
-
-
-def _refuse(constant: str) -> None:
-    raise ValueError(f"{constant} is no number of JSON")

@@ -29,6 +29,9 @@ NUMBER or EVENT, with data in JSON where it carries some: let it happen, as in  
   save FILE  the trace to a file      load FILE  play a trace or script
   h          this help                q          the end"""
 
+#: So many random events a command lets happen.
+MOST_AT_ONCE = 10_000
+
 
 class Session:
     """Understands commands about a simulation; random events are the same for the same seed."""
@@ -52,17 +55,18 @@ class Session:
         }
 
     def do(self, line: str) -> str:
-        """The answer to a command; OSError where a file can't be read or written."""
+        """The answer to a command; OSError or ValueError where a file can't be read or written."""
         word, _, rest = line.strip().partition(" ")
         if not word:
             return self.enabled()
         if word in self._commands:
             return self._commands[word](rest.strip())
         enabled = self._simulation.enabled
-        if word.isdecimal() and 1 <= int(word) <= len(enabled):
-            word = enabled[int(word) - 1]
+        number = _number(word)
+        if number is not None and 1 <= number <= len(enabled):
+            word = enabled[number - 1]
         steps, findings = read_script("", f"{word} {rest}", self._simulation.engine.events)
-        return _complaints(findings) or self._perform(steps[0].event, dict(steps[0].data))
+        return _complaints(findings) or "\n".join(self._perform(each.event, dict(each.data)) for each in steps)
 
     def enabled(self) -> str:
         """The events that can happen, numbered."""
@@ -112,10 +116,11 @@ class Session:
         return "nothing to undo" if undone is None else "\n".join([f"undone: {undone.event}", *self._changes()])
 
     def _run(self, rest: str) -> str:
-        if rest and not rest.isdecimal():
-            return f"{rest} is no number of events"
+        number = _number(rest or "1")
+        if number is None:
+            return f"{rest[:20]} is no number of events up to {MOST_AT_ONCE}"
         lines = []
-        for _ in range(int(rest or "1")):
+        for _ in range(number):
             happened = self._simulation.random_step(self._random)
             if happened is None:
                 lines.append("nothing can happen any more")
@@ -140,6 +145,14 @@ class Session:
     def _quit(self, _: str) -> str:
         self.ended = True
         return ""
+
+
+def _number(text: str) -> int | None:
+    """The number that a text stands for; None where it is none, or more than anybody wants at once."""
+    if not text.isdecimal() or len(text) > len(str(MOST_AT_ONCE)):
+        return None
+    number = int(text)
+    return number if number <= MOST_AT_ONCE else None
 
 
 def trace_line(happened: Happened) -> str:

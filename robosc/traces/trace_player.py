@@ -18,6 +18,7 @@ from array import array
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
+from itertools import accumulate
 from pathlib import Path
 from typing import Any
 
@@ -31,6 +32,12 @@ ANSWER = 2.0
 REACTION = 0.3
 SETTLED = 0.05
 MOST_IDLE_TICKS = 3
+#: How ROS refuses what does not fit into a message.
+UNSENDABLE = (ArithmeticError, AssertionError, AttributeError, LookupError, TypeError, ValueError)
+DEEPEST = 100
+BRACKETS = {"{": 1, "[": 1, "]": -1, "}": -1}
+#: No clock shows more, in seconds: that of ROS counts nanoseconds in 64 bits.
+LATEST = 2.0**63 / 1e9
 
 
 class TraceError(Exception):
@@ -54,18 +61,35 @@ class Line:
 
 def parse(text: str, number: int) -> Line:
     """A line of a log. Raises TraceError."""
+    # `json` may follow any number of brackets, until the process ends.
+    if max(accumulate((BRACKETS.get(each, 0) for each in text), initial=0)) > DEEPEST:
+        raise TraceError(f"line {number} is no line of an event log: nested too deeply")
     try:
         values = json.loads(text)
-        return Line(number, **{name: values.get(name) for name in ("time", "direction", "event", "data", "message")})
+        line = Line(number, **{name: values.get(name) for name in ("time", "direction", "event", "data", "message")})
     except (ValueError, AttributeError) as error:
         raise TraceError(f"line {number} is no line of an event log: {error}") from None
+    if isinstance(line.time, bool) or not isinstance(line.time, (int, float)) or not abs(line.time) < LATEST:
+        raise TraceError(f"line {number} is no line of an event log: it has no time in seconds")
+    if not isinstance(line.direction, str) or not isinstance(line.event, str):
+        raise TraceError(f"line {number} is no line of an event log: it has no direction and event")
+    if line.data is not None and not (isinstance(line.data, dict) and "value" in line.data):
+        raise TraceError(f'line {number} is no line of an event log: "data" is to be an object with a value')
+    if line.message is not None and not isinstance(line.message, dict):
+        raise TraceError(f'line {number} is no line of an event log: "message" is to be an object')
+    return line
 
 
 def read_trace(path: str) -> list[Line]:
     """The lines of a trace, up to where the node was stopped. Raises TraceError."""
     lines = []
-    for number, text in enumerate(Path(path).read_text(encoding="utf-8").splitlines(), 1):
-        line = parse(text, number)
+    # Strings may hold what else ends lines; what a node writes ends with a line feed.
+    *texts, last = Path(path).read_bytes().split(b"\n")
+    for number, text in enumerate([*texts, last] if last else texts, 1):
+        try:
+            line = parse(text.decode("utf-8"), number)
+        except UnicodeDecodeError as error:
+            raise TraceError(f"line {number} is no UTF-8: {error.reason} at byte {error.start}") from None
         if line.direction == "outside":
             break
         if line.direction not in ("in", "out", "internal"):
@@ -341,7 +365,13 @@ class Player:
     # What comes in
 
     def _send(self, lines: list[Line], position: int) -> int:
-        """Sends what lines from here on tell of, and says how many these are."""
+        """Sends what lines from here on tell of, and says how many these are. Raises TraceError."""
+        try:
+            return self._sent(lines, position)
+        except UNSENDABLE as error:
+            raise TraceError(f"line {lines[position].number}: this can't be sent: {error!r}") from None
+
+    def _sent(self, lines: list[Line], position: int) -> int:
         line = lines[position]
         for topic, incoming in self._topics.items():
             if line.event in incoming.events:

@@ -82,7 +82,7 @@ class Walk:
             controller.start()
             try:
                 with log.open(encoding="utf-8") as lines:
-                    yield from self._went(stimuli, controller, robot, agenda, lambda: lines.read().splitlines())
+                    yield from self._went(stimuli, controller, robot, agenda, lambda: lines.read().split("\n")[:-1])
             finally:
                 controller.close()
 

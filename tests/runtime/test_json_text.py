@@ -40,6 +40,7 @@ def test_reads_back_as_it_was(value: Any) -> None:
         (math.nan, "null"),
         (-math.inf, "null"),
         ('a "b" \\ \n ü', '"a \\"b\\" \\\\ \\u000a ü"'),
+        ("\x7f\x85 \u2028\u202e\ufffe\U000e0041", '"\\u007f\\u0085 \\u2028\\u202e\\ufffe\\udb40\\udc41"'),
         ({"a": [1, True, None], "b": {}}, '{"a":[1,true,null],"b":{}}'),
     ],
 )

@@ -3,8 +3,10 @@
 from pathlib import Path
 
 import pytest
+from click.testing import CliRunner
 
 import robosc
+from robosc.cli import main
 from robosc.simulation import Simulation
 from robosc.simulation.session import Session
 from robosc.supervision import supervise
@@ -69,3 +71,33 @@ def test_it_ends(session) -> None:
     assert not session.ended
     session.do("q")
     assert session.ended
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "9" * 5000,
+        f"r {'9' * 5000}",
+        "r 99999999999999999999",
+        "r -1",
+        "r ²",
+        "²",
+        "#",
+        "# 1",
+        "\u2028",
+        "e\u2028",
+    ],
+)
+def test_no_line_is_too_much(session, line) -> None:
+    session.do(line)
+    assert session.do("t") == "nothing yet"
+
+
+@pytest.mark.parametrize(
+    "line", ["save \0", "load \0", "load .", "save .", "9" * 5000, "r 99999999999999999999", "\udcff", "#"]
+)
+def test_the_conversation_goes_on(line, tmp_path, monkeypatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    done = CliRunner().invoke(main, ["simulate", str(MODEL)], input=f"{line}\ns\nq\n".encode(errors="surrogateescape"))
+    assert (done.exit_code, done.exception) == (0, None)
+    assert "Gauge.level = 0" in done.output

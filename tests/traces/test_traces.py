@@ -131,6 +131,14 @@ def test_what_can_not_be_played_is_said(case: Case) -> None:
         case.play()
 
 
+@pytest.mark.parametrize("message", [{"no_such_field": 1}, {"ranges": 10**400}, {"ranges": "x"}], ids=str)
+def test_a_message_that_can_not_be_sent_is_said(case: Case, message: dict[str, Any]) -> None:
+    number = next(number for number, line in enumerate(case.trace, 1) if line["event"] == "message_scan.u_response")
+    case.trace[number - 1]["message"] = message
+    with pytest.raises(TraceError, match=f"line {number}: "):
+        case.play()
+
+
 def test_a_stopped_node_ends_a_trace(case: Case) -> None:
     case.trace[20:] = [case.trace[0] | {"direction": "outside"}, {"nonsense": 1}]
     case.play()

@@ -12,6 +12,7 @@ from jinja2 import ChoiceLoader
 from robosc.definition import TRANSITIONS_KEPT
 from robosc.m2t.c.comments import comment_text, string_literal
 from robosc.m2t.templates import environment
+from robosc.visible import HIDDEN
 
 if TYPE_CHECKING:
     from jinja2 import Environment
@@ -35,6 +36,7 @@ def node_environment(target: str, *shared: str) -> Environment:
         attribute=xml_attribute,
     )
     templates.globals["transitions_kept"] = TRANSITIONS_KEPT
+    templates.globals["hidden"] = HIDDEN
     return templates
 
 

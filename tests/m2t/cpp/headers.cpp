@@ -136,7 +136,12 @@ void json_is_json() {
 
 }  // namespace
 
-int main() {
+/// With a second argument, its JSON; else what is wrong with the headers.
+int main(int count, char** arguments) {
+  if (count > 2) {
+    std::fputs(to_json(arguments[2]).c_str(), stdout);
+    return 0;
+  }
   whole_numbers_saturate();
   logs_are_named_by_their_nodes();
   comparisons_with_nan_are_false();

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import shutil
 import subprocess
 from pathlib import Path
@@ -10,6 +11,8 @@ from typing import TYPE_CHECKING
 import pytest
 
 import robosc
+from robosc.runtime.json_text import json_text
+from robosc.visible import HIDDEN
 
 if TYPE_CHECKING:
     from robosc.config import Configuration
@@ -40,6 +43,10 @@ def test_numbers_arrays_fields_and_json(
         pytest.skip(f"no {compiler}")
     files = robosc.generate("ros1", courier, settings)
     assert run(compiler, "headers.cpp", "undefined", files, tmp_path) == (0, "", "")
+    for text in ("".join(chr(each) for bounds in HIDDEN for each in bounds if each), 'größer 漢字 🤖 "\\ \n'):
+        told = subprocess.run([tmp_path / "program", tmp_path, text], capture_output=True, check=True).stdout.decode()
+        assert told == json_text(text)
+        assert json.loads(told) == text
 
 
 @pytest.mark.parametrize("sanitizers", ["address,undefined", "thread"])

@@ -6,8 +6,10 @@
 #include <clocale>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <iterator>
 #include <string>
 
 #include "porter_controller/data.hpp"
@@ -50,7 +52,54 @@ inline std::size_t character(const std::string& text, std::size_t start) {
   return length;
 }
 
-/// What is no UTF-8 becomes the replacement character.
+/// The code point of a character in so many bytes of UTF-8.
+inline std::uint32_t code_point(const std::string& text, std::size_t start, std::size_t length) {
+  std::uint32_t code = static_cast<unsigned char>(text[start]) & (length == 1 ? 0x7FU : 0xFFU >> (length + 1));
+  for (std::size_t offset = 1; offset < length; ++offset) {
+    code = code << 6U | (static_cast<unsigned char>(text[start + offset]) & 0x3FU);
+  }
+  return code;
+}
+
+/// Whether a character breaks lines, reorders them, is obeyed by terminals, or can't be seen.
+inline bool hidden(std::uint32_t code) {
+  constexpr std::uint32_t ranges[][2] = {
+      {0x0, 0x1F},
+      {0x7F, 0x9F},
+      {0xAD, 0xAD},
+      {0x34F, 0x34F},
+      {0x61C, 0x61C},
+      {0x115F, 0x1160},
+      {0x17B4, 0x17B5},
+      {0x180B, 0x180F},
+      {0x200B, 0x200F},
+      {0x2028, 0x202E},
+      {0x2060, 0x206F},
+      {0x3164, 0x3164},
+      {0xFE00, 0xFE0F},
+      {0xFEFF, 0xFEFF},
+      {0xFFA0, 0xFFA0},
+      {0xFFF0, 0xFFFB},
+      {0xFFFE, 0xFFFF},
+      {0xE0000, 0xE0FFF},
+  };
+  return std::any_of(std::begin(ranges), std::end(ranges),
+                     [code](const auto& range) { return range[0] <= code && code <= range[1]; });
+}
+
+/// A character by its code, in halves where it needs two.
+inline std::string escaped(std::uint32_t code) {
+  char text[16];
+  if (code < 0x10000) {
+    std::snprintf(text, sizeof text, "\\u%04x", static_cast<unsigned>(code));
+  } else {
+    const auto high = static_cast<unsigned>(0xD7C0 + (code >> 10U)), low = static_cast<unsigned>(0xDC00 + (code & 0x3FFU));
+    std::snprintf(text, sizeof text, "\\u%04x\\u%04x", high, low);
+  }
+  return text;
+}
+
+/// What is no UTF-8 becomes the replacement character; a line stays one, whatever the text holds.
 inline std::string to_json(const std::string& value) {
   std::string text = "\"";
   for (std::size_t at = 0; at < value.size();) {
@@ -60,10 +109,8 @@ inline std::string to_json(const std::string& value) {
       text += "\\ufffd";
     } else if (each == '"' || each == '\\') {
       text += {'\\', each};
-    } else if (length == 1 && each < 0x20) {
-      char escape[8];
-      std::snprintf(escape, sizeof escape, "\\u%04x", static_cast<unsigned>(each));
-      text += escape;
+    } else if (const auto code = code_point(value, at, length); hidden(code)) {
+      text += escaped(code);
     } else {
       text.append(value, at, length);
     }

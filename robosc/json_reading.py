@@ -1,0 +1,56 @@
+"""JSON and lines of JSON that somebody else has written: what can't be used is an error with its place."""
+
+from __future__ import annotations
+
+import json
+import math
+from itertools import accumulate
+from typing import Any, NoReturn
+
+_DEEPEST = 100
+_BRACKETS = {"{": 1, "[": 1, "]": -1, "}": -1}
+#: No number has more; Python itself refuses to read some thousand.
+_DIGITS = 1000
+
+
+class JsonError(ValueError):
+    """Text that is no JSON for us; `position` is where in it, in code points from 0."""
+
+    def __init__(self, message: str, position: int = 0) -> None:
+        super().__init__(message)
+        self.position = position
+
+
+def json_value(text: str) -> Any:
+    """The value of a JSON text. Raises JsonError, also where it nests too deeply or a number is too large."""
+    # `json` follows any number of brackets, until the process ends.
+    if max(accumulate((_BRACKETS.get(each, 0) for each in text), initial=0)) > _DEEPEST:
+        raise JsonError("nested too deeply")
+    try:
+        return json.loads(text, parse_constant=_refuse, parse_int=_integer, parse_float=_number)
+    except json.JSONDecodeError as error:
+        raise JsonError(f"not JSON: {error.msg}", error.pos) from None
+    except ValueError as error:
+        raise JsonError(f"not JSON: {error}") from None
+
+
+def json_lines(text: str) -> list[str]:
+    """The lines of a log or script: they end at line feeds only, for strings may hold what else breaks lines."""
+    return text.split("\n")
+
+
+def _integer(digits: str) -> int:
+    if len(digits) > _DIGITS:
+        raise ValueError(f"a number of {len(digits)} digits is too long")
+    return int(digits)
+
+
+def _number(digits: str) -> float:
+    value = float(digits)
+    if math.isinf(value):
+        raise ValueError(f"{digits[:20]} is too large a number")
+    return value
+
+
+def _refuse(constant: str) -> NoReturn:
+    raise ValueError(f"{constant} is no number of JSON")
