@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from robosc.runtime.agenda import Agenda, Appointment
     from robosc.runtime.json_text import Json
     from robosc.runtime.port import Message, Port
+    from robosc.runtime.reports import LineWriter
     from robosc.runtime.settings import Settings
 
 _Client = rosgraph.ServiceClient | rosgraph.ActionClient
@@ -143,6 +144,10 @@ class Controller:
         return lambda message: self._port.publish(publisher, message)
 
     # The node's life
+
+    def log_to(self, writer: LineWriter) -> None:
+        """Has the event log written there; before the start."""
+        self._log = EventLog("", writer)
 
     def start(self) -> None:
         """Tells what it is and begins to act: the first tick comes after one period."""

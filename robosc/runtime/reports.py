@@ -7,7 +7,7 @@ import time
 from contextlib import suppress
 from pathlib import Path
 from threading import Condition, Thread
-from typing import IO, TYPE_CHECKING
+from typing import IO, TYPE_CHECKING, Protocol
 
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph
@@ -117,11 +117,30 @@ class _LineWriter(Thread):
                 return
 
 
-class EventLog:
-    """A file that gets a line of JSON for each event; without a name, none. Raises OSError where it can't be opened."""
+class LineWriter(Protocol):
+    """Where the lines of a log go."""
 
-    def __init__(self, path: str) -> None:
-        self._writer = _LineWriter(path) if path else None
+    def write(self, line: str) -> None:
+        """Takes a line, which ends with a line feed."""
+
+    def lost(self) -> int:
+        """How many lines were lost that were not told yet."""
+
+    def flush(self) -> None:
+        """Waits until all is written that can be."""
+
+    def close(self) -> None:
+        """Nothing more will be written."""
+
+
+class EventLog:
+    """A line of JSON for each event, in a file, or to a writer; without either, none.
+
+    Raises OSError where the file can't be opened.
+    """
+
+    def __init__(self, path: str, writer: LineWriter | None = None) -> None:
+        self._writer = writer or (_LineWriter(path) if path else None)
 
     @property
     def active(self) -> bool:

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import random
-import tempfile
 from collections import Counter
 from functools import partial
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from robosc.engine import Engine
@@ -52,6 +50,30 @@ def parameters(graph: rosgraph.RosGraph, configuration: Configuration) -> dict[s
     return {"period_ms": period, **rounded, "watchdog_stops": False}
 
 
+class _Lines:
+    """Keeps the lines of a log until they are taken."""
+
+    def __init__(self) -> None:
+        self._lines: list[str] = []
+
+    def write(self, line: str) -> None:
+        self._lines.append(line.removesuffix("\n"))
+
+    def taken(self) -> list[str]:
+        """The lines since the last time."""
+        lines, self._lines = self._lines, []
+        return lines
+
+    def lost(self) -> int:
+        return 0
+
+    def flush(self) -> None:
+        """Nothing waits."""
+
+    def close(self) -> None:
+        """Nothing is open."""
+
+
 class Walk:
     """One walk of one controller, from its start; `seed` decides where it goes."""
 
@@ -72,19 +94,18 @@ class Walk:
 
     def go(self, stimuli: int) -> Iterator[str]:
         """The lines of the trace of so many stimuli."""
-        with tempfile.TemporaryDirectory() as folder:
-            log = Path(folder) / "events.jsonl"
-            declared = {each.name: each.default for each in controller_parameters(self._graph, self._configuration, "")}
-            declared |= self._parameters | {"event_log": str(log)}
-            robot = Robot(self._graph, self._edition, lambda: self._now)
-            agenda = Agenda(lambda: self._now)
-            controller = Controller(self._graph, Settings(declared, self._configuration), robot, agenda)
-            controller.start()
-            try:
-                with log.open(encoding="utf-8") as lines:
-                    yield from self._went(stimuli, controller, robot, agenda, lambda: lines.read().split("\n")[:-1])
-            finally:
-                controller.close()
+        declared = {each.name: each.default for each in controller_parameters(self._graph, self._configuration, "")}
+        settings = Settings(declared | self._parameters, self._configuration)
+        robot = Robot(self._graph, self._edition, lambda: self._now)
+        agenda = Agenda(lambda: self._now)
+        lines = _Lines()
+        controller = Controller(self._graph, settings, robot, agenda)
+        controller.log_to(lines)
+        controller.start()
+        try:
+            yield from self._went(stimuli, controller, robot, agenda, lines.taken)
+        finally:
+            controller.close()
 
     def _went(
         self, stimuli: int, controller: Controller, robot: Robot, agenda: Agenda, new: Callable[[], list[str]]

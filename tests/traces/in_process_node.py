@@ -55,6 +55,25 @@ class _Robot(Robot):
         return made
 
 
+class _AtOnce:
+    """Writes a line of a log to the file before anything else happens."""
+
+    def __init__(self, path: Path) -> None:
+        self._file = path.open("a", encoding="utf-8", buffering=1)
+
+    def write(self, line: str) -> None:
+        self._file.write(line)
+
+    def lost(self) -> int:
+        return 0
+
+    def flush(self) -> None:
+        self._file.flush()
+
+    def close(self) -> None:
+        self._file.close()
+
+
 class InProcessNode(Port):
     """The node of a graph, which writes its event log to a file."""
 
@@ -70,8 +89,9 @@ class InProcessNode(Port):
         self._robot.port = self
         self._agenda = Agenda(lambda: self._now)
         values = {each.name: each.default for each in controller_parameters(graph, configuration, "")}
-        values |= parameters(graph, configuration) | {"event_log": str(log)}
-        self._controller = Controller(graph, Settings(values, configuration), self._robot, self._agenda)
+        settings = Settings(values | parameters(graph, configuration), configuration)
+        self._controller = Controller(graph, settings, self._robot, self._agenda)
+        self._controller.log_to(_AtOnce(log))
 
     def connect(self) -> None:
         self._controller.start()
