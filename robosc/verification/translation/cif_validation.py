@@ -83,9 +83,6 @@ class _Comparison:
         supervisor = specification.supervisor
         self._alphabet = frozenset(specification.alphabet)
         self._loops = {} if supervisor is None else participants([supervisor])
-        stray = next((each for each in self._loops if each not in self._alphabet), None)
-        if stray is not None:
-            raise CifError(f"its supervisor has an edge for '{stray.name}', which is not in its alphabet")
 
     def run(self, capacity: int) -> Verdict:
         """The verdict, with so many nodes for the decision diagrams. Raises CifError, AmbiguityError, ModelError."""
