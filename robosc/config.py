@@ -65,6 +65,10 @@ class Output(_Settings):
     ros2_supervisor_node_location: str | None = Field(default=None, min_length=1)
 
 
+#: The keys of the folders for copies, as a call names them, by their attributes.
+LOCATIONS = {name: f"output.{field.alias}" for name, field in Output.model_fields.items()}
+
+
 class Run(_Settings):
     """A node to start as the existing controller."""
 

@@ -276,7 +276,7 @@ class _Stage:
     def read_journal(self) -> bool:
         """Takes from the journal what was to be moved; False where it can't be from here."""
         try:
-            found = json.loads(self._journal.read_bytes())
+            found = json.loads(reading.read(self._journal, is_input=False))
             self._moves = [_Move(int(number), str(path), list(mark)) for number, path, mark in found["moves"]]
             self._folders = [str(each) for each in found["folders"]]
             for path in [*(move.path for move in self._moves), *self._folders]:

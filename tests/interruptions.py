@@ -8,12 +8,14 @@ from typing import Any, NoReturn
 #: The functions of `os` through which files are made, moved and removed, by pathlib, tempfile and shutil, too.
 CHANGES = ("mkdir", "link", "replace", "unlink", "rmdir")
 
+_MOST = 100
+
 
 def interrupted(action: Callable[[], object], number: int, sent: signal.Signals, *, again: bool = False) -> int:
     """How a process that runs an action ends when it gets a signal before its n-th change, counted from 1.
 
     With `again` it gets the signal before each change that follows, too. 0: the action came to its end; minus the
-    number of a signal: that has killed it; 130: KeyboardInterrupt; 1: another exception.
+    number of a signal: that has killed it; 130: KeyboardInterrupt; what SystemExit says; 1: another exception.
     """
     process = os.fork()
     if process == 0:
@@ -23,10 +25,12 @@ def interrupted(action: Callable[[], object], number: int, sent: signal.Signals,
 
 def interruptions(run: Callable[[int], int]) -> Iterator[tuple[int, int]]:
     """Calls `run` with 1, 2, 3, ... until it answers 0, and yields each number with the answer before that."""
-    number = 1
-    while status := run(number):
+    for number in range(1, _MOST + 1):
+        status = run(number)
+        if status == 0:
+            return
         yield number, status
-        number += 1
+    raise AssertionError(f"it does not end well without a signal at its first {_MOST} changes, either: {status}")
 
 
 def _run(action: Callable[[], object], number: int, sent: signal.Signals, *, again: bool) -> NoReturn:
@@ -38,6 +42,8 @@ def _run(action: Callable[[], object], number: int, sent: signal.Signals, *, aga
         status = 0
     except KeyboardInterrupt:
         status = 130
+    except SystemExit as end:
+        status = 0 if end.code is None else end.code if isinstance(end.code, int) else 1
     finally:
         os._exit(status)
 

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import click
 
 from robosc import __version__
+from robosc.cli import interruption
 from robosc.cli.saying import say
 from robosc.files import noting
 from robosc.visible import visible, visible_lines
@@ -101,18 +102,23 @@ class _Commands(click.Group):
             raise
         except KeyboardInterrupt:
             raise click.exceptions.Exit(INTERRUPTED) from None
-        except OSError as error:
-            raise CallError(
-                f"{visible(str(error.filename))}: {error.strerror}" if error.filename else str(error)
-            ) from error
-        except MemoryError as error:
-            raise CallError(f"the model is too large: {str(error) or 'out of memory'}") from error
         except Exception as error:
-            if ctx.params["traceback"]:
-                traceback.print_exc()
-            hint = "" if ctx.params["traceback"] else "; `robosc --traceback ...` shows where"
-            message = f"a fault of robosc itself, please report it: {type(error).__name__}: {error}{hint}"
-            raise _InternalError(message) from error
+            if interruption.happened():
+                raise click.exceptions.Exit(INTERRUPTED) from None
+            raise _told(error, show=ctx.params["traceback"]) from error
+
+
+def _told(error: Exception, *, show: bool) -> click.ClickException:
+    """What is said of an error that no command has foreseen; with `show` also where it comes from."""
+    if isinstance(error, OSError):
+        named = bool(error.filename)
+        return CallError(f"{visible(str(error.filename))}: {error.strerror}" if named else str(error))
+    if isinstance(error, MemoryError):
+        return CallError(f"the model is too large: {str(error) or 'out of memory'}")
+    if show:
+        traceback.print_exc()
+    hint = "" if show else "; `robosc --traceback ...` shows where"
+    return _InternalError(f"a fault of robosc itself, please report it: {type(error).__name__}: {error}{hint}")
 
 
 @click.command(cls=_Commands, context_settings={"help_option_names": ["-h", "--help"]})
@@ -140,6 +146,7 @@ def run() -> NoReturn:
     What is loaded stays until the end, and then the process ends with it: collecting the objects of the metamodels and
     taking them apart one by one would take a third of the time of a short run.
     """
+    interruption.note()
     gc.set_threshold(500_000, 20, 20)
     for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
         if getattr(sys, name) is None:  # closed by the caller, who wants nothing of it
@@ -151,9 +158,11 @@ def run() -> NoReturn:
         except SystemExit as end:
             status = end.code if isinstance(end.code, int) else 0
         sys.stdout.flush()
+    except KeyboardInterrupt:
+        pass  # told below
     except BrokenPipeError:
         pass  # whoever reads has read enough
     except OSError as error:
         status = WRONG_CALL
         say(f"Error: the output can't be written: {error.strerror}", err=True)
-    os._exit(status)
+    os._exit(INTERRUPTED if interruption.happened() else status)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from robosc.cli import CallError
+from robosc.cli import CallError, interruption
 from robosc.cli.options import FILE, interface_path, library_path
 from robosc.cli.reading import read, read_models
 from robosc.cli.report import Report
@@ -89,6 +89,7 @@ def command(
     if output is None:
         put(text, nl=False)
         return
+    interruption.check()
     write_file(output, text)
 
 

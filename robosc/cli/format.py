@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NoReturn
 import click
 
 from robosc import files
-from robosc.cli import ERRORS_FOUND, CallError
+from robosc.cli import ERRORS_FOUND, CallError, interruption
 from robosc.cli.report import Report
 from robosc.cli.saying import say
 from robosc.language.formatting import format_text
@@ -99,4 +99,5 @@ def _write(file: str, text: str) -> None:
     if file == _STDIN:
         click.open_file("-", "wb").write(text.encode())
         return
+    interruption.check()
     write_file(file, text)

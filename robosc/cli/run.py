@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from robosc.cli import CallError
+from robosc.cli import CallError, interruption
 from robosc.cli.options import FILE, findings_format, interface_path, library_path, model
 from robosc.cli.progress import synthesizing
 from robosc.cli.reading import read_configuration, read_models
@@ -84,6 +84,7 @@ def _run(models: Models, configuration: Configuration, version: int, arguments: 
     graph = models.rosgraph
     assert graph is not None
     last = [message_named(graph, name) for name in configuration.on_shutdown]
+    interruption.leave()
     # The models stay until the end; what is made from now on is collected as ever.
     gc.freeze()
     gc.set_threshold(700, 10, 10)

@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING
 
 import click
 
-from robosc.cli import CallError
+from robosc.cli import CallError, interruption
 from robosc.cli.options import FILE, findings_format, interface_path, library_path, memory, model
 from robosc.cli.progress import progress, synthesizing
 from robosc.cli.reading import read_configuration, read_models
 from robosc.cli.report import Report
 from robosc.cli.saying import say
+from robosc.config import LOCATIONS
 from robosc.output import write
 from robosc.supervision import supervise
 from robosc.targets import TARGETS, Target, together
@@ -45,6 +46,13 @@ _EPILOG = "\n".join(["\b", "Targets:", *(f"  {each.name:<11} {each.description}"
 @click.option(
     "--with-tests", is_flag=True, help="Add a test that plays event traces against the node, and a Dockerfile."
 )
+@click.option(
+    "--confirm",
+    "confirmed",
+    multiple=True,
+    type=click.Choice(list(LOCATIONS.values())),
+    help="Let the configuration name a folder outside of the model's with this key; may be repeated.",
+)
 @findings_format
 @memory
 @library_path
@@ -55,6 +63,7 @@ def command(
     output: str | None,
     chosen: str | None,
     with_tests: bool,
+    confirmed: Sequence[str],
     form: str,
     megabytes: int,
     library_paths: Sequence[str],
@@ -82,6 +91,8 @@ def command(
             if target.needs_graph and models.rosgraph is None:
                 raise CallError(f"{model} has no ROS graph, which {target.name} needs: give its .rosgraph.xmi or .rscd")
         configuration = read_configuration(model, chosen, report)
+        copies = _copies(Path(model).parent, targets, configuration, confirmed, report)
+        report.stop_on_errors()
         if models.sct.supervisor is None:
             with synthesizing() as statistics:
                 supervision = supervise(models.sct, memory=megabytes << 20, statistics=statistics)
@@ -98,15 +109,45 @@ def command(
                     files[target] = target.files(
                         models, configuration, with_tests=with_tests, interface_paths=interface_paths
                     )
-        trees = _trees(folder, Path(model).parent, files, models, configuration)
-        changed = write(trees)
-    say(f"{folder}: {len(trees[folder])} files, {len(changed)} written", err=True)
+        trees = _trees(folder, files, copies, models, configuration)
+        interruption.check()
+        changed = set(write(trees))
+    for written, texts in trees.items():
+        home = written.resolve()
+        say(f"{written}: {len(texts)} files, {sum(home / name in changed for name in texts)} written", err=True)
+
+
+def _copies(
+    home: Path, targets: Sequence[Target], configuration: Configuration, confirmed: Sequence[str], report: Report
+) -> dict[Target, Path]:
+    """The folders that get copies, as the configuration asks; what is wrong with them goes to the report.
+
+    Whoever wrote the configuration may be somebody else than who runs the tool: what lies outside of the model's folder
+    has to be confirmed.
+    """
+    copies = {}
+    for target in targets:
+        named = getattr(configuration.output, target.location) if target.location else None
+        if not target.location or not named:
+            continue
+        key = LOCATIONS[target.location]
+        try:
+            copies[target] = home / Path(named).expanduser()
+            inside = copies[target].resolve().is_relative_to(home.resolve())
+        except (OSError, RuntimeError, ValueError) as error:
+            report.add([configuration.error(tuple(key.split(".")), f'"{key}" names no folder: {error}')])
+            continue
+        if not inside and key not in confirmed:
+            message = f'"{key}" names {copies[target]}, which is outside of the model\'s folder'
+            hint = f"if files may be written there, say so: --confirm {key}"
+            report.add([configuration.error(tuple(key.split(".")), message, hint)])
+    return copies
 
 
 def _trees(
     folder: Path,
-    home: Path,
     generated: Mapping[Target, dict[str, str]],
+    copies: Mapping[Target, Path],
     models: Models,
     configuration: Configuration,
 ) -> dict[Path, dict[str, str]]:
@@ -119,7 +160,6 @@ def _trees(
             names = f"{packages[below].name} and {target.name}"
             raise CallError(f'{names} would both be {below}: "package.name" names both, generate one at a time')
         trees[folder] |= {(below / path).as_posix(): text for path, text in files.items()}
-        copy = getattr(configuration.output, target.location) if target.location else None
-        if copy:
-            trees.setdefault(home / Path(copy).expanduser(), {}).update(files)
+        if target in copies:
+            trees.setdefault(copies[target], {}).update(files)
     return trees

@@ -9,7 +9,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from robosc.cli import ERRORS_FOUND
+from robosc.cli import ERRORS_FOUND, interruption
 from robosc.cli.options import FILE, interface_path, library_path, model
 from robosc.cli.progress import progress
 from robosc.cli.reading import read_configuration, read_models
@@ -78,6 +78,7 @@ def command(
         with progress("verifying"):
             verdicts = verify(models, configuration)
     if junit:
+        interruption.check()
         write_file(junit, as_junit.render(models.sct, verdicts, model))
     if as_object:
         put(as_json.render(models.sct.name, verdicts), nl=False)

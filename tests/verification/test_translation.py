@@ -1,6 +1,9 @@
 """Generated C and CIF mean what the supervised model says; wherever they are changed, that is found, and where."""
 
+import os
 import re
+import tempfile
+from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, given, settings
@@ -256,6 +259,25 @@ def test_without_a_compiler_c_is_skipped(monkeypatch: pytest.MonkeyPatch, tmp_pa
         Outcome.SKIPPED,
         "there is no C compiler (cc, gcc, clang) to try it with",
     )
+
+
+@pytest.mark.parametrize(
+    "said", ["ld: final link failed: No space left on device", "gcc: fatal error: Killed signal terminated program cc1"]
+)
+def test_without_room_for_the_compiler_c_is_skipped(said: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    (tmp_path / "cc").write_text(f"#!/bin/sh\necho '{said}' >&2\nexit 1\n")
+    (tmp_path / "cc").chmod(0o755)
+    monkeypatch.setenv("PATH", f"{tmp_path}:{os.environ['PATH']}")
+    made = pump()
+    verdict = validate_c(made, c_of(made))
+    assert (verdict.outcome, said in verdict.explanation) == (Outcome.SKIPPED, True)
+
+
+def test_without_a_folder_for_temporary_files_c_is_skipped(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "missing"))
+    made = pump()
+    verdict = validate_c(made, c_of(made))
+    assert (verdict.outcome, "No such file or directory" in verdict.explanation) == (Outcome.SKIPPED, True)
 
 
 def test_what_cannot_be_generated_is_skipped() -> None:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import errno
+import os
+import re
 import shutil
 import subprocess
 import tempfile
@@ -32,6 +35,10 @@ if TYPE_CHECKING:
 PROPERTY = "c-translation"
 TEXT = "the generated C"
 COMPILERS = ("cc", "gcc", "clang")
+#: What a compiler says that lacks room, and not an understanding of its text.
+_SHORTAGE = re.compile(
+    "|".join([*map(os.strerror, (errno.ENOSPC, errno.EDQUOT, errno.ENOMEM)), "Killed signal", "memory exhausted"])
+)
 
 
 @dataclass(frozen=True)
@@ -54,12 +61,15 @@ def validate_c(model: sct.SupervisoryControlModel, files: Mapping[str, str], eff
     compiler = next(filter(shutil.which, COMPILERS), None)
     if compiler is None:
         return Verdict(PROPERTY, Outcome.SKIPPED, "", f"there is no C compiler ({', '.join(COMPILERS)}) to try it with")
-    with tempfile.TemporaryDirectory() as name:
-        trial = _Trial(model, Path(name), effort or Effort())
-        fault = trial.build(compiler, files)
-        if fault is not None:
-            return refuted(PROPERTY, fault)
-        return with_enough_memory(trial.run, MEMORY)
+    try:
+        with tempfile.TemporaryDirectory() as name:
+            trial = _Trial(model, Path(name), effort or Effort())
+            fault = trial.build(compiler, files)
+            if fault is not None:
+                return refuted(PROPERTY, fault)
+            return with_enough_memory(trial.run, MEMORY)
+    except OSError as error:  # that says nothing about the C
+        return Verdict(PROPERTY, Outcome.SKIPPED, "", f"it can't be tried in the folder for temporary files: {error}")
 
 
 class _Trial:
@@ -78,7 +88,7 @@ class _Trial:
         self._events = [event for plant in model.plants for event in plant.events]
 
     def build(self, compiler: str, files: Mapping[str, str]) -> str | None:
-        """Compiles engine and explorer; what is wrong with the engine, if anything."""
+        """Compiles engine and explorer; what is wrong with the engine, if anything. Raises OSError where it can't."""
         for path, text in files.items():
             (self._folder / path).write_text(text, encoding="utf-8")
         names = CNames(self._model)
@@ -93,9 +103,20 @@ class _Trial:
         (self._folder / "explorer.c").write_text(source, encoding="utf-8")
         sources = [f"{names.prefix}_supervisor.c", "explorer.c"]
         command = [compiler, "-std=c99", "-O1", "-w", *sources, "-o", "explorer"]
-        done = subprocess.run(command, cwd=self._folder, capture_output=True, text=True, check=False)  # noqa: S603
+        done = subprocess.run(  # noqa: S603
+            command,
+            cwd=self._folder,
+            capture_output=True,
+            text=True,
+            errors="replace",
+            check=False,
+            env={**os.environ, "LC_ALL": "C"},
+        )
         if done.returncode == 0:
             return None
+        short = next((line for line in done.stderr.splitlines() if _SHORTAGE.search(line)), None)
+        if short is not None or done.returncode < 0:
+            raise OSError(short or f"{compiler} was ended by signal {-done.returncode}")
         first = next((line for line in done.stderr.splitlines() if "error" in line), done.stderr.strip())
         return f"{compiler} does not compile {TEXT}: {first}"
 

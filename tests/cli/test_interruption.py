@@ -1,0 +1,80 @@
+"""An interrupt is told as one, wherever it comes, and nothing is written after it."""
+
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from robosc.cli import main
+
+from ..interruptions import interrupted, interruptions
+from .conftest import DOOR
+
+#: Runs the command line after `robosc.cli.transform` got a reading that is interrupted, and hides it: `{hiding}`.
+PROGRAM = """
+import os, signal, sys
+import robosc.cli.transform as transform
+read_models = transform.read_models
+
+def read(*arguments):
+    try:
+        os.kill(os.getpid(), signal.SIGINT)
+        import json  # a moment for Python to hear of it
+    except KeyboardInterrupt:
+        {hiding}
+    return read_models(*arguments)
+
+transform.read_models = read
+from robosc.cli import run
+run()
+"""
+
+
+@pytest.mark.parametrize("hiding", ["pass", "raise SyntaxError('interrupted import')", "raise OSError('interrupted')"])
+def test_an_interrupt_that_comes_out_otherwise(door: Path, hiding: str) -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", PROGRAM.format(hiding=hiding), "transform", door, "--to", "cif"],
+        cwd=door.parent,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (done.returncode, done.stderr) == (130, "")
+    assert [each.name for each in door.parent.iterdir()] == [door.name]
+
+
+def test_an_ignored_interrupt_stays_ignored(door: Path) -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", PROGRAM.format(hiding="pass"), "transform", door, "--to", "cif"],
+        cwd=door.parent,
+        check=False,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_IGN),
+    )
+    assert done.returncode == 0
+    assert (door.parent / "build" / "Door" / "Door.cif").exists()
+
+
+@pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
+def test_a_command_is_interrupted_at_any_change(tmp_path: Path, sent: signal.Signals) -> None:
+    """`format`, as the quickest of those that write: the model is the old one or the new one."""
+    model = tmp_path / "door.rscd"
+    untidy = DOOR.replace("  component", "component")
+
+    def format_model() -> None:
+        raise SystemExit(main(["format", str(model)], standalone_mode=False))
+
+    def run(number: int) -> int:
+        model.write_text(untidy)
+        return interrupted(format_model, number, sent)
+
+    seen = []
+    for _, _ in interruptions(run):
+        seen.append(model.read_text())
+        assert seen[-1] in (untidy, DOOR)
+        if sent != signal.SIGKILL:
+            assert list(tmp_path.iterdir()) == [model]
+    assert {untidy, DOOR} == set(seen)
+    assert model.read_text() == DOOR
+    assert list(tmp_path.iterdir()) == [model]
