@@ -21,6 +21,12 @@ if TYPE_CHECKING:
 
 FILE_NAME = "controller-config.json"
 RULE = "configuration"
+#: What a node says at its start where nothing would stop its robot: when it ends, and when a topic falls silent.
+NO_STOP = "onShutdown names no message: when this node ends, the robot goes on as it was told last"
+NO_STOP_ON_SILENCE = (
+    "watchdog_stops holds commands back and does not stop the robot: onShutdown names no message, it goes on as it was"
+    " told last"
+)
 #: How many folders below the model a configuration is looked for.
 SEARCH_DEPTH = 3
 
@@ -166,8 +172,20 @@ class Configuration(_Settings):
         default={}, description="By topic, service or action: ROS 2 quality of service."
     )
     watchdog_ms: ByTopic[Milliseconds] = Field(default={}, description="By topic: silence that is reported.")
-    watchdog_stops: bool = Field(default=False, description="Whether such a silence stops the controller.")
-    on_shutdown: list[str] = Field(default=[], description="Messages of the model to send on shutdown, in this order.")
+    watchdog_stops: bool = Field(
+        default=False,
+        description="Whether such a silence holds all commands back, cancels actions and sends what onShutdown names.",
+    )
+    on_shutdown: list[str] = Field(
+        default=[],
+        description="Messages of the model to send, in this order, when the node ends or a topic's silence stops it."
+        " Without any the robot goes on as it was told last.",
+    )
+    on_withheld: list[str] = Field(
+        default=[],
+        description="Messages of the model to send, in this order, when a command's data can't be sent."
+        " Without any the robot goes on as it was told last.",
+    )
     lifecycle: bool = Field(default=False, description="Whether the ROS 2 node is a managed one.")
     package: Package = Package()
 
@@ -193,6 +211,23 @@ class Configuration(_Settings):
         """
         return Diagnostic(self._file, _span(self._text, key), Severity.ERROR, RULE, message, hint)
 
+    def warning(self, key: Key, message: str, hint: str | None = None) -> Diagnostic:
+        """A warning at such a key."""
+        return replace(self.error(key, message, hint), severity=Severity.WARNING)
+
+    @property
+    def says_how_to_stop(self) -> bool:
+        """Whether somebody has decided what is sent when the node ends, be it nothing."""
+        return "on_shutdown" in self.model_fields_set
+
+    @property
+    def watchdog_meaning(self) -> str:
+        """What the parameter `watchdog_stops` means with these settings."""
+        if not self.on_shutdown:
+            stands = "It sends nothing: what the robot was told last stands."
+            return f"Whether a silent topic holds commands back and cancels actions. {stands}"
+        return f"Whether a silent topic holds commands back, cancels actions and sends {', '.join(self.on_shutdown)}."
+
     def unknown_names(self, topics: Sequence[str]) -> list[Diagnostic]:
         """Warnings about settings for what the robot does not have.
 
@@ -200,11 +235,8 @@ class Configuration(_Settings):
         """
         settings = (("frameId", self.frame_id), ("qos", self.qos), ("watchdogMs", self.watchdog_ms))
         return [
-            replace(
-                self.error(
-                    (setting, name), f'"{setting}": the robot has no {name}', _repair(name, topics) if topics else None
-                ),
-                severity=Severity.WARNING,
+            self.warning(
+                (setting, name), f'"{setting}": the robot has no {name}', _repair(name, topics) if topics else None
             )
             for setting, values in settings
             for name in values

@@ -35,6 +35,7 @@ EVERYTHING = {
     "watchdogMs": {"/scan": 500},
     "watchdogStops": True,
     "onShutdown": ["halt"],
+    "onWithheld": ["halt"],
     "lifecycle": True,
     "package": {
         "name": "my_robot",

@@ -79,11 +79,15 @@ def command(
 def _run(models: Models, configuration: Configuration, version: int, arguments: Sequence[str], *, layer: bool) -> None:
     from robosc.m2t.cpp.shutdown import message_named
     from robosc.runtime.node import run_controller, run_layer
+    from robosc.runtime.settings import SafeMessages
     from robosc.runtime.starting import StartError
 
     graph = models.rosgraph
     assert graph is not None
-    last = [message_named(graph, name) for name in configuration.on_shutdown]
+    last, instead = (
+        [sending for name in names for sending in [message_named(graph, name)] if sending is not None]
+        for names in (configuration.on_shutdown, configuration.on_withheld)
+    )
     interruption.leave()
     # The models stay until the end; what is made from now on is collected as ever.
     gc.freeze()
@@ -92,6 +96,6 @@ def _run(models: Models, configuration: Configuration, version: int, arguments: 
         if layer:
             run_layer(graph, configuration, version, arguments)
         else:
-            run_controller(graph, configuration, version, arguments, [each for each in last if each is not None])
+            run_controller(graph, configuration, version, arguments, SafeMessages(last, instead))
     except StartError as error:
         raise CallError(f"{error}\n  {error.hint}" if error.hint else str(error)) from error

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import reduce
 from typing import TYPE_CHECKING
 
+from robosc.config import NO_STOP, NO_STOP_ON_SILENCE
 from robosc.definition import definition_text
 from robosc.engine import ControlLoop, Hooks
 from robosc.engine import Settings as LoopSettings
@@ -20,7 +21,7 @@ from robosc.runtime.happenings import Happenings
 from robosc.runtime.node_data import NodeData, bounded
 from robosc.runtime.port import Part
 from robosc.runtime.reports import EventLog, nested
-from robosc.runtime.settings import watchdog
+from robosc.runtime.settings import SafeMessages, watchdog
 from robosc.runtime.state import StateReporter
 from robosc.runtime.throttle import Throttle
 from robosc.runtime.watchdog import Watchdog
@@ -66,7 +67,7 @@ class _Connected:
 class Controller:
     """A robot's controller. All its functions belong to the thread that works on the agenda.
 
-    `last` is what is sent when the node stops the robot. Raises OSError where the event log can't be written.
+    Raises OSError where the event log can't be written.
     """
 
     def __init__(
@@ -75,13 +76,14 @@ class Controller:
         settings: Settings,
         port: Port,
         agenda: Agenda,
-        last: Sequence[rosgraph.Sending] = (),
+        safe: SafeMessages | None = None,
     ) -> None:
         self._graph = graph
         self._settings = settings
         self._port = port
         self._agenda = agenda
-        self._last = last
+        self._safe = safe or SafeMessages()
+        self._withheld: set[str] = set()
         self._log = EventLog(str(settings.parameters["event_log"]))
         loop = LoopSettings(
             settings.number("events_per_tick"),
@@ -154,12 +156,20 @@ class Controller:
         self._reports.define(definition_text(self._graph))
         self._wiring.start()
         stops = bool(self._settings.parameters["watchdog_stops"])
+        self._warn_of_no_stop(stops=stops)
         for subscription in self._graph.subscriptions:
             seconds = self._settings.seconds(watchdog(subscription))
             if seconds:
                 self._watchdogs[subscription] = self._watch(subscription.topic, seconds, stops=stops)
         period = self._settings.seconds("period_ms")
         self._plan(self._agenda.clock() + period, period)
+
+    def _warn_of_no_stop(self, *, stops: bool) -> None:
+        if self._graph.publishers and not self._safe.on_shutdown:
+            if stops:
+                self._port.warn(NO_STOP_ON_SILENCE)
+            elif not self._settings.configuration.says_how_to_stop:
+                self._port.warn(NO_STOP)
 
     def _plan(self, time: float, period: float) -> None:
         def tick() -> None:
@@ -219,7 +229,11 @@ class Controller:
             if client.busy and not self._loop.perform(event_name(event)):
                 client.cancel(expected=False)
         self._loop.end()
-        for sending in self._last:
+        self._send_outside(self._safe.on_shutdown)
+
+    def _send_outside(self, messages: Sequence[rosgraph.Sending]) -> None:
+        """Sends messages whatever the requirements on them say."""
+        for sending in messages:
             sender = self._senders[sending.event]
             if self._prepare(sender):
                 sender.send(sender.message)
@@ -301,8 +315,14 @@ class Controller:
         sender = self._senders.get(event)
         if sender is not None:
             busy = sender.client is not None and sender.client.busy
-            if self._held or busy or not self._prepare(sender):
+            if self._held or busy:
                 return False
+            if not self._prepare(sender):
+                if name not in self._withheld:
+                    self._withheld.add(name)
+                    self._send_outside(self._safe.on_withheld)
+                return False
+            self._withheld.discard(name)
             self._noted = sender.noted
         elif event in self._resets and self._resets[event].retry is not None:
             return False
@@ -335,6 +355,8 @@ class Controller:
         return True
 
     def _after(self, name: str) -> None:
+        # What may no longer be sent is no longer withheld.
+        self._withheld = {command for command in self._withheld if self._loop.engine.enabled(command)}
         event = self._events[name]
         direction = "in" if event in self._incoming else "internal"
         noted, self._noted = self._noted, None

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, TypeVar
 from robosc.runtime.controller import Controller
 from robosc.runtime.layer import Layer
 from robosc.runtime.reports import default_log
-from robosc.runtime.settings import Settings, controller_parameters, layer_parameters
+from robosc.runtime.settings import SafeMessages, Settings, controller_parameters, layer_parameters
 from robosc.runtime.starting import StartError
 
 if TYPE_CHECKING:
@@ -27,11 +27,11 @@ def run_controller(
     configuration: Configuration,
     version: int,
     arguments: Sequence[str],
-    last: Sequence[rosgraph.Sending] = (),
+    safe: SafeMessages,
 ) -> None:
     """Runs the controller of a graph whose model has a supervisor, until the user interrupts it.
 
-    `version` is that of ROS, `arguments` are its own, `last` is what is sent when the node stops the robot.
+    `version` is that of ROS, `arguments` are its own.
     Raises StartError where it can't start.
     """
     name = configuration.package_name(graph)
@@ -39,7 +39,7 @@ def run_controller(
     try:
         log = default_log(port.full_name, name) if configuration.write_events_to_log else ""
         settings = Settings(port.parameters(controller_parameters(graph, configuration, log)), configuration)
-        controller = _opened(lambda: Controller(graph, settings, port, port.agenda, last))
+        controller = _opened(lambda: Controller(graph, settings, port, port.agenda, safe))
         port.open_reports(["state", "definition"] if configuration.publish_state_information else [])
         port.connect(controller)
     except StartError:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from robosc.config import Configuration
     from robosc.metamodel import rosgraph
@@ -48,7 +48,7 @@ def controller_parameters(graph: rosgraph.RosGraph, configuration: Configuration
         ),
         Parameter("react_immediately", loop.react_immediately, "Whether incoming data may start events at once."),
         *(clients if len(clients) > 1 else ()),
-        Parameter("watchdog_stops", configuration.watchdog_stops, "Whether a silent topic stops the robot."),
+        Parameter("watchdog_stops", configuration.watchdog_stops, configuration.watchdog_meaning),
         *(
             Parameter(
                 watchdog(each),
@@ -104,6 +104,14 @@ def check(parameter: Parameter, value: object) -> Value:
         if not low <= value <= high:
             raise ValueError(f"{parameter.name} is {value}, not between {low} and {high}")
     return value
+
+
+@dataclass(frozen=True)
+class SafeMessages:
+    """What goes out whatever is required of it: when the node stops the robot, and when a command can't be sent."""
+
+    on_shutdown: Sequence[rosgraph.Sending] = ()
+    on_withheld: Sequence[rosgraph.Sending] = ()
 
 
 @dataclass(frozen=True)

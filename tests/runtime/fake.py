@@ -10,7 +10,7 @@ import robosc
 from robosc.config import Configuration
 from robosc.runtime.agenda import Agenda
 from robosc.runtime.controller import Controller
-from robosc.runtime.settings import Settings, controller_parameters
+from robosc.runtime.settings import SafeMessages, Settings, controller_parameters
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -115,14 +115,9 @@ class World:
         self.log = log
         chosen = configuration or Configuration()
         values = {each.name: each.default for each in controller_parameters(self.graph, chosen, str(log))}
-        last = [
-            each
-            for name in chosen.on_shutdown
-            for topic in self.graph.publishers
-            for each in topic.sendings
-            if each.name == name
-        ]
-        self.controller = Controller(self.graph, Settings(values | parameters, chosen), self.port, self.agenda, last)
+        sendings = {each.name: each for topic in self.graph.publishers for each in topic.sendings}
+        safe = SafeMessages(*([sendings[name] for name in names] for names in (chosen.on_shutdown, chosen.on_withheld)))
+        self.controller = Controller(self.graph, Settings(values | parameters, chosen), self.port, self.agenda, safe)
 
     def start(self) -> World:
         self.controller.start()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
@@ -12,7 +13,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from jsonschema import Draft202012Validator
 
-from robosc.config import Configuration
+from robosc.config import NO_STOP, NO_STOP_ON_SILENCE, Configuration
 from robosc.resources import locate
 from robosc.runtime.port import Endpoint, Outcome
 from tests.runtime.fake import Record, World
@@ -29,7 +30,7 @@ MAZE = TESTS.parent / "examples" / "maze_solver" / "maze_solver.rscd"
 
 @pytest.fixture
 def courier(tmp_path: Path) -> World:
-    world = World(COURIER, tmp_path / "events.jsonl")
+    world = World(COURIER, tmp_path / "events.jsonl", Configuration(on_shutdown=[]))
     world.port.types = {"ranges": "sequence<float>"}
     return world.start()
 
@@ -171,6 +172,51 @@ def test_a_silent_topic_trips_the_watchdog_and_speaking_again_ends_it(make: Call
     world.wait(0.2)
     assert "/scan: speaks again" in world.port.said
     assert len(world.port.sent) > count
+
+
+def test_a_withheld_command_has_something_safe_sent_in_its_place_once(make: Callable[..., World]) -> None:
+    """Again where it was not to be sent meanwhile, or was sent."""
+
+    def halted() -> int:
+        return len([each for each in events(world) if each["direction"] == "outside"])
+
+    world = make(onWithheld=["halt"])
+    world.wait(0.15)
+    world.hear("scan", ranges=[3.0, 0.3])
+    assert sent(world, "/cmd_vel")[-1]["linear"]["x"] == 0.3
+    assert halted() == 0
+    world.hear("scan", ranges=[3.0, math.nan])
+    world.wait(0.15)
+    assert sent(world, "/cmd_vel")[-1]["linear"]["x"] == 0.0
+    assert halted() == 1
+    count = len(world.port.sent)
+    world.wait(1)
+    assert (halted(), len(world.port.sent)) == (1, count)
+    for front in (0.1, 3.0):
+        world.hear("scan", ranges=[front, math.nan])
+    assert halted() == 2, "the supervisor had forbidden it in between"
+    for pace in (0.3, math.nan):
+        world.hear("scan", ranges=[3.0, pace])
+        world.wait(0.15)
+    assert halted() == 3, "it had been sent in between"
+    assert {each["event"] for each in events(world) if each["direction"] == "outside"} == {"message_halt.c_trigger"}
+
+
+@pytest.mark.parametrize(
+    ("values", "expected"),
+    [
+        ({}, [NO_STOP]),
+        ({"watchdogStops": True}, [NO_STOP_ON_SILENCE]),
+        ({"watchdogStops": True, "onShutdown": []}, [NO_STOP_ON_SILENCE]),
+        ({"onShutdown": []}, []),
+        ({"watchdogStops": True, "onShutdown": ["halt"]}, []),
+    ],
+)
+def test_says_at_its_start_that_nothing_stops_the_robot(
+    values: dict[str, Any], expected: list[str], tmp_path: Path
+) -> None:
+    world = World(SCOUT, tmp_path / "events.jsonl", Configuration.model_validate(values)).start()
+    assert world.port.said == expected
 
 
 def test_stopping_cancels_goals_then_sends_the_last_messages_and_nothing_more(make: Callable[..., World]) -> None:

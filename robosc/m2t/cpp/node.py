@@ -122,7 +122,7 @@ class Client:
 
 @dataclass(frozen=True)
 class LastMessage:
-    """A message that goes out when the node stops the robot, and the requirements that this overrides."""
+    """A message that goes out whatever is required of it, and the requirements that this overrides."""
 
     publisher: Publisher
     message: Message
@@ -169,10 +169,13 @@ class Variable:
 class Node:
     """The node of one graph; everything is ready to be printed, in the order of the model.
 
-    `on_shutdown` names the messages that go out when the node stops the robot; each must be one that it sends.
+    `on_shutdown` names the messages that go out when the node stops the robot, `on_withheld` those when data of a
+    command can't be sent; each must be one that it sends.
     """
 
-    def __init__(self, graph: rosgraph.RosGraph, on_shutdown: Sequence[str] = ()) -> None:
+    def __init__(
+        self, graph: rosgraph.RosGraph, on_shutdown: Sequence[str] = (), on_withheld: Sequence[str] = ()
+    ) -> None:
         self._graph = graph
         self._names = CppNames(graph)
         self._printer = CppPrinter(self._names)
@@ -190,6 +193,7 @@ class Node:
         self.services = [self._service(each) for each in graph.serviceClients]
         self.actions = [self._action(each) for each in graph.actionClients]
         self.shutdown = [self._last(name) for name in on_shutdown]
+        self.instead = [self._last(name) for name in on_withheld]
         outside = {each.event for topic in graph.subscriptions for each in topic.receptions}
         outside |= {each.event for topic in graph.publishers for each in topic.sendings}
         for service in graph.serviceClients:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from robosc.config import NO_STOP, NO_STOP_ON_SILENCE
 from robosc.definition import definition_text
 from robosc.m2t.c import engine
 from robosc.m2t.cpp.rendering import fold, node_environment
@@ -82,6 +83,7 @@ def package(
         "own_headers": sorted(headers),
         "period_ms": configuration.control_loop.period_ms,
         "settings": configuration,
+        "no_stop": _no_stop(node, configuration),
         "watchdog_ms": lambda topic: configuration.watchdog_ms.get(topic.removeprefix("/"), 0),
         "publishes_state": configuration.publish_state_information,
         "writes_log": configuration.write_events_to_log,
@@ -94,3 +96,13 @@ def package(
     texts[f"src/{name}_node.cpp"] = fold(texts[f"src/{name}_node.cpp"])
     supervisor = engine.generate(graph.model, configuration.control_loop)
     return texts | {f"src/{file}": text for file, text in supervisor.items()}
+
+
+def _no_stop(node: Node, configuration: Configuration) -> list[tuple[str, str]]:
+    """What the node says at its start, under which condition, where nothing would stop its robot."""
+    if node.shutdown or not node.publishers:
+        return []
+    silence = [("watchdog_stops_", NO_STOP_ON_SILENCE)] if node.subscriptions else []
+    if configuration.says_how_to_stop:
+        return silence
+    return [*silence, ("!watchdog_stops_" if silence else "", NO_STOP)]

@@ -12,11 +12,12 @@ from robosc.m2t.cpp.reasons import Reasons
 from robosc.m2t.cpp.shutdown import message_named
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph
+from robosc.metamodel.expression_types import is_double
 from robosc.metamodel.places import place
 from robosc.metamodel.reflection import tree
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from robosc.config import Configuration
     from robosc.models import Models
@@ -107,14 +108,15 @@ def _fields(graph: rosgraph.RosGraph) -> Iterator[tuple[ex.Located, str]]:
 
 
 def _settings(graph: rosgraph.RosGraph, configuration: Configuration) -> Iterator[Diagnostic]:
-    yield from _shutdown(graph, configuration)
+    yield from _outside(graph, configuration, "onShutdown", configuration.on_shutdown)
+    yield from _outside(graph, configuration, "onWithheld", configuration.on_withheld)
+    yield from _nothing_safe(graph, configuration)
     heard = {each.topic.removeprefix("/") for each in graph.subscriptions}
     others = [each.topic for each in graph.publishers]
     others += [each.identifier for each in graph.serviceClients] + [each.identifier for each in graph.actionClients]
     for topic in configuration.watchdog_ms:
         if topic not in heard and topic in {each.removeprefix("/") for each in others}:
-            finding = configuration.error(("watchdogMs", topic), f'"watchdogMs": the node does not listen to {topic}')
-            yield replace(finding, severity=Severity.WARNING)
+            yield configuration.warning(("watchdogMs", topic), f'"watchdogMs": the node does not listen to {topic}')
     controller = configuration.supervisor.controller
     unused = {
         ("supervisor", "controller"): controller.run or controller.launch,
@@ -122,21 +124,69 @@ def _settings(graph: rosgraph.RosGraph, configuration: Configuration) -> Iterato
     }
     for place_of_key, setting in unused.items():
         if setting:
-            finding = configuration.error(place_of_key, f'"{".".join(place_of_key)}" has no effect on this target')
-            yield replace(finding, severity=Severity.WARNING)
+            yield configuration.warning(place_of_key, f'"{".".join(place_of_key)}" has no effect on this target')
 
 
-def _shutdown(graph: rosgraph.RosGraph, configuration: Configuration) -> Iterator[Diagnostic]:
-    """What can't be sent on shutdown; and what is sent then, requirements or not."""
+def _outside(
+    graph: rosgraph.RosGraph, configuration: Configuration, setting: str, names: Sequence[str]
+) -> Iterator[Diagnostic]:
+    """What can't be sent where a setting names it; and what is sent then, requirements or not."""
     reasons = Reasons(graph.model)
-    for place_of_name, name in enumerate(configuration.on_shutdown):
-        key = ("onShutdown", place_of_name)
+    for place_of_name, name in enumerate(names):
+        key = (setting, place_of_name)
         sending = message_named(graph, name)
         if sending is None:
             sent = [each.name for publisher in graph.publishers for each in publisher.sendings]
             hint = f"messages to the robot: {', '.join(sent)}" if sent else None
-            yield configuration.error(key, f'"onShutdown": {name} is no message that the node sends', hint)
+            yield configuration.error(key, f'"{setting}": {name} is no message that the node sends', hint)
             continue
         for requirement in reasons.requirements(sending.event):
-            finding = configuration.error(key, f'"onShutdown": {name} is sent then in spite of "{requirement}"')
-            yield replace(finding, severity=Severity.WARNING)
+            yield configuration.warning(key, f'"{setting}": {name} is sent then in spite of "{requirement}"')
+
+
+def _nothing_safe(graph: rosgraph.RosGraph, configuration: Configuration) -> Iterator[Diagnostic]:
+    """Where the robot would go on as it was told last since nothing else is sent."""
+    if not graph.publishers:
+        return
+    if configuration.watchdog_stops and not configuration.on_shutdown:
+        message = '"watchdogStops" only holds commands back: "onShutdown" names nothing that stops the robot'
+        yield configuration.warning(
+            ("watchdogStops",), message, 'name the message that stops it: "onShutdown": ["halt"]'
+        )
+    elif not configuration.says_how_to_stop:
+        message = '"onShutdown" is not set: when the node ends, the robot goes on as it was told last'
+        hint = 'name the message that stops it, as in "onShutdown": ["halt"]; where nothing can, write []'
+        yield configuration.warning(("onShutdown",), message, hint)
+    if "on_withheld" not in configuration.model_fields_set:
+        outside = _from_outside(graph)
+        for sending in (each for publisher in graph.publishers for each in publisher.sendings):
+            fields = [field for each in sending.alternatives for field in each.fields]
+            found = next((each for each in fields if is_double(each.value) and _reads(each.value, outside)), None)
+            if found is not None:
+                message = (
+                    f"{sending.name} is not sent where its {'.'.join(found.path)} is no finite number, nor is anything"
+                    " else: the robot goes on as it was told last"
+                )
+                hint = 'name what is sent then in controller-config.json, as in "onWithheld": ["halt"]; or write []'
+                yield replace(_error(found, message, hint), severity=Severity.WARNING)
+
+
+def _from_outside(graph: rosgraph.RosGraph) -> set[rosgraph.NodeVariable]:
+    """The variables that get, in one step or several, a double that the robot sent or that a division made."""
+    assignments = [each for reaction in graph.reactions for each in reaction.assignments if is_double(each.value)]
+    found: set[rosgraph.NodeVariable] = set()
+    more = True
+    while more:
+        reached = {each.variable for each in assignments if _reads(each.value, found)}
+        more = not reached <= found
+        found |= reached
+    return found
+
+
+def _reads(value: ex.Expression, outside: set[rosgraph.NodeVariable]) -> bool:
+    return any(
+        (isinstance(part, rosgraph.WireAccess) and isinstance(part.type, ex.DoubleType))
+        or (isinstance(part, rosgraph.NodeVariableReference) and part.variable in outside)
+        or (isinstance(part, ex.Division) and not isinstance(part.right, (ex.IntegerLiteral, ex.DoubleLiteral)))
+        for _, part in tree(value)
+    )

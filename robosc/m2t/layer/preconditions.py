@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from robosc.config import Configuration
@@ -99,9 +98,9 @@ def _unused(configuration: Configuration) -> Iterator[Diagnostic]:
         "watchdogMs": configuration.watchdog_ms,
         "watchdogStops": configuration.watchdog_stops,
         "onShutdown": configuration.on_shutdown,
+        "onWithheld": configuration.on_withheld,
         "lifecycle": configuration.lifecycle,
     }
     for key, used in settings.items():
         if used:
-            finding = configuration.error((key,), f'"{key}" has no effect on this target')
-            yield replace(finding, severity=Severity.WARNING)
+            yield configuration.warning((key,), f'"{key}" has no effect on this target')

@@ -32,7 +32,7 @@ def generate(models: Models, configuration: Configuration, tests: TraceTest | No
     """The files of the package, by their path in it. `preconditions` must have found nothing."""
     graph = models.rosgraph
     assert graph is not None
-    node = Node(graph, configuration.on_shutdown)
+    node = Node(graph, configuration.on_shutdown, configuration.on_withheld)
     headers = {header(each) for each in node.interfaces} | {"ros/callback_queue.h", "ros/ros.h"}
     if configuration.publish_state_information:
         headers.add("std_msgs/String.h")

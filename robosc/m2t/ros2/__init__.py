@@ -29,7 +29,7 @@ def generate(models: Models, configuration: Configuration, tests: TraceTest | No
     """The files of the package, by their path in it. `preconditions` must have found nothing."""
     graph = models.rosgraph
     assert graph is not None
-    node = Node(graph, configuration.on_shutdown)
+    node = Node(graph, configuration.on_shutdown, configuration.on_withheld)
     own = ("callback_guard.hpp", "hangup.hpp", "shutdown_hook.hpp", "wiring.hpp")
     more = _FILES | (_TEST_FILES if tests else {})
     target = Target("robosc.m2t.ros2", ".launch.py", own, more, ("robosc.m2t.rclcpp",))

@@ -40,7 +40,9 @@ GOOD = {
 }
 
 
-def found(tmp_path: Path, settings: str = "{}", least: Severity | None = None, **changes: str) -> list[str]:
+def found(
+    tmp_path: Path, settings: str = '{"onShutdown": []}', least: Severity | None = None, **changes: str
+) -> list[str]:
     path = tmp_path / "cart.rscd"
     path.write_text(ROBOT % (GOOD | changes), encoding="utf-8")
     robot = robosc.load(path)
@@ -93,6 +95,10 @@ def test_names_and_kinds(tmp_path: Path, changes: dict[str, str], expected: str)
         (
             '{\n\n "onShutdown": ["where"]}',
             'controller-config.json:3: "onShutdown": where is no message that the node sends',
+        ),
+        (
+            '{\n "onWithheld": ["where"]}',
+            'controller-config.json:2: "onWithheld": where is no message that the node sends',
         ),
         (
             '{"package": {\n "maintainer": "A\\") execute_process(COMMAND id) (\\""}}',
@@ -149,8 +155,56 @@ def test_what_goes_out_in_spite_of_requirements_is_listed(tmp_path: Path) -> Non
     assert found(tmp_path, settings, Severity.ERROR, more=MORE) == []
 
 
+@pytest.mark.parametrize(
+    ("settings", "expected"),
+    [
+        ("{}", '1: "onShutdown" is not set: when the node ends, the robot goes on as it was told last'),
+        ('{"onShutdown": []}', None),
+        (
+            '{"onShutdown": [],\n "watchdogStops": true}',
+            '2: "watchdogStops" only holds commands back: "onShutdown" names nothing that stops the robot',
+        ),
+    ],
+)
+def test_where_nothing_stops_the_robot(tmp_path: Path, settings: str, expected: str | None) -> None:
+    warnings = [f"controller-config.json:{expected}"] if expected else []
+    assert found(tmp_path, settings, Severity.WARNING, more=MORE) == warnings
+    assert found(tmp_path, settings, Severity.WARNING) == [], "it sends no messages"
+
+
+DOUBLES = """incoming message drive with type: double
+  }
+  component Eye {
+    outgoing message seen with identifier: "eye", type: double
+    behaviour {
+      variable last: double
+      variable before: double
+      variable count: integer(0..9)
+      initial marked state open { on response from seen do before := last, last := value, count := count + 1 }
+    }
+  }
+  provide drive with %s
+  component Arm {"""
+
+
+@pytest.mark.parametrize(
+    ("provided", "outside"),
+    [("0.5", False), ("Eye.before * 2", True), ("1 / Eye.count", True), ("Eye.count / 2", False), ("-Eye.last", True)],
+)
+def test_what_may_be_no_number_has_something_in_its_place(tmp_path: Path, provided: str, outside: bool) -> None:
+    said = (
+        "cart.rscd:18: drive is not sent where its data is no finite number, nor is anything"
+        " else: the robot goes on as it was told last"
+    )
+    more = DOUBLES % provided
+    assert found(tmp_path, '{"onShutdown": []}', Severity.WARNING, more=more) == ([said] if outside else [])
+    for decided in ("[]", '["drive"]'):
+        settings = f'{{"onShutdown": [], "onWithheld": {decided}}}'
+        assert found(tmp_path, settings, Severity.WARNING, more=more) == []
+
+
 def test_only_topics_that_the_node_hears_have_a_watchdog(tmp_path: Path) -> None:
-    settings = '{"watchdogMs": {"eye": 5,\n "halt": 5}}'
+    settings = '{"onShutdown": [], "watchdogMs": {"eye": 5,\n "halt": 5}}'
     assert found(tmp_path, settings, more=MORE) == [
         'controller-config.json:2: "watchdogMs": the node does not listen to halt'
     ]

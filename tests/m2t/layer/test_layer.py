@@ -231,7 +231,7 @@ def test_two_communications_on_one_topic(target: str, tmp_path: Path) -> None:
         ("layer-topic", "error", 9),
     ]
     assert "go and halt are both on" in found[1].message
-    assert TARGETS[target.removesuffix("-layer")].findings(models, Configuration()) == []
+    assert TARGETS[target.removesuffix("-layer")].findings(models, Configuration(on_shutdown=[])) == []
 
 
 @pytest.mark.parametrize(

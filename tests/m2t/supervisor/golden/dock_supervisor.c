@@ -212,6 +212,7 @@ static bool run(dock_supervisor *self, dock_event event)
         return false;
     }
     execute(&self->state, &self->inputs, event);
+    self->last = (uint8_t)event;
     self->rested = false;
     if ((unsigned)event < QUEUED) {
         self->due[event] = false;
@@ -291,8 +292,8 @@ static void settle(dock_supervisor *self)
     }
 }
 
-/* One round in a settled state: each cancel, then each trigger, of the first so many of the queue or of those that are
- * due, runs if it is enabled at its turn; at most so many, and what is left of these is returned. */
+/* One round in a settled state: each cancel, then each trigger in the queue before `end`, or each of them that is due,
+ * runs if it is enabled at its turn; at most so many, and what is left of these is returned. */
 static unsigned serve(dock_supervisor *self, bool all, unsigned end, unsigned most)
 {
     unsigned left = most;
@@ -419,9 +420,6 @@ bool dock_perform(dock_supervisor *self, dock_event event)
     bool ran = ((unsigned)event < EVENTS) && guard(&self->state, event);
     if (ran) {
         ran = run(self, event);
-    }
-    if (ran) {
-        self->last = (uint8_t)event;
     }
     return ran;
 }

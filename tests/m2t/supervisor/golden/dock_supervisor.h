@@ -190,7 +190,7 @@ typedef struct dock_supervisor {
     bool due[5]; /* What a batch made possible. */
     bool taken[3]; /* Topics that were sent to; services and actions that were started. */
     uint16_t reactions[5]; /* How many there were since the last tick, to each topic. */
-    uint8_t last; /* What was performed in the batch. */
+    uint8_t last; /* What happened last. */
     bool owing; /* Whether what is due found that count used up. */
     bool started; /* Whether there was a tick. */
     uint8_t silent; /* The silent event to ask next. */

@@ -150,6 +150,7 @@ class Controller {
           node_.createSteadyTimer(ros::WallDuration(period), [this](const ros::SteadyTimerEvent&) { tick(); });
     }
     wiring_.start();
+    warn_of_no_stop();
   }
 
   // When nothing is delivered any more, but ROS still runs.
@@ -384,6 +385,15 @@ class Controller {
 
   // Stops the robot while all triggers are held: running actions are cancelled.
   void halt() {
+  }
+
+  // At the start: nothing would stop the robot.
+  void warn_of_no_stop() {
+    if (watchdog_stops_)
+        ROS_WARN("%s",
+        "watchdog_stops holds commands back and does not stop the robot: onShutdown names no message, it goes on as it was told last");
+    if (!watchdog_stops_)
+        ROS_WARN("%s", "onShutdown names no message: when this node ends, the robot goes on as it was told last");
   }
 
   // Before the node ends, and while it can still send.

@@ -10,7 +10,9 @@
 #include <cstdint>
 #include <deque>
 #include <exception>
+#include <iterator>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -275,12 +277,31 @@ class Controller {
     return watchdog_stops_ && (order_watchdog_->silent() || stop_watchdog_->silent());
   }
 
+  // Where the data of a command can't be made, these go out instead, whatever is required of them: once, until its data
+  // can be made again or it is not to be sent any more.
+  bool or_instead(porter_event event, bool made) {
+    if (made) {
+      withheld_.erase(event);
+      return true;
+    }
+    if (withheld_.insert(event).second) send_instead();
+    return false;
+  }
+
+  void send_instead() {
+    // Overrides: requirement halt needs Base.left != near and Base.parked
+    if (prepare_halt()) {
+      cmd_vel_publisher_.publish(halt_message_);
+      log_.write(seconds(), "outside", porter_event_name(porter_message_halt_c_trigger));
+    }
+  }
+
   // Before an event; false withholds it.
   bool before(porter_event event) {
     switch (event) {
       // requirement crawl needs Base.left = near and Base.parked
       case porter_message_crawl_c_trigger:
-        return !held() && prepare_crawl();
+        return !held() && or_instead(porter_message_crawl_c_trigger, prepare_crawl());
       // requirement halt needs Base.left != near and Base.parked
       case porter_message_halt_c_trigger:
         return !held() && prepare_halt();
@@ -292,7 +313,7 @@ class Controller {
         return !held() && prepare_release();
       // requirement travel needs Desk.ordered and Gripper.grips
       case porter_action_travel_c_trigger:
-        return !held() && !travel_client_->busy() && prepare_travel();
+        return !held() && !travel_client_->busy() && or_instead(porter_action_travel_c_trigger, prepare_travel());
       case porter_service_grip_c_reset:
         return !grip_retry_->running();
       case porter_service_release_c_reset:
@@ -306,6 +327,9 @@ class Controller {
 
   // After an event: what it sends goes out, and what happened is noted.
   void after(porter_event event) {
+    for (auto each = withheld_.begin(); each != withheld_.end();) {
+      each = porter_enabled(&supervisor_, *each) ? std::next(each) : withheld_.erase(each);
+    }
     const char* direction = "internal";
     switch (event) {
       case porter_message_crawl_c_trigger:
@@ -449,6 +473,7 @@ class Controller {
   nav2_msgs::NavigateToPoseGoal travel_goal_;
   std::string travel_fault_;
 
+  std::set<porter_event> withheld_;  // Commands in whose place others were sent.
   bool stopping_ = false;
   bool watchdog_stops_ = false;
   EventLog log_;

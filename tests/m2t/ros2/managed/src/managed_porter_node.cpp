@@ -10,8 +10,10 @@
 #include <cstdint>
 #include <deque>
 #include <exception>
+#include <iterator>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -275,12 +277,31 @@ class Controller : public rclcpp_lifecycle::LifecycleNode {
     return watchdog_stops_ && (order_watchdog_->silent() || stop_watchdog_->silent());
   }
 
+  // Where the data of a command can't be made, these go out instead, whatever is required of them: once, until its data
+  // can be made again or it is not to be sent any more.
+  bool or_instead(porter_event event, bool made) {
+    if (made) {
+      withheld_.erase(event);
+      return true;
+    }
+    if (withheld_.insert(event).second) send_instead();
+    return false;
+  }
+
+  void send_instead() {
+    // Overrides: requirement halt needs Base.left != near and Base.parked
+    if (prepare_halt()) {
+      cmd_vel_publisher_->publish(halt_message_);
+      log_.write(seconds(), "outside", porter_event_name(porter_message_halt_c_trigger));
+    }
+  }
+
   // Before an event; false withholds it.
   bool before(porter_event event) {
     switch (event) {
       // requirement crawl needs Base.left = near and Base.parked
       case porter_message_crawl_c_trigger:
-        return !held() && prepare_crawl();
+        return !held() && or_instead(porter_message_crawl_c_trigger, prepare_crawl());
       // requirement halt needs Base.left != near and Base.parked
       case porter_message_halt_c_trigger:
         return !held() && prepare_halt();
@@ -292,7 +313,7 @@ class Controller : public rclcpp_lifecycle::LifecycleNode {
         return !held() && prepare_release();
       // requirement travel needs Desk.ordered and Gripper.grips
       case porter_action_travel_c_trigger:
-        return !held() && !travel_client_->busy() && prepare_travel();
+        return !held() && !travel_client_->busy() && or_instead(porter_action_travel_c_trigger, prepare_travel());
       case porter_service_grip_c_reset:
         return !grip_retry_->running();
       case porter_service_release_c_reset:
@@ -306,6 +327,9 @@ class Controller : public rclcpp_lifecycle::LifecycleNode {
 
   // After an event: what it sends goes out, and what happened is noted.
   void after(porter_event event) {
+    for (auto each = withheld_.begin(); each != withheld_.end();) {
+      each = porter_enabled(&supervisor_, *each) ? std::next(each) : withheld_.erase(each);
+    }
     const char* direction = "internal";
     switch (event) {
       case porter_message_crawl_c_trigger:
@@ -459,6 +483,7 @@ class Controller : public rclcpp_lifecycle::LifecycleNode {
     };
     porter_init(&supervisor_, &settings, &hooks);
     data_ = decltype(data_)();
+    withheld_.clear();
 
     wiring_.emplace(*this, guard_);
     rclcpp::PublisherOptions sending;
@@ -496,7 +521,9 @@ class Controller : public rclcpp_lifecycle::LifecycleNode {
     definition.data = kDefinition;
     definition_report_->publish(definition);
 
-    watchdog_stops_ = parameter<bool>(*this, "watchdog_stops", false, "Whether a silent topic stops the robot.");
+    watchdog_stops_ =
+        parameter<bool>(*this, "watchdog_stops", false,
+        "Whether a silent topic holds commands back, cancels actions and sends halt.");
     rclcpp::SubscriptionOptions hearing;
     hearing.qos_overriding_options = rclcpp::QosOverridingOptions::with_default_policies();
     hearing.use_default_callbacks = false;
@@ -582,6 +609,7 @@ class Controller : public rclcpp_lifecycle::LifecycleNode {
   nav2_msgs::action::NavigateToPose::Goal travel_goal_;
   std::string travel_fault_;
 
+  std::set<porter_event> withheld_;  // Commands in whose place others were sent.
   bool stopping_ = false;
   bool watchdog_stops_ = false;
   EventLog log_;
