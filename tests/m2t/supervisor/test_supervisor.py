@@ -165,7 +165,7 @@ def test_the_line_follower_is_small(tmp_path: Path) -> None:
     compiled = tmp_path / "engine.o"
     call("gcc", "-std=c99", "-Os", "-DLINE_FOLLOWER_NO_NAMES", "-c", source, "-o", compiled)
     sizes = dict(re.findall(r"^(\.\w+) +(\d+)", call("size", "-A", compiled), flags=re.MULTILINE))
-    assert int(sizes[".text"]) <= 1400
+    assert int(sizes[".text"]) <= 1450
     assert int(sizes[".data"]) == int(sizes[".bss"]) == 0
 
 
