@@ -24,11 +24,14 @@
 #include <std_msgs/msg/string.hpp>
 #include <std_msgs/msg/u_int8.hpp>
 
+#include "courier_controller/callback_guard.hpp"
 #include "courier_controller/countdown.hpp"
 #include "courier_controller/data.hpp"
 #include "courier_controller/defaults.hpp"
 #include "courier_controller/definition.hpp"
+#include "courier_controller/event_log.hpp"
 #include "courier_controller/fields.hpp"
+#include "courier_controller/hangup.hpp"
 #include "courier_controller/json.hpp"
 #include "courier_controller/parameters.hpp"
 #include "courier_controller/shutdown_hook.hpp"
@@ -93,8 +96,19 @@ class Controller : public rclcpp::Node {
     configure();
     activate();
     shutdown_hook_.emplace(*this, [this] {
+      const auto lock = guard_.hold();
       if (active_) stop();
     });
+  }
+
+  Controller(const Controller&) = delete;
+  Controller& operator=(const Controller&) = delete;
+
+  // Executors may call back until the end of this.
+  ~Controller() override {
+    shutdown_hook_.reset();
+    guard_.close();
+    withdraw(*get_node_base_interface()->get_default_callback_group());
   }
 
  private:
@@ -306,6 +320,8 @@ class Controller : public rclcpp::Node {
         break;
     }
     log_.write(seconds(), direction, courier_event_name(event));
+    if (const std::size_t lost = log_.lost(); lost > 0)
+        RCLCPP_WARN(get_logger(), "the event log lost %zu events", lost);
     transitions_.push_back(event);
     // Where simulated time stands still, nobody is told for long.
     if (transitions_.size() > kTransitionsKept) transitions_.pop_front();
@@ -407,7 +423,7 @@ class Controller : public rclcpp::Node {
     };
     courier_init(&supervisor_, &settings, &hooks);
 
-    wiring_.emplace(*this);
+    wiring_.emplace(*this, guard_);
     rclcpp::PublisherOptions sending;
     sending.qos_overriding_options = rclcpp::QosOverridingOptions::with_default_policies();
     sending.use_default_callbacks = false;  // The wiring says what does not fit.
@@ -440,30 +456,30 @@ class Controller : public rclcpp::Node {
     rclcpp::SubscriptionOptions hearing;
     hearing.qos_overriding_options = rclcpp::QosOverridingOptions::with_default_policies();
     hearing.use_default_callbacks = false;
-    scan_watchdog_.emplace(*this,
-        parameter(*this, "watchdog_ms.scan", 0, 0, 24 * 3600 * 1000, "Longest silence of the topic; 0: any."),
-        [this](const Watchdog& watchdog) { on_silence("/scan", watchdog); });
+    scan_watchdog_.emplace(parameter(*this, "watchdog_ms.scan", 0, 0, 24 * 3600 * 1000,
+        "Longest silence of the topic; 0: any."), [this](const Watchdog& watchdog) { on_silence("/scan", watchdog); },
+        *this, guard_);
     scan_subscription_ = create_subscription<sensor_msgs::msg::LaserScan>(
         "/scan", rclcpp::SensorDataQoS().keep_last(20).reliable(),
-        [this](const sensor_msgs::msg::LaserScan& message) { on_scan(message); }, hearing);
+        guard_([this](const sensor_msgs::msg::LaserScan& message) { on_scan(message); }), hearing);
     wiring_->hear("/scan", "sensor_msgs/msg/LaserScan", scan_subscription_->get_actual_qos());
-    count_watchdog_.emplace(*this,
-        parameter(*this, "watchdog_ms.count", 0, 0, 24 * 3600 * 1000, "Longest silence of the topic; 0: any."),
-        [this](const Watchdog& watchdog) { on_silence("count", watchdog); });
+    count_watchdog_.emplace(parameter(*this, "watchdog_ms.count", 0, 0, 24 * 3600 * 1000,
+        "Longest silence of the topic; 0: any."), [this](const Watchdog& watchdog) { on_silence("count", watchdog); },
+        *this, guard_);
     count_subscription_ = create_subscription<std_msgs::msg::Int16>(
         "count", rclcpp::QoS(10),
-        [this](const std_msgs::msg::Int16& message) { on_count(message); }, hearing);
+        guard_([this](const std_msgs::msg::Int16& message) { on_count(message); }), hearing);
     wiring_->hear("count", "std_msgs/msg/Int16", count_subscription_->get_actual_qos());
-    word_watchdog_.emplace(*this,
-        parameter(*this, "watchdog_ms.word", 0, 0, 24 * 3600 * 1000, "Longest silence of the topic; 0: any."),
-        [this](const Watchdog& watchdog) { on_silence("word", watchdog); });
+    word_watchdog_.emplace(parameter(*this, "watchdog_ms.word", 0, 0, 24 * 3600 * 1000,
+        "Longest silence of the topic; 0: any."), [this](const Watchdog& watchdog) { on_silence("word", watchdog); },
+        *this, guard_);
     word_subscription_ = create_subscription<std_msgs::msg::String>(
         "word", rclcpp::QoS(10),
-        [this](const std_msgs::msg::String& message) { on_word(message); }, hearing);
+        guard_([this](const std_msgs::msg::String& message) { on_word(message); }), hearing);
     wiring_->hear("word", "std_msgs/msg/String", word_subscription_->get_actual_qos());
 
     warn_of_no_stop();
-    const auto tick = [this] { this->tick(); };
+    const auto tick = guard_([this] { this->tick(); });
     if (get_parameter("use_sim_time").as_bool()) {
       timer_ = rclcpp::create_timer(this, get_clock(), period, tick);
     } else {
@@ -526,7 +542,9 @@ class Controller : public rclcpp::Node {
   std::optional<Wiring> wiring_;
   rclcpp::TimerBase::SharedPtr timer_;
   bool active_ = false;
-  std::optional<ShutdownHook> shutdown_hook_;  // The last member: it goes first.
+  Hangup hangup_;
+  CallbackGuard guard_;
+  std::optional<ShutdownHook> shutdown_hook_;
 };
 
 }  // namespace courier_controller
