@@ -2,10 +2,12 @@
 
     python benchmarks/fuzz.py [--mutants 20000] [--valid 2000] [--seed 0] [--jobs 2] [--keep FOLDER]
 
-A mutant is to end in located findings or in generated code, in the time limit, and in every hundredth the command line
-is to end with the right exit status. A valid robot draws no error; its CIF is read back, and its engine in C does 200
-random operations as the interpreter does them. Each model comes from a number alone: `--mutants 1 --valid 0 --seed N`
-tries the mutant N again. `--keep` writes the models that failed to a folder.
+A mutant is to end in located findings or in generated code, within 10 s of the processor and 1 GB of memory, and in
+every hundredth the command line is to end with the right exit status. Each fifth is a saved model (XMI), of which the
+command line may tell nothing of other files; each fiftieth has a pipe, a device or the like where a file is looked for.
+A valid robot draws no error; its CIF is read back, and its engine in C does 200 random operations as the interpreter
+does them. Each model comes from a number alone: `--mutants 1 --valid 0 --seed N` tries the mutant N again. `--keep`
+writes the models that failed to a folder.
 """
 
 from __future__ import annotations
@@ -28,17 +30,19 @@ ROOT = Path(__file__).parent.parent
 sys.path.insert(0, str(ROOT))
 
 from tests.fuzz.mutants import mutant  # noqa: E402
-from tests.fuzz.trial import called, time_limit, tried  # noqa: E402
+from tests.fuzz.saved_mutants import saved_mutant  # noqa: E402
+from tests.fuzz.special import special_tried  # noqa: E402
+from tests.fuzz.trial import called, saved_tried, time_limit, tried  # noqa: E402
 from tests.fuzz.valid import checked, compared, compiled  # noqa: E402
 from tests.random_robots import random_robot  # noqa: E402
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-#: Seconds of the processor that one model may take.
-LIMIT = 60
+#: Seconds of the processor that one model may take, and bytes of memory beside what the program takes itself.
+LIMIT, MEMORY = 10, 10**9
 CHUNKS = {"mutants": 100, "valid": 25}
-CALLED_EACH = 100
+CALLED_EACH, SAVED_EACH, SPECIAL_EACH = 100, 5, 50
 
 
 @dataclass
@@ -47,11 +51,13 @@ class Result:
 
     statuses: Counter[str] = field(default_factory=Counter)
     slowest: tuple[float, int] = (0.0, 0)
+    largest: tuple[int, int] = (0, 0)
     failures: list[tuple[int, str]] = field(default_factory=list)
 
     def try_one(self, seed: int, trial: Callable[..., Any], *arguments: object) -> Any:
         """What a trial of these arguments returns; None where it fails."""
         began = process_time()
+        _forget_peak()
         # What no signal can stop ends with its process.
         faulthandler.dump_traceback_later(20 * LIMIT, exit=True)
         try:
@@ -66,12 +72,31 @@ class Result:
         finally:
             faulthandler.cancel_dump_traceback_later()
             self.slowest = max(self.slowest, (process_time() - began, seed))
+            self.largest = max(self.largest, (_peak(), seed))
+            if _peak() > MEMORY:
+                self.failures.append((seed, f"takes {_peak() / 1e6:.0f} MB"))
 
     def add(self, other: Result) -> None:
         """Takes over another result."""
         self.statuses += other.statuses
         self.slowest = max(self.slowest, other.slowest)
+        self.largest = max(self.largest, other.largest)
         self.failures += other.failures
+
+
+def _forget_peak() -> None:
+    """Has Linux measure the most memory of this process from here on."""
+    Path("/proc/self/clear_refs").write_text("5", encoding="ascii")
+
+
+def _peak() -> int:
+    """The most memory that this process has had since, in bytes."""
+    lines = Path("/proc/self/status").read_text(encoding="ascii").splitlines()
+    return next(int(line.split()[1]) * 1024 for line in lines if line.startswith("VmHWM:"))
+
+
+def _kind(seed: int) -> str:
+    return "special" if seed % SPECIAL_EACH == 3 else "saved" if seed % SAVED_EACH == 1 else "text"
 
 
 def mutants(seeds: range) -> Result:
@@ -80,6 +105,13 @@ def mutants(seeds: range) -> Result:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "model.rscd"
         for seed in seeds:
+            kind = _kind(seed)
+            if kind != "text":
+                status = result.try_one(
+                    seed, {"saved": saved_tried, "special": special_tried}[kind], Path(folder), seed
+                )
+                result.statuses[f"{kind}: {status}"] += status is not None
+                continue
             path.write_text(mutant(seed), encoding="utf-8")
             targets = ["cif", "supervisor", ("ros1", "ros2", "xmi")[seed % 3]]
             outcome = result.try_one(seed, tried, path, targets)
@@ -117,7 +149,8 @@ def main() -> int:
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--keep", type=Path, help="the folder for models that failed")
     options = parser.parse_args()
-    print("| models | number | s | a second | outcomes | slowest | failed |\n|---|---:|---:|---:|---|---|---:|")
+    print("| models | number | s | a second | outcomes | slowest | largest | failed |")
+    print("|---|---:|---:|---:|---|---|---|---:|")
     failed = False
     for kind, trial in (("mutants", mutants), ("valid", valid)):
         number = getattr(options, kind)
@@ -129,9 +162,10 @@ def main() -> int:
         seconds = perf_counter() - began
         outcomes = ", ".join(f"{each}: {count}" for each, count in sorted(result.statuses.items()))
         slowest = f"{result.slowest[0]:.1f} s (seed {result.slowest[1]})"
+        largest = f"{result.largest[0] / 1e6:.0f} MB (seed {result.largest[1]})"
         print(
             f"| {kind} | {number} | {seconds:.0f} | {number / max(seconds, 1e-9):.1f} | {outcomes} | {slowest} "
-            f"| {len(result.failures)} |",
+            f"| {largest} | {len(result.failures)} |",
             flush=True,
         )
         _show(kind, result.failures, options.keep)
@@ -152,6 +186,15 @@ def _in_parallel(trial: Callable[[range], Result], chunks: list[range], jobs: in
     return whole
 
 
+def _files(kind: str, seed: int) -> dict[str, str]:
+    """The files of a model that was tried; none of those that stand where no file is."""
+    if kind == "valid":
+        return {"model.rscd": random_robot(seed, f"R{seed}", mistakes=False)}
+    if _kind(seed) == "saved":
+        return saved_mutant(seed)[1]
+    return {"model.rscd": mutant(seed)} if _kind(seed) == "text" else {}
+
+
 def _show(kind: str, failures: list[tuple[int, str]], folder: Path | None) -> None:
     for seed, message in sorted(failures):
         others = {"mutants": "--valid 0", "valid": "--mutants 0"}[kind]
@@ -160,8 +203,9 @@ def _show(kind: str, failures: list[tuple[int, str]], folder: Path | None) -> No
         )
         if folder:
             folder.mkdir(parents=True, exist_ok=True)
-            text = mutant(seed) if kind == "mutants" else random_robot(seed, f"R{seed}", mistakes=False)
-            (folder / f"{kind}_{seed}.rscd").write_text(text, encoding="utf-8")
+            files = _files(kind, seed)
+            for name, text in files.items():
+                (folder / f"{kind}_{seed}.{name}").write_text(text, encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from difflib import get_close_matches
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar, get_origin
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, PrivateAttr, ValidationError
 from pydantic.alias_generators import to_camel
@@ -236,7 +236,7 @@ class Configuration(_Settings):
         settings = (("frameId", self.frame_id), ("qos", self.qos), ("watchdogMs", self.watchdog_ms))
         return [
             self.warning(
-                (setting, name), f'"{setting}": the robot has no {name}', _repair(name, topics) if topics else None
+                (setting, name), f'"{setting}": the robot has no {name}', _one_of(name, topics) if topics else None
             )
             for setting, values in settings
             for name in values
@@ -308,8 +308,7 @@ def _explained(file: str, text: str, fault: Any) -> Diagnostic:
     name = ".".join(str(each) for each in key)
     span = _span(text, key)
     if fault["type"] == "extra_forbidden":
-        known = _keys_at(key[:-1])
-        return _error(file, f'unknown key "{name}"', span, _repair(str(key[-1]), known))
+        return _error(file, f'unknown key "{name}"', span, _repair(key))
     if fault["type"] == "missing":
         return _error(file, f'the key "{name}" is missing', span)
     reason = _WRONG_TYPE.get(fault["type"]) or re.sub("^(Input|String|Value error,) (should )?", "", fault["msg"])
@@ -317,9 +316,27 @@ def _explained(file: str, text: str, fault: Any) -> Diagnostic:
     return _error(file, f'"{name}" {reason}' if name else f"the file {reason}", span)
 
 
-def _repair(name: str, known: Sequence[str]) -> str:
+def _one_of(name: str, known: Sequence[str]) -> str:
     close = get_close_matches(name, sorted(known), n=1)
     return f'did you mean "{close[0]}"?' if close else f"known here: {', '.join(known)}"
+
+
+def _repair(key: Key) -> str:
+    """A known key like an unknown one: beside it, else anywhere; failing these, all keys beside it."""
+    name, known = str(key[-1]), _keys_at(key[:-1])
+    elsewhere = {below: f"{outer}.{below}" for outer in _keys_at(()) for below in _keys_below(outer)}
+    close = get_close_matches(name, sorted(elsewhere), n=1, cutoff=0.8)
+    if close and not get_close_matches(name, known, n=1):
+        outer, _, below = elsewhere[close[0]].partition(".")
+        return f'did you mean "{outer}.{below}", which is written {{"{outer}": {{"{below}": …}}}}?'
+    return _one_of(name, known)
+
+
+def _keys_below(outer: str) -> list[str]:
+    """The keys of the object that a key of the configuration has; none where it has no object."""
+    field = next(each for each in Configuration.model_fields.values() if each.alias == outer)
+    by_topic = get_origin(field.annotation) is dict
+    return _keys_at((outer,)) if _settings_in(field.annotation) and not by_topic else []
 
 
 def _keys_at(key: Key) -> list[str]:

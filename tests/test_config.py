@@ -105,15 +105,22 @@ def test_a_fault_is_located_and_names_its_key(tmp_path: Path, text: str, line: i
     assert found[0].rule == config.RULE
 
 
+def test_a_number_without_end_is_an_error(tmp_path: Path) -> None:
+    with pytest.raises(ModelError, match="not JSON"):
+        read(tmp_path, f'{{"retryMs": {"9" * 5000}}}')
+
+
 def test_all_faults_at_once(tmp_path: Path) -> None:
     with pytest.raises(ModelError) as raised:
-        read(tmp_path, '{"retryMs": 1, "retryMs": "x", "colour": 1, "package": {"versoin": "1"}}')
+        read(tmp_path, '{"retryMs": 1, "retryMs": "x", "colour": 1, "periodMs": 5, "package": {"versoin": "1"}}')
     messages = {each.message: each.hint for each in raised.value.diagnostics}
     assert messages == {
         'the key "retryMs" stands twice': None,
         '"retryMs" must be a valid integer': None,
         'unknown key "colour"': f"known here: {', '.join(EVERYTHING)}",
         'unknown key "package.versoin"': 'did you mean "version"?',
+        'unknown key "periodMs"': 'did you mean "controlLoop.periodMs", which is written'
+        ' {"controlLoop": {"periodMs": …}}?',
     }
 
 

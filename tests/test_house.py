@@ -73,6 +73,11 @@ LIBRARIES = {
     "rosgraph_msgs": {"runtime"},
     "rospy": {"runtime"},
     "std_msgs": {"runtime"},
+    # What the wheels of ROS 2 generate modules with.
+    **{f"rosidl_{name}": {"runtime"} for name in ("adapter", "cli", "generator_c", "generator_py")},
+    **{f"rosidl_typesupport_{name}": {"runtime"} for name in ("c", "fastrtps_c", "introspection_c")},
+    "rosidl_generator_type_description": {"runtime"},
+    "numpy": {"runtime"},
     "textx": {"language", "verification"},
 }
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from robosc.checks.declarations import sent_type
+from robosc.checks.declarations import DIRECTIONS, sent_type
 from robosc.checks.rule import Finding, rule
 from robosc.metamodel import robosc as rsc
 from robosc.typing import NONE, declared_type
@@ -20,7 +20,8 @@ def data_provisioning(base: rsc.Base) -> Iterator[Finding]:
                 statement.communicationType,
                 f"data is provided to `{communication.name}`, which the controller receives, expected a communication"
                 " that it sends: an incoming message, a service or an action",
-                "leave the provide statement out: the data of an outgoing message comes from its component",
+                "leave the provide statement out: the data of an outgoing message comes from its component;"
+                f" {DIRECTIONS.format(communication.name)}",
             )
         elif communication is not None and declared_type(sent_type(communication)) == NONE:
             what = "it" if isinstance(communication, rsc.Message) else "its request"

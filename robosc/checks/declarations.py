@@ -10,6 +10,11 @@ from robosc.metamodel import robosc as rsc
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+#: For one that has taken an outgoing message for what the controller sends.
+DIRECTIONS = (
+    "or, if the controller sends it, declare it as `incoming message {}`: incoming is what a component receives"
+)
+
 
 def communications(base: rsc.Base) -> Iterator[tuple[rsc.Component, rsc.CommunicationType]]:
     """The messages, services and actions that the base itself defines, each with its component."""

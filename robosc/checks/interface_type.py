@@ -9,8 +9,10 @@ from robosc.checks.rule import Finding, interface_rule
 from robosc.checks.wire_data import Carried, UsedData, Uses, carried, carries
 from robosc.checks.wire_faults import Fault, Unknown, faults
 from robosc.diagnostics import Severity
+from robosc.interfaces.unknown import OWN_OBJECT, other_kinds
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
+from robosc.metamodel.reflection import tree
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -49,6 +51,17 @@ def interface_unknown(base: rsc.Base, interfaces: Interfaces) -> Iterator[Findin
             if (element, each.message) not in reported:
                 reported.add((element, each.message))
                 yield Finding(element, each.message, each.hint)
+    for _, reference in tree(base):
+        if isinstance(reference, rsc.InterfaceTypeReference) and isinstance(reference.eContainer(), rsc.EnumDataType):
+            others = other_kinds(interfaces, reference.package, reference.rosType, "message")
+            if others and reference.type is not None:
+                what = f"{reference.package}/{reference.rosType}"
+                yield Finding(
+                    reference,
+                    f"{what} is a type of kind message and one of kind {' and '.join(others)}, expected one meaning:"
+                    " the message is taken",
+                    OWN_OBJECT,
+                )
 
 
 def _unknown(data: Carried, interfaces: Interfaces) -> list[Fault] | list[Unknown]:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+from robosc.checks.declarations import DIRECTIONS
 from robosc.checks.rule import Finding, rule
 from robosc.metamodel import robosc as rsc
 
@@ -26,5 +27,5 @@ def requirement_target(base: rsc.Base) -> Iterator[Finding]:
                     reference,
                     f"`{message.name}` comes from its component whenever that sends it, expected a communication that"
                     " the controller starts: an incoming message, a service or an action",
-                    "restrict what the controller does about it",
+                    f"restrict what the controller does about it; {DIRECTIONS.format(message.name)}",
                 )

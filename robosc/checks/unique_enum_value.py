@@ -81,4 +81,9 @@ def _repair(value: rsc.EnumValue, first: rsc.EnumValue) -> str:
     rules = [each.eContainer() for each in (value, first)]
     if _enum(value) is _enum(first) and all(isinstance(each, rsc.EnumTransformationRule) for each in rules):
         return f"join the two conditions by `or`, so that `{value.name}` stands once"
+    if _enum(value) is _enum(first):
+        return (
+            f"the default gives `{value.name}` wherever no rule holds: leave the other rule out, and let rules that"
+            " follow it hold only where it did not"
+        )
     return f"rename it, such as `{value.name}_{_enum(value).name.lower()}`"

@@ -67,6 +67,12 @@ class Edition:
             self._named[key] = sorted({*found, *type_stores.names(self.name, package, kind)})
         return self._named[key]
 
+    def packages(self) -> set[str]:
+        """The names of all packages of which a type is known."""
+        from robosc.interfaces import type_stores
+
+        return type_stores.packages(self.name).union(*(source.packages() for source in self._sources))
+
 
 class Interfaces:
     """All types of both ROS."""

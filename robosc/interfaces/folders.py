@@ -47,6 +47,14 @@ class Share:
         folder = FOLDERS[kind]
         return sorted(path.stem for home in self.homes(package) for path in (home / folder).glob(f"*.{folder}"))
 
+    def packages(self) -> list[str]:
+        """The names of all packages that define types."""
+        if not self._folder.is_dir():
+            return []
+        return [
+            path.name for path in self._folder.iterdir() if any((path / each).is_dir() for each in FOLDERS.values())
+        ]
+
     def homes(self, package: str) -> list[Path]:
         """The folders of a package."""
         return [self._folder / package] if (self._folder / package).is_dir() else []
@@ -64,10 +72,14 @@ class Workspace(Share):
 
     def homes(self, package: str) -> list[Path]:
         """The folders of a package, in the order of their paths."""
-        return self._packages.get(package, [])
+        return self._homes.get(package, [])
+
+    def packages(self) -> list[str]:
+        """The names of all packages."""
+        return list(self._homes)
 
     @cached_property
-    def _packages(self) -> dict[str, list[Path]]:
+    def _homes(self) -> dict[str, list[Path]]:
         packages: dict[str, list[Path]] = {}
         for name, home in self._found():
             packages.setdefault(name, []).append(home)

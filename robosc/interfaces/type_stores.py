@@ -43,3 +43,8 @@ def names(ros: str, package: str, kind: str) -> list[str]:
     if kind != "message":
         return []
     return sorted(each.rpartition("/")[2] for each in _store(ros).fielddefs if each.startswith(f"{package}/"))
+
+
+def packages(ros: str) -> set[str]:
+    """The names of all packages with types."""
+    return {key.partition("/")[0] for key in _store(ros).fielddefs}

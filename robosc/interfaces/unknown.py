@@ -15,6 +15,17 @@ MAKE_KNOWN = (
     "give the folder of its package with --interface-path, or list it in ROBOSC_INTERFACE_PATH; until then nothing is"
     " checked against it"
 )
+#: How to read the data of a service or action where only a message can be named.
+OWN_OBJECT = "for the data of a service or action, declare an object with the fields that you use and an enum over it"
+
+
+def other_kinds(interfaces: Interfaces, package: str, name: str, kind: str) -> list[str]:
+    """The other kinds of which there is a type of that name: `service`, `action`."""
+    return [
+        other
+        for other in FOLDERS
+        if other != kind and any(name in edition.names(package, other) for edition in interfaces.editions)
+    ]
 
 
 def why_unknown(interfaces: Interfaces, package: str, name: str, part: Part) -> tuple[str, str]:
@@ -30,7 +41,12 @@ def why_unknown(interfaces: Interfaces, package: str, name: str, part: Part) -> 
             message = f"{package}/{name} is of kind {other.kind}, expected a type of kind {kind}"
             return message, f"name a type of kind {kind}"
     if not any(each.names(package, other) for each in interfaces.editions for other in FOLDERS):
-        return f"the package `{package}` is unknown", MAKE_KNOWN
+        known = sorted({name for edition in interfaces.editions for name in edition.packages()})
+        close = get_close_matches(package, known, n=1, cutoff=0.8)
+        return (
+            f"the package `{package}` is unknown",
+            f"did you mean `{close[0]}`? Else {MAKE_KNOWN}" if close else MAKE_KNOWN,
+        )
     names = sorted({known for each in interfaces.editions for known in each.names(package, kind)})
     close = get_close_matches(name, names, n=1)
     hint = f"did you mean `{close[0]}`?" if close else MAKE_KNOWN

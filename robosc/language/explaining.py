@@ -31,6 +31,30 @@ _FOREIGN = {
     "\N{RIGHTWARDS ARROW}": "->",
     "\N{LEFT DOUBLE QUOTATION MARK}": '"',
     "\N{RIGHT DOUBLE QUOTATION MARK}": '"',
+    ";": "",
+}
+#: What other languages have words for: what RoboSC has instead.
+_NO_CONSTANTS = "there are no constants: write the number, or a variable with an initial value that nothing assigns to"
+_NO_TIME = (
+    "a model has no time: let a node send a message when the time is up, or let `watchdogMs` in the configuration"
+    " watch a topic"
+)
+_NO_FUNCTIONS = "there are no functions: an enum's rules give names to conditions on data, and expressions compute it"
+_FOREIGN_WORDS = {
+    **dict.fromkeys(("const", "constant", "let", "val", "define", "param", "parameter"), _NO_CONSTANTS),
+    **dict.fromkeys(("after", "timeout", "timer", "wait", "delay", "sleep", "every"), _NO_TIME),
+    **dict.fromkeys(("function", "def", "fn", "func", "fun"), _NO_FUNCTIONS),
+    "when": "write `if`",
+    "unless": "write `if` and `!` before the condition",
+    "var": "write `variable`",
+}
+#: What other languages call the basic types.
+BASIC_TYPES = {
+    **dict.fromkeys(("int", "int8", "int16", "int32", "int64", "uint8", "uint16", "uint32", "long"), "integer"),
+    **dict.fromkeys(("float", "float32", "float64", "real"), "double"),
+    **dict.fromkeys(("bool", "Boolean"), "boolean"),
+    **dict.fromkeys(("str", "String", "text"), "string"),
+    **dict.fromkeys(("void", "empty", "Empty"), "none"),
 }
 _RULES = {
     "Name": "a name",
@@ -90,13 +114,15 @@ def hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) -> str
     token, before = tokens[index], tokens[index - 1]
     symbols = _symbols(token, wanted)
     if token.text in _FOREIGN:
-        return f"write `{_FOREIGN[token.text]}`"
+        return (
+            f"write `{_FOREIGN[token.text]}`" if _FOREIGN[token.text] else "leave it out: nothing ends with a semicolon"
+        )
     if token.text == ":" and tokens[block.first].is_keyword("provide"):
         return "the properties of an object stand in braces"
     if before.is_name and before.text in wanted and is_reserved(before.text):
         return f"is a name missing before `{before.text}`?"
-    if token.text == ";":
-        return "leave it out: nothing ends with a semicolon"
+    if token.text == "(" and before.kind is Kind.WORD and not is_reserved(before.text):
+        return _NO_FUNCTIONS
     if before.is_keyword(",") and token.kind is Kind.SYMBOL:
         return "leave out the comma before it"
     if "->" in wanted and block.level is RULES and (token.is_first or before.text == "default"):
@@ -125,6 +151,8 @@ def _word_hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) 
     close = get_close_matches(token.text, sorted(words - {token.text}), n=1, cutoff=0.7)
     if list(wanted) in ([","], [":"]):
         return f"write `{wanted[0]}` before it"
+    if token.text in _FOREIGN_WORDS:
+        return _FOREIGN_WORDS[token.text]
     if tokens[index - 1].text == "not":
         return "write `!` for `not`"
     if not token.text.removeprefix("^").isascii():

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.interfaces import DefinitionError, Part
-from robosc.interfaces.unknown import why_unknown
+from robosc.interfaces.unknown import OWN_OBJECT, other_kinds, why_unknown
 from robosc.interfaces.wire import INTEGER_RANGES, Basic, Sequence
 from robosc.metamodel import robosc as rsc
 from robosc.metamodel.reflection import contents, tree
@@ -23,7 +23,11 @@ _NARROW = ("int8", "uint8", "int16", "uint16")
 def declare(reference: rsc.InterfaceTypeReference, interfaces: Interfaces) -> tuple[str, str] | None:
     """Gives a reference the object that it stands for; a message and a hint where the ROS type is not known."""
     if next(_definitions(reference, interfaces), None) is None:
-        return why_unknown(interfaces, reference.package, reference.rosType, _part(reference))
+        part = _part(reference)
+        message, hint = why_unknown(interfaces, reference.package, reference.rosType, part)
+        if part is Part.MESSAGE and other_kinds(interfaces, reference.package, reference.rosType, part.kind):
+            hint = OWN_OBJECT
+        return message, hint
     reference.definition = rsc.ObjectDataType(name=reference.rosType, source=reference.source)
     reference.type = reference.definition
     return None

@@ -5,7 +5,7 @@ from __future__ import annotations
 from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from robosc.language.explaining import enumeration
+from robosc.language.explaining import BASIC_TYPES, enumeration
 from robosc.language.interface_types import declare, is_made, link_interface, ros_properties, ros_property
 from robosc.language.scopes import File, Names, Scope
 from robosc.language.unread import Declared
@@ -135,7 +135,8 @@ class _Linker:
         if len(found) > 1:
             self._ambiguous(what, name, [file for file, _ in found])
         elif not found and not self._file.may_declare(name.text, declared):
-            self._missing(name, f"there is no {what}", self._scope.usable(kind))
+            hint = f"write `{BASIC_TYPES[name.text]}`" if name.text in BASIC_TYPES else None
+            self._missing(name, f"there is no {what}", self._scope.usable(kind), hint)
         return found[0][1] if len(found) == 1 else None
 
     def _ambiguous(self, what: str, name: Name, files: Iterable[File]) -> None:

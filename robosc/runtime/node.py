@@ -45,6 +45,7 @@ def run_controller(
     except StartError:
         port.close()
         raise
+    port.info(_running(port.full_name, graph))
     port.spin(controller)
 
 
@@ -70,7 +71,20 @@ def run_layer(graph: rosgraph.RosGraph, configuration: Configuration, version: i
     except StartError:
         port.close()
         raise
+    port.info(_running(port.full_name, graph))
     port.spin(layer)
+
+
+def _running(name: str, graph: rosgraph.RosGraph) -> str:
+    """What a person who has started a node wants to know: that it runs, what it is connected to, how it ends."""
+    parts = (
+        ("hears", [subscription.topic for subscription in graph.subscriptions]),
+        ("sends", [publisher.topic for publisher in graph.publishers]),
+        ("calls", [*(client.identifier for client in graph.serviceClients)]),
+        ("starts", [*(client.identifier for client in graph.actionClients)]),
+    )
+    said = "; ".join(f"{verb} {', '.join(names)}" for verb, names in parts if names)
+    return f"{name} runs{f': {said}' if said else ''}. Ctrl-C ends it."
 
 
 def _opened(make: Callable[[], _Acting]) -> _Acting:

@@ -54,7 +54,10 @@ if TYPE_CHECKING:
     from robosc.runtime.port import Acting, Goal, Message
     from robosc.runtime.settings import Parameter, Value
 
-_HINT = "build the package with colcon and source its install/setup, with this same Python"
+_HINT = (
+    "build the package with colcon and source its install/setup, with this same Python; or, without colcon, build its"
+    " modules with `python -m robosc.runtime.ros2_interfaces OUT PACKAGE` and put OUT on PYTHONPATH"
+)
 _DEPTH = 10
 _LONGEST_WAIT = 0.1
 _FAREWELL = 0.5

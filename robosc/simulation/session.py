@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from difflib import get_close_matches
 from random import Random
 from typing import TYPE_CHECKING
 
@@ -50,8 +51,8 @@ class Session:
             "t": lambda _: "\n".join(map(trace_line, self._simulation.trace)) or "nothing yet",
             "save": self._save,
             "load": self._load,
-            "h": lambda _: HELP,
-            "q": self._quit,
+            **dict.fromkeys(("h", "help", "?"), lambda _: HELP),
+            **dict.fromkeys(("q", "quit", "exit"), self._quit),
         }
 
     def do(self, line: str) -> str:
@@ -65,6 +66,10 @@ class Session:
         number = _number(word)
         if number is not None and 1 <= number <= len(enabled):
             word = enabled[number - 1]
+        if word not in self._simulation.engine.events and not word.startswith(("{", "#")):
+            close = get_close_matches(word, self._simulation.engine.events, n=1)
+            hint = f", did you mean `{close[0]}`?" if close else ""
+            return f"there is no command and no event `{word}`{hint} (h for help)"
         steps, findings = read_script("", f"{word} {rest}", self._simulation.engine.events)
         return _complaints(findings) or "\n".join(self._perform(each.event, dict(each.data)) for each in steps)
 

@@ -26,8 +26,9 @@ def name(model: Path) -> str:
 
 
 def findings(model: Path) -> tuple[list[Diagnostic], dict[str, str]]:
-    reading = read(model, [HERE / "libraries"])
-    found = check(reading.base, reading.findings, Interfaces([INTERFACES]))
+    known = Interfaces([INTERFACES])
+    reading = read(model, [HERE / "libraries"], known)
+    found = check(reading.base, reading.findings, known)
     expected = [each for each in found if each.rule != UNKNOWN or model.parent.name == UNKNOWN]
     return [*reading.findings, *expected], reading.texts
 

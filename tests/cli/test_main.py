@@ -52,6 +52,12 @@ def test_help_names_all_commands(run: Run) -> None:
     assert [line.split()[0] for line in listed] == COMMANDS
 
 
+def test_a_command_that_is_not_there_is_named_with_the_one_meant(run: Run) -> None:
+    answer = run("chekc", "x.rscd")
+    assert answer.exit_code == 2
+    assert "No such command 'chekc'. Did you mean 'check'?" in answer.stderr
+
+
 @pytest.mark.parametrize("command", COMMANDS)
 def test_every_command_has_help_with_examples(run: Run, command: str) -> None:
     answer = run(command, "--help")

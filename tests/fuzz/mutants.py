@@ -1,4 +1,8 @@
-"""Models with a few faults: words of the repository's own models dropped, doubled, swapped, replaced and joined."""
+"""Models with a few faults: words of the repository's own models dropped, doubled, swapped, replaced and joined.
+
+Now and then a bound at the edge of a machine's integers, a type of ROS, characters that a terminal or a reader of lines
+takes for something else, or the whole model on one line.
+"""
 
 from __future__ import annotations
 
@@ -44,6 +48,14 @@ _KINDS = [
         rf"(?!(?:{'|'.join(sorted(ROBOSC_KEYWORDS))})$)\^?[A-Za-z_]\w*$",
     )
 ]
+#: Bounds at which integers of machines end, and their neighbours.
+EDGES = sorted({sign * 2**bits + step for bits in (0, 8, 16, 31, 32, 63) for sign in (1, -1) for step in (-1, 0, 1)})
+#: Types that ROS defines, and two that it does not.
+_ROS_TYPES = ("geometry_msgs/PoseStamped", "std_msgs/Header", "nav_msgs/Path", "std_srvs/Empty", "no_msgs/None")
+#: What ends lines, is no character of XML, can't be seen, or turns the text around; U+009B begins a terminal's command.
+HOSTILE = ("\x85", "\u2028", "\u2029", "\ufffe", "\x9b", "\x1b[2J", "\u202e", "\u200b", "\x00", "\x7f", "\r")
+_STRING = re.compile(r"\"[^\"\n]*\"$")
+_COMMENT = re.compile(r"//[^\n]*\n|/\*[\s\S]*?\*/")
 #: What statements begin with that can be missing, or stand elsewhere.
 _STARTERS = {"requirement", "provide", "on", "transition", "variable"}
 
@@ -135,8 +147,47 @@ def _splice(text: list[str], random: Random) -> None:
     text[at:at] = donor[start : start + random.randint(1, 30)]
 
 
+def _bound(text: list[str], random: Random) -> None:
+    """Gives an integer a range at the edge of what machines count."""
+    low, high = sorted(random.choices(EDGES, k=2))
+    low, high = random.choice(((low, high), (0, high), (low, low + 1), (-1, high)))
+    at = random.choice([index for index, word in enumerate(text) if _bare(word) == "integer"] or [0])
+    if _bare("".join(text[at + 1 : at + 2])) == "(":
+        after = next((index for index in range(at, len(text)) if _bare(text[index]) == ")"), at)
+        del text[at + 1 : after + 1]
+    text[at : at + 1] = [f" integer({low}..{high})"]
+
+
+def _type_of_ros(text: list[str], random: Random) -> None:
+    """Puts a type of ROS where a type stands; often it is a variable's."""
+    starts = [index + 1 for index, word in enumerate(text[:-1]) if _bare(word) == ":"]
+    variables = [at for at in starts if at > 2 and _bare(text[at - 3]) == "variable"]
+    text[random.choice(random.choice((variables, starts)) or starts or [0])] = f" {random.choice(_ROS_TYPES)}"
+
+
+def _say_hostile(text: list[str], random: Random) -> None:
+    """Puts characters into a string or a name, or a comment with them before a word."""
+    said = random.choice(HOSTILE)
+    strings = [index for index, word in enumerate(text) if _STRING.search(word)]
+    at = random.choice(strings or [0])
+    if strings and random.random() < 0.5:
+        text[at] = f"{text[at][:-1]}{said}{text[at][-1]}"
+    else:
+        at = random.randrange(len(text))
+        text[at] = random.choice((f"{text[at]}{said}", f" // {said}\n{text[at]}", f" /* {said} */{text[at]}"))
+
+
+def _join_lines(text: list[str], random: Random) -> None:
+    """Puts all on one line, at times with one of its words many times."""
+    text[:] = [f" {' '.join(_COMMENT.sub(' ', word).split())}" for word in text]
+    if random.random() < 0.5:
+        at = random.randrange(len(text))
+        text[at:at] = text[at : at + random.randint(1, 12)] * random.choice((3, 30, 300))
+
+
 #: Those that leave a text that can be read to its end come more often.
 _MUTATIONS: list[Callable[[list[str], Random], None]] = [
     *[_replace, _drop_statement, _move_statement] * 3,
     *[_exchange, _drop, _double, _swap, _splice],
+    *[_bound, _type_of_ros, _say_hostile, _join_lines],
 ]

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import shutil
+from random import Random
 from typing import TYPE_CHECKING
 
 import pytest
 
 from tests.fuzz.mutants import mutant
-from tests.fuzz.trial import called, time_limit, tried
+from tests.fuzz.special import COMMANDS, KINDS, tried_with
+from tests.fuzz.trial import called, saved_tried, time_limit, tried
 from tests.fuzz.valid import checked, compared, compiled
 
 if TYPE_CHECKING:
@@ -16,7 +18,7 @@ if TYPE_CHECKING:
 
 #: Quick to compile, and nothing undefined passes.
 FLAGS = ("-O0", "-fsanitize=undefined", "-fno-sanitize-recover=all")
-MUTANTS, CALLS, VALID = 250, 25, 12
+MUTANTS, SAVED, CALLS, VALID = 250, 150, 25, 12
 
 
 @pytest.mark.parametrize("first", range(0, MUTANTS, 50))
@@ -26,6 +28,21 @@ def test_mutants(tmp_path: Path, first: int) -> None:
         path.write_text(mutant(seed), encoding="utf-8")
         with time_limit(60):
             tried(path, ["cif", "supervisor", ("ros1", "ros2", "xmi")[seed % 3]])
+
+
+@pytest.mark.parametrize("first", range(0, SAVED, 50))
+def test_saved_mutants(tmp_path: Path, first: int) -> None:
+    statuses = set()
+    for seed in range(first, first + 50):
+        with time_limit(60):
+            statuses.add(saved_tried(tmp_path, seed))
+    assert {0, 1} <= statuses
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_what_is_no_file(tmp_path: Path, command: str) -> None:
+    for number, kind in enumerate(sorted(KINDS)):
+        tried_with(tmp_path, command, kind, Random(number))  # noqa: S311 - nothing here is secret
 
 
 def test_calls(tmp_path: Path) -> None:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+import re
+import shutil
 import signal
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -20,10 +23,19 @@ from robosc.models import Models
 from robosc.supervision import EmptySupervisorError, supervise
 from robosc.targets import TARGETS
 from tests.fuzz.mutants import LIBRARIES
+from tests.fuzz.saved_mutants import UNTOLD, saved_mutant
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from pathlib import Path
+
+
+#: Characters of output that no model made by a person needs.
+MOST_OUTPUT = 1_000_000
+#: Controls, but for the end of a line; what turns text around or can't be seen; what is no character.
+_UNSEEN = re.compile(
+    "[\\x00-\\x09\\x0b-\\x1f\\x7f-\\x9f\\u200b-\\u200f\\u2028-\\u202e\\u2060-\\u2069\\ufeff\\ufffe\\uffff]"
+)
 
 
 class HangError(Exception):
@@ -115,12 +127,66 @@ def called(path: Path, seed: int) -> int:
     return transforming
 
 
+#: What can be asked of a saved model, each with `MODEL` and `OUT`.
+_ASKED = (
+    "check MODEL",
+    "check MODEL --format json",
+    "check MODEL --format sarif",
+    "synthesize MODEL",
+    "synthesize MODEL --json",
+    "explain MODEL --event move",
+    "diagram MODEL",
+    "simulate MODEL --random 20",
+    "transform MODEL --to cif,supervisor,xmi -o OUT",
+    "transform MODEL --to ros1,ros2 --with-tests -o OUT",
+    "transform MODEL --to ros1-layer,ros2-layer -o OUT",
+)
+
+
+def saved_tried(folder: Path, seed: int) -> int:
+    """Saves a mutant of a saved model, with what it may name but not tell beside it, and asks for something.
+
+    Returns the exit status. Raises AssertionError where it is none of the command line's own, and where something is
+    told of a file that is no business of a model's.
+    """
+    (folder / "secret.txt").write_text(UNTOLD, encoding="utf-8")
+    models = folder / f"models{seed}"
+    models.mkdir()
+    os.mkfifo(models / "pipe")
+    mutated, files = saved_mutant(seed)
+    for name, text in files.items():
+        (models / name).write_bytes(text.encode("utf-8", "surrogatepass"))
+    words = _ASKED[seed % len(_ASKED)].split()
+    places = {"MODEL": str(models / mutated), "OUT": str(models / "out")}
+    try:
+        status, output = said(*(places.get(word, word) for word in words))
+    finally:
+        shutil.rmtree(models)
+    assert UNTOLD not in output, "a file beside the folder is told of"
+    assert os.environ.get("PATH", UNTOLD) not in output, "the environment is told of"
+    return status
+
+
 def _run(*arguments: str) -> int:
+    return said(*arguments)[0]
+
+
+def said(*arguments: str) -> tuple[int, str]:
+    """Calls the command line; returns its exit status and what it printed.
+
+    Raises AssertionError for a status that is none of its own, for more text than a person may want to scroll through,
+    and for characters that would move a terminal's cursor.
+    """
     result = CliRunner().invoke(cli.main, arguments)
     if result.exception is not None and not isinstance(result.exception, SystemExit):
         raise result.exception
-    assert "Traceback" not in result.output
-    return result.exit_code
+    output = result.output
+    assert result.exit_code in {0, 1, 2, 3}, f"{' '.join(arguments)} ends with {result.exit_code}: {output[-300:]}"
+    assert "Traceback" not in output
+    assert len(output) < MOST_OUTPUT, f"{' '.join(arguments)} prints {len(output)} characters"
+    unseen = set(_UNSEEN.findall(output))
+    assert not unseen, f"{' '.join(arguments)} prints {unseen}"
+    return result.exit_code, output
 
 
 def _located(findings: Sequence[Diagnostic], texts: dict[str, str]) -> None:

@@ -323,3 +323,21 @@ def test_a_nameless_declaration_may_be_the_missing_one_of_its_definition(tmp_pat
         }
     """
     assert {each.rule for each in reading(tmp_path, text).findings} == {"syntax"}
+
+
+#: What is written in other languages, and what the hint says of it.
+FOREIGN = [
+    ("robot R { const speed: double = 0.5 }", "there are no constants"),
+    ("robot R { component C { behaviour { initial marked state s { after 3.0 s goto s } } } }", "a model has no time"),
+    ("robot R { function f(d: double): double = d }", "there are no functions"),
+    ("robot R { component C { incoming message m with type: double } provide m with abs(1.0) }", "no functions"),
+    ("robot R { component C { behaviour { initial marked state s { transition when true } } } }", "write `if`"),
+    ("robot R { component C { incoming message m with type: int } }", "write `integer`"),
+    ("robot R { component C { incoming message m with type: float64 } }", "write `double`"),
+]
+
+
+@pytest.mark.parametrize(("text", "says"), FOREIGN)
+def test_what_other_languages_write_is_told_in_words_of_this_one(tmp_path: Path, text: str, says: str) -> None:
+    (finding, *_) = reading(tmp_path, text).findings
+    assert says in str(finding.hint)

@@ -94,7 +94,7 @@ def ros2_runner(ros: Ros, folder: Path) -> Runner:
     modules = folder / "modules"
     if not modules.exists():
         packages = sorted((HERE / "interfaces" / "ros2").iterdir())
-        _done(ros, [ros.python, HERE / "build_interfaces.py", modules, folder / "work", *packages])
+        _done(ros, [ros.python, "-m", "robosc.runtime.ros2_interfaces", modules, *packages])
     return Runner(ros, ros.python, modules)
 
 

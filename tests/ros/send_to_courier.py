@@ -47,10 +47,10 @@ class Session:
     def __init__(self, version):
         self.topics = connect(version, "client")
         self.reports = []
-        self.sent = {}
+        self.sent = {topic: [] for topic in SENT}
         self.topics.listen("/courier_controller/state", "std_msgs/String", self.report)
         for topic, kind in SENT.items():
-            self.topics.listen(topic, kind, lambda message, topic=topic: self.sent.update({topic: plain(message)}))
+            self.topics.listen(topic, kind, lambda message, topic=topic: self.sent[topic].append(plain(message)))
         self.senders = {
             "scan": self.topics.publisher("/scan", "sensor_msgs/LaserScan"),
             "count": self.topics.publisher("count", "std_msgs/Int16"),
@@ -68,12 +68,21 @@ class Session:
             self.topics.receive(0.02)
 
     def rest(self):
-        """What is reported and sent in the next ticks."""
+        """What is reported in the next ticks, and sent: on each topic on which these reports say that something is."""
         count = len(self.reports)
         self.wait(lambda: len(self.reports) >= count + 2)
-        self.sent.clear()
-        self.wait(lambda: len(self.reports) >= count + 5)
-        return {"components": self.reports[-1]["components"], "sent": dict(self.sent)}
+        start = len(self.reports)
+        for messages in self.sent.values():
+            messages.clear()
+        self.wait(lambda: len(self.reports) >= start + 3)
+        happened = {event for report in self.reports[start:] for event in report["transitions"]}
+        topics = [topic for topic in SENT if f"message_{topic}.c_trigger" in happened]
+        # No order is promised across topics: the first one heard may be older than the reports, the third one is not.
+        self.wait(lambda: all(len(self.sent[topic]) >= 3 for topic in topics))
+        return {
+            "components": self.reports[-1]["components"],
+            "sent": {topic: messages[-1] for topic, messages in self.sent.items() if messages},
+        }
 
     def step(self, topic, fields):
         start = len(self.reports)
