@@ -29,6 +29,8 @@ from robosc import files as reading
 if sys.platform != "win32":
     import fcntl
 
+from robosc.json_reading import json_value
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
 
@@ -276,14 +278,14 @@ class _Stage:
     def read_journal(self) -> bool:
         """Takes from the journal what was to be moved; False where it can't be from here."""
         try:
-            found = json.loads(reading.read(self._journal, is_input=False))
+            found = json_value(reading.read(self._journal, is_input=False).decode("utf-8"))
             self._moves = [_Move(int(number), str(path), list(mark)) for number, path, mark in found["moves"]]
             self._folders = [str(each) for each in found["folders"]]
             for path in [*(move.path for move in self._moves), *self._folders]:
                 _inside(self._folder, path)
         except FileNotFoundError:
             return True  # nothing is moved yet, or all of it
-        except (OSError, ValueError, TypeError, KeyError, OutputError, RecursionError):
+        except (OSError, ValueError, TypeError, KeyError, OutputError):
             return False
         return True
 
@@ -400,7 +402,7 @@ def _is(path: Path, content: bytes) -> bool:
         found = path.lstat()
         # The kernel's files say that they are empty, and may have whoever reads them wait.
         return stat.S_ISREG(found.st_mode) and found.st_size == len(content) and path.read_bytes() == content
-    except FileNotFoundError:
+    except (FileNotFoundError, NotADirectoryError):
         return False
 
 
