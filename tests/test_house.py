@@ -159,6 +159,7 @@ OPENERS = {
     "metamodel._ecore",
     "metamodel.stubs",
     "traces.trace_test",
+    "runtime.ros2_interfaces",  # a tool of its own, whose files are made for the generators
     "runtime.reports",  # what `output` has opened
     "traces.trace_player",  # ships with generated packages, and sees nothing of ours
     "traces.walk",  # temporary folders, here and in the next one
