@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from robosc.metamodel import rosgraph, sct
 from robosc.metamodel.expression_types import ExpressionTypes, declared_type
+from robosc.metamodel.rosgraph_shapes import shape_faults
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -28,6 +29,7 @@ def rosgraph_faults(graph: rosgraph.RosGraph, elements: Sequence[Any]) -> Iterat
         yield from _typed_faults(element, types)
         yield from _reference_faults(element)
         yield from _event_faults(element, graph)
+    yield from shape_faults(graph, elements)
 
 
 def _typed_faults(element: Any, types: ExpressionTypes) -> Iterator[Fault]:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc, rosgraph, sct
 from robosc.metamodel.reflection import tree
+from robosc.metamodel.robosc_validity import robosc_faults
 from robosc.metamodel.rosgraph_validity import rosgraph_faults
 from robosc.metamodel.sct_validity import sct_faults
 from robosc.visible import visible
@@ -26,12 +27,15 @@ def faults(root: Any) -> Iterator[tuple[Any, str]]:
 
     Names are identifiers and literals have no sign in every model. An sct model has one initial location per plant,
     one edge per location and event, updates of own variables, and expressions of the right type; a rosgraph model's
-    references and types agree with each other. What the language asks of a robosc model is not looked at here.
+    references and types agree with each other, also where one message is read at several places. Names in a robosc
+    model mean what they can mean in a text; what else the language asks of it, its rules say.
     """
     elements = [element for _, element in tree(root)]
     for element in elements:
         yield from _own_faults(element)
-    if isinstance(root, sct.SupervisoryControlModel):
+    if isinstance(root, robosc.Base):
+        yield from robosc_faults(elements)
+    elif isinstance(root, sct.SupervisoryControlModel):
         yield from sct_faults(root, elements)
     elif isinstance(root, rosgraph.RosGraph):
         yield from rosgraph_faults(root, elements)

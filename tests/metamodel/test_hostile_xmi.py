@@ -1,0 +1,145 @@
+"""Saved models that somebody has changed: whatever is redirected, doubled, dropped or extreme ends in findings."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from random import Random
+from typing import TYPE_CHECKING
+
+import pytest
+
+import robosc
+from robosc.checks import check
+from robosc.diagnostics import ModelError, has_errors
+from robosc.interfaces import Interfaces
+from robosc.metamodel import robosc as rsc
+from robosc.metamodel import rosgraph, xmi
+from robosc.models import Models
+from robosc.simulation import Simulation
+from robosc.supervision import supervise
+from robosc.targets import TARGETS
+from tests.fuzz.hostile_xmi import edits
+from tests.fuzz.trial import time_limit
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+EXAMPLE = Path(__file__).parents[2] / "examples" / "line_follower" / "line_follower.rscd"
+#: For each file so many changes are tried.
+TRIALS = 25
+
+ROBOT, GRAPH = "LineFollower.robosc.xmi", "LineFollower.rosgraph.xmi"
+#: A change, and what is said about it.
+CHANGES = {
+    "communication of another component": (
+        ROBOT,
+        r'(<communicationTypes [^>]*component="//@definitions)\.6"',
+        r'\1.3"',
+        "'move' is no communication of 'LineDetector'",
+    ),
+    "state of another component": (
+        ROBOT,
+        r'(component="//@definitions)\.4" (item="//@definitions.4/)',
+        r'\1.3" \2',
+        "is no state or variable of 'LineDetector'",
+    ),
+    "target in another component": (
+        ROBOT,
+        r'target="//@definitions.4/([^"]*)"',
+        r'target="//@definitions.3/@type/@definitions.2/@automaton/@definitions.1"',
+        "is another component's state",
+    ),
+    "property of another object": (
+        "Warehouse.robosc.xmi",
+        r'property="//@definitions.4/@properties.0"',
+        'property="//@definitions.5/@properties.0"',
+        "'x' is no property of object Scan",
+    ),
+    "component of another library": (
+        ROBOT,
+        r'(<library [^>]*href=")EmergencyStopLibrary',
+        r"\1TurtlebotLibrary",
+        "is no component of TurtlebotLibrary",
+    ),
+    "doubled step": (
+        GRAPH,
+        r'(\s*<steps [^>]*name="ranges"/>)',
+        r"\1\1",
+        "'ranges' is read or written as an array here, but as an object elsewhere",
+    ),
+    "step to nowhere": (GRAPH, r'index="\d+"', 'index="2147483647"', "no array has an element 2147483647"),
+    "field in a number": (
+        "Warehouse.rosgraph.xmi",
+        r"(<path>pose</path>)\s*<path>x</path>",
+        r"\1",
+        "'pose' is read or written as an object here, but as DoubleType elsewhere",
+    ),
+}
+
+
+@pytest.fixture(scope="module")
+def saved() -> Mapping[str, str]:
+    """The saved models of the line follower, by their names."""
+    robot = robosc.load(EXAMPLE)
+    models = Models(robosc.to_sct(robot), robosc.to_rosgraph(robot), robot)
+    robosc.synthesize(models.sct)
+    return robosc.generate("xmi", models)
+
+
+def used(path: Path, target: str | None) -> None:
+    """What commands do with a saved model; raises ModelError for what can't be done with this one."""
+    root = xmi.load(path)
+    if isinstance(root, rsc.Base):
+        found = check(root, [], Interfaces(()))
+        if has_errors(found) or isinstance(root, rsc.Library):
+            raise ModelError(found)
+        models = Models(robosc.to_sct(root), robosc.to_rosgraph(root), root)
+    else:
+        models = Models(root.model, root) if isinstance(root, rosgraph.RosGraph) else Models(root)
+    if models.sct.supervisor is None:
+        supervise(models.sct)
+    simulation, random = Simulation(models.sct, models.rosgraph), Random(1)  # noqa: S311
+    for _ in range(5):
+        simulation.random_step(random)
+    if (
+        target
+        and models.rosgraph is not None
+        and not has_errors(TARGETS[target].findings(models, robosc.Configuration()))
+    ):
+        TARGETS[target].files(models, robosc.Configuration(), with_tests=True)
+
+
+@pytest.mark.parametrize("change", CHANGES)
+def test_what_no_text_could_say_is_said(
+    saved: Mapping[str, str], texts: Mapping[str, str], folder: Path, change: str
+) -> None:
+    file, pattern, replacement, message = CHANGES[change]
+    for name, text in saved.items():
+        (folder / name).write_text(text, encoding="utf-8")
+    changed, count = re.subn(pattern, replacement, {**texts, **saved}[file], count=1)
+    assert count == 1
+    (folder / file).write_text(changed, encoding="utf-8")
+    with pytest.raises(ModelError) as error:
+        used(folder / file, None)
+    assert any(message in each.message for each in error.value.diagnostics), error.value
+    assert {each.rule for each in error.value.diagnostics} == {"xmi"}
+
+
+@pytest.mark.parametrize("file", [ROBOT, GRAPH, "LineFollower.sct.xmi"])
+def test_any_change_ends_in_findings(saved: Mapping[str, str], tmp_path: Path, file: str) -> None:
+    for name, text in saved.items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    random = Random(file)  # noqa: S311 - nothing here is secret
+    ended = set()
+    for number, (change, text) in enumerate(random.sample(list(edits(saved, file, 3)), TRIALS)):
+        (tmp_path / file).write_text(text, encoding="utf-8")
+        try:
+            with time_limit(60):
+                used(tmp_path / file, ("ros1", "ros2", None, None, None)[number % 5])
+            ended.add(True)
+        except ModelError as error:
+            ended.add(not error.diagnostics)
+        except Exception as error:
+            raise AssertionError(f"{change}: {error!r}") from error
+    assert ended == {True, False}
