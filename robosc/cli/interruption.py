@@ -14,7 +14,7 @@ _noted: list[int] = []
 
 def note() -> None:
     """From now on interrupts are noted, too; not where the caller wants them to be ignored."""
-    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+    if signal.getsignal(signal.SIGINT) in (signal.SIG_DFL, signal.default_int_handler):
         signal.signal(signal.SIGINT, _interrupt)
 
 

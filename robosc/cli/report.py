@@ -96,16 +96,18 @@ class Report:
             from robosc.diagnostics import as_text
 
             paint = as_text.plain if os.environ.get("NO_COLOR") else _paint
-            texts = {each.file: self._text(each.file) for each in self.findings}
+            texts = {
+                file: text for file in {each.file for each in self.findings} if (text := self._text(file)) is not None
+            }
             put(as_text.render(self.findings, texts, paint), nl=False, err=self.aside)
             put(as_text.summary(self.findings), err=True)
 
-    def _text(self, file: str) -> str:
-        """The source of a file: as it was read, else from the file if it may be quoted, empty if there is none."""
+    def _text(self, file: str) -> str | None:
+        """The source of a file: as it was read, else from the file if it may be quoted; None if there is none."""
         if file not in self.texts and file in self._quotable:
             with suppress(OSError):
                 self.texts[file] = files.read(file).decode("utf-8", errors="replace")
-        return self.texts.get(file, "")
+        return self.texts.get(file)
 
 
 def _paint(part: Part, text: str) -> str:

@@ -78,3 +78,18 @@ def test_a_command_is_interrupted_at_any_change(tmp_path: Path, sent: signal.Sig
     assert {untidy, DOOR} == set(seen)
     assert model.read_text() == DOOR
     assert list(tmp_path.iterdir()) == [model]
+
+
+def test_an_interrupt_while_the_program_loads_is_no_traceback() -> None:
+    program = """
+import os, signal, sys
+class Interrupting:
+    def find_spec(self, name, path=None, target=None):
+        if name == "click":
+            os.kill(os.getpid(), signal.SIGINT)
+sys.meta_path.insert(0, Interrupting())
+from robosc.__main__ import run
+run()
+"""
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (-signal.SIGINT, "")
