@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -114,3 +115,9 @@ def test_the_player_says_which_line_is_wrong(tmp_path: Path, line: Any, why: str
     path.write_bytes(json.dumps(LINE).encode() + b"\n" + text + b"\n")
     with pytest.raises(TraceError, match=why):
         read_trace(str(path))
+
+
+def test_a_pipe_is_no_trace(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    with pytest.raises(TraceError, match="pipe is no regular file"):
+        read_trace(str(tmp_path / "pipe"))

@@ -82,6 +82,8 @@ def parse(text: str, number: int) -> Line:
 
 def read_trace(path: str) -> list[Line]:
     """The lines of a trace, up to where the node was stopped. Raises TraceError."""
+    if not Path(path).is_file():  # a pipe would be waited for
+        raise TraceError(f"{path} is no regular file")
     lines = []
     # Strings may hold what else ends lines; what a node writes ends with a line feed.
     *texts, last = Path(path).read_bytes().split(b"\n")
