@@ -88,6 +88,7 @@ def _run(models: Models, configuration: Configuration, version: int, arguments: 
         [sending for name in names for sending in [message_named(graph, name)] if sending is not None]
         for names in (configuration.on_shutdown, configuration.on_withheld)
     )
+    interruption.check()
     interruption.leave()
     # The models stay until the end; what is made from now on is collected as ever.
     gc.freeze()

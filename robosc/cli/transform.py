@@ -111,7 +111,8 @@ def command(
                     )
         trees = _trees(folder, files, copies, models, configuration)
         interruption.check()
-        changed = set(write(trees))
+        with progress(f"writing to {folder}"):  # it may wait for another run
+            changed = set(write(trees))
     for written, texts in trees.items():
         home = written.resolve()
         say(f"{written}: {len(texts)} files, {sum(home / name in changed for name in texts)} written", err=True)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from robosc.language import read
+from robosc.language import libraries, read, reading
 
 from .conftest import DOOR, LAMPS, Run
 
@@ -176,10 +176,10 @@ def test_names_of_files_are_the_same_everywhere(run: Run, tmp_path: Path, monkey
         shelf.mkdir(parents=True)
         other = LAMPS.replace("library Lamps", "library Other").replace("light", "glow").replace("dark", "gloom")
         (shelf / "lamps.rscd").write_text(other)
-        reading = read(folder / "robot.rscd", [folder / "sub", shelf])
-        assert [each for each in reading.findings if each.severity == "error"] == []
-        assert reading.base is not None
-        names = [each.type.library.file for each in reading.base.definitions if hasattr(each, "type")]
+        found = read(folder / "robot.rscd", [folder / "sub", shelf])
+        assert [each for each in found.findings if each.severity == "error"] == []
+        assert found.base is not None
+        names = [each.type.library.file for each in found.base.definitions if hasattr(each, "type")]
         assert names[:2] == ["sub/lamps.rscd", "lamps.rscd"]
         assert "/" not in names[2]
         monkeypatch.chdir(folder)
@@ -187,6 +187,20 @@ def test_names_of_files_are_the_same_everywhere(run: Run, tmp_path: Path, monkey
         assert answer.exit_code == 0, answer.output
         texts.append({each.name: each.read_bytes() for each in Path("out").rglob("*") if each.is_file()})
     assert texts[0] == texts[1]
+
+
+def test_a_shipped_library_has_its_bare_name_wherever_it_is_installed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    shipped = tmp_path / "environment" / "stdlib"
+    shipped.mkdir(parents=True)
+    (shipped / "lamps.rscd").write_text(LAMPS)
+    (tmp_path / "robot.rscd").write_text("robot R { component A from Lamps import Lamps }")
+    for module in (libraries, reading):
+        monkeypatch.setattr(module, "locate", lambda _: shipped)
+    base = read(tmp_path / "robot.rscd").base
+    assert base is not None
+    assert base.definitions[0].type.library.file == "lamps.rscd"
 
 
 def test_a_diagram_spares_its_model_and_devices(run: Run, door: Path) -> None:
