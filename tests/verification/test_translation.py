@@ -10,6 +10,7 @@ from hypothesis import HealthCheck, given, settings
 
 from robosc.config import Configuration
 from robosc.m2t import cif, supervisor
+from robosc.m2t.c import behaviour
 from robosc.metamodel import sct
 from robosc.models import Models
 from robosc.synthesis import synthesize
@@ -17,6 +18,7 @@ from robosc.verification.translation import Effort, validate, validate_c, valida
 from robosc.verification.verdict import Outcome, Verdict
 from tests.examples.conftest import SCENARIOS, models_of
 from tests.m2t.supervisor import corners
+from tests.m2t.supervisor.test_supervisor import dock
 from tests.random_sct import sct_models
 from tests.sct_models import edge, model, needs, plant
 
@@ -448,3 +450,49 @@ def test_cif_that_is_another_system_is_refuted(pattern: str, replacement: str, w
     verdict = with_changed_cif(pattern, replacement)
     assert verdict.outcome is Outcome.REFUTED
     assert re.match(rf"the generated CIF is wrong: (line \d+, column \d+: )?{re.escape(wrong)}", verdict.explanation)
+
+
+LOOP_MUTANTS = {
+    "a turn without asking the guard": (r"event\]\] && guard\(&self->state, event\);$", "event]];"),
+    "another event is reported": (r"after\(self->hooks\.context, event\)", "after(self->hooks.context, (dock_event)0)"),
+    "what is withheld happens": (r"return given \|\|", "return true ||"),
+    "silent events do not take turns": (r"self->silent = \(uint8_t\)next;", "self->silent = 0U;"),
+    "reactions are not counted": (r"self->reactions\[source\] = \(uint16_t\)\(most - left\);", ""),
+    "one topic counts for all": (r"source_of\(self->last\)", "0U"),
+    "nothing is owed": (r"self->owing = left == 0U;", "self->owing = false;"),
+    "what is owed comes without a change": (r"^    if \(same\(&self->before, &self->state\)\) \{$", "    if (false) {"),
+    "a service starts again": (r"self->taken\[group\[event\]\] = .*$", ""),
+    "it reacts before the first tick": (r"self->started && self->settings", "self->settings"),
+}
+LARGE_LOOP_MUTANTS = {
+    "a turn without asking whether it is due": (r"bool ran = due == NULL \|\| has\(due, event\);", "bool ran = true;"),
+    "another event is reported": LOOP_MUTANTS["another event is reported"],
+    "reactions are never forgotten": (r"self->reactions\[self->reacted_to\[self->reacted\]\] = 0U;", ""),
+}
+_LOOP_ALONE = Effort(states=0, walk=1000)
+
+
+@pytest.mark.parametrize("mutant", LOOP_MUTANTS)
+def test_a_changed_control_loop_is_refuted(mutant: str) -> None:
+    made = dock()
+    files = c_of(made)
+    source = changed(files["dock_supervisor.c"], *LOOP_MUTANTS[mutant])
+    verdict = validate_c(made, {**files, "dock_supervisor.c": source}, _LOOP_ALONE)
+    assert verdict.outcome is Outcome.REFUTED
+    assert verdict.explanation.startswith("in the control loop of the generated C, at ")
+
+
+@pytest.mark.parametrize("mutant", LARGE_LOOP_MUTANTS)
+def test_a_changed_control_loop_of_a_large_robot_is_refuted(mutant: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(behaviour, "SMALL", 0)
+    made = dock()
+    files = c_of(made)
+    source = changed(files["dock_supervisor.c"], *LARGE_LOOP_MUTANTS[mutant])
+    verdict = validate_c(made, {**files, "dock_supervisor.c": source}, _LOOP_ALONE)
+    assert verdict.outcome is Outcome.REFUTED
+    assert verdict.explanation.startswith("in the control loop of the generated C, at ")
+
+
+def test_the_control_loop_of_a_large_robot_is_the_model_s(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(behaviour, "SMALL", 0)
+    assert validate_c(dock(), c_of(dock()), _LOOP_ALONE).outcome is Outcome.SAMPLED

@@ -22,6 +22,7 @@ from robosc.synthesis.bdd import Diagrams, with_enough_memory
 from robosc.synthesis.encoding import Encoding, Layout, domain_size, smallest
 from robosc.verification.system import SupervisedSystem, counted
 from robosc.verification.translation.differences import different, happening, on_one_side, refuted, where
+from robosc.verification.translation.loop_walk import LoopWalk
 from robosc.verification.translation.transitions import of_system
 from robosc.verification.verdict import Outcome, Verdict
 
@@ -35,6 +36,8 @@ if TYPE_CHECKING:
 PROPERTY = "c-translation"
 TEXT = "the generated C"
 COMPILERS = ("cc", "gcc", "clang")
+#: The control loop in Python takes so many questions whether an event can happen; an operation asks all of them.
+_LOOP = 500_000
 #: What a compiler says that lacks room, and not an understanding of its text.
 _SHORTAGE = re.compile(
     "|".join([*map(os.strerror, (errno.ENOSPC, errno.EDQUOT, errno.ENOMEM)), "Killed signal", "memory exhausted"])
@@ -45,12 +48,14 @@ _SHORTAGE = re.compile(
 class Effort:
     """How far to go: all states are explored up to so many, with up to so many steps from them, else a walk is taken.
 
-    A step is an event with values of its inputs. `walk` is the number of random steps, always the same ones.
+    A step is an event with values of its inputs. `walk` is the number of random steps, always the same ones;
+    `operations` that of the control loop's (messages, events, ticks), fewer where a robot has many events.
     """
 
     states: int = 1_000_000
     steps: int = 500_000_000
     walk: int = 1_000_000
+    operations: int = 5_000
 
 
 def validate_c(model: sct.SupervisoryControlModel, files: Mapping[str, str], effort: Effort | None = None) -> Verdict:
@@ -134,12 +139,17 @@ class _Trial:
         known = system.supervisor.controlledStates or 0
         widest = max((prod(map(domain_size, each.inputs)) for each in self._events), default=1)
         states = effort.states if known <= effort.states and known * widest <= effort.steps else 0
-        command = ["./explorer", "reference", str(states), str(effort.steps), str(effort.walk)]
+        loop = LoopWalk(self._model, min(effort.operations, _LOOP // max(len(self._events), 1)))
+        (self._folder / "script").write_text("\n".join(loop.script), encoding="ascii")
+        command = ["./explorer", "reference", str(states), str(effort.steps), str(effort.walk), "script"]
         done = subprocess.run(command, cwd=self._folder, capture_output=True, text=True, check=False)  # noqa: S603
         if done.returncode != 0:
             return refuted(PROPERTY, f"{TEXT} ends with status {done.returncode}: {done.stderr.strip()}")
-        word, *numbers = done.stdout.split()
-        return self._verdict(system, word, list(map(int, numbers)))
+        found, *said = done.stdout.split("\n")
+        word, *numbers = found.split()
+        verdict = self._verdict(system, word, list(map(int, numbers)))
+        fault = loop.difference(said, TEXT) if verdict.outcome is not Outcome.REFUTED else None
+        return verdict if fault is None else refuted(PROPERTY, fault)
 
     def _reference(self, system: SupervisedSystem) -> Iterator[str]:
         """What `load` in the explorer reads."""
