@@ -67,7 +67,7 @@ class Reception(expression.NamedElement):
     def __init__(self, *, event: sct.Event | None = ..., inputs: Iterable[InputAssignment] = ..., name: str | None = ..., source: str | None = ...) -> None: ...
 
 class InputAssignment(expression.Located):
-    """Sets an input before its event happens. An integer outside the input's range becomes the nearest bound; one that reads past the end of an array is skipped."""
+    """Sets an input before its event happens. An integer outside the input's range becomes the nearest bound. Where it reads past the end of an array and a transition that the event takes reads the input, the event does not happen."""
     input: sct.Input
     value: expression.Expression
     def __init__(self, *, input: sct.Input | None = ..., value: expression.Expression | None = ..., source: str | None = ...) -> None: ...

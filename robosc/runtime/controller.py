@@ -94,7 +94,7 @@ class Controller:
         self._data = NodeData(graph, self._loop.engine)
         self._reports = StateReporter(graph, self._loop.engine, self._data, port, settings.configuration)
         self._warn = Throttle(port.warn, agenda.clock)
-        self._happenings = Happenings(graph, self._data, self._warn)
+        self._happenings = Happenings(graph, self._data, self._loop)
         self._wiring = Wiring(port, agenda)
         self._watchdogs: dict[rosgraph.Subscription, Watchdog] = {}
         self._stopping = False
@@ -102,7 +102,6 @@ class Controller:
         roles = Roles(graph.model)
         self._events = {event_name(each): each for each in roles.events}
         self._incoming = set(roles.incoming)
-        self._noted: Mapping[str, Json] | None = None
         self._senders: dict[sct.Event, _Sender] = {}
         self._connected: dict[_Client, _Connected] = {}
         self._resets: dict[sct.Event, _Connected] = {}
@@ -242,37 +241,49 @@ class Controller:
     # What comes in
 
     def receive(self, subscription: rosgraph.Subscription, message: Message) -> None:
-        """A message on a topic: one batch of events."""
-        if subscription in self._watchdogs:
-            self._watchdogs[subscription].hear()
+        """A message on a topic: one batch of events. One that can't be read counts as not received."""
         self._loop.begin()
-        for reception in subscription.receptions:
-            self._happen(reception.event, subscription.topic, reception.inputs, message)
+        read = [self._hear(each, subscription.topic, message) for each in subscription.receptions]
+        if subscription in self._watchdogs and all(read):
+            self._watchdogs[subscription].hear()
         self._loop.end()
 
     def _response(self, client: _Client) -> Callable[[Message], None]:
         def respond(message: Message) -> None:
-            self._connected[client].fault = ""
-            self._batch(client.response.event, client.identifier, client.response.inputs, message)
+            self._loop.begin()
+            unread = self._happenings.perform(client.response.event, client.response.inputs, message)
+            if unread is None:
+                self._connected[client].fault = ""
+            else:
+                self._note_failure(client, str(unread))
+                self._happenings.reject(client, message)
+            self._loop.end()
 
         return respond
 
     def _feedback(self, client: rosgraph.ActionClient) -> Callable[[Message], None]:
         def feed_back(message: Message) -> None:
-            self._batch(client.feedback.event, client.identifier, client.feedback.inputs, message)
+            self._loop.begin()
+            self._hear(client.feedback, client.identifier, message)
+            self._loop.end()
 
         return feed_back
 
     def _error(self, client: _Client) -> Callable[[str], None]:
         def fail(why: str) -> None:
-            connected = self._connected[client]
-            if connected.fault != why:
-                self._port.warn(f"{client.identifier}: {why}")
-            connected.fault = why
-            connected.retry = self._agenda.after(self._settings.seconds("retry_ms"), self._try_again(connected))
-            self._batch(client.error, client.identifier)
+            self._note_failure(client, why)
+            self._loop.begin()
+            self._happenings.perform(client.error)
+            self._loop.end()
 
         return fail
+
+    def _note_failure(self, client: _Client, why: str) -> None:
+        connected = self._connected[client]
+        if connected.fault != why:
+            self._port.warn(f"{client.identifier}: {why}")
+        connected.fault = why
+        connected.retry = self._agenda.after(self._settings.seconds("retry_ms"), self._try_again(connected))
 
     def _try_again(self, connected: _Connected) -> Callable[[], None]:
         def wake() -> None:
@@ -286,27 +297,12 @@ class Controller:
         self._loop.begin()
         self._loop.end()
 
-    def _batch(
-        self,
-        event: sct.Event,
-        name: str,
-        inputs: Sequence[rosgraph.InputAssignment] = (),
-        message: Message = None,
-    ) -> None:
-        self._loop.begin()
-        self._happen(event, name, inputs, message)
-        self._loop.end()
-
-    def _happen(
-        self, event: sct.Event, name: str, inputs: Sequence[rosgraph.InputAssignment], message: Message
-    ) -> None:
-        """One event of the robot, with what its data changes in the supervisor and in the node."""
-        if not self._loop.enabled(event_name(event)):
-            return
-        values = self._happenings.inputs(name, inputs, message)
-        self._happenings.change(event, name, message)
-        self._noted = self._happenings.noted(event, message) if self._log.active else None
-        self._loop.perform(event_name(event), values)
+    def _hear(self, reception: rosgraph.Reception, name: str, message: Message) -> bool:
+        """A message or feedback, as an event; False where it can't be read, which is reported."""
+        unread = self._happenings.perform(reception.event, reception.inputs, message)
+        if unread is not None:
+            self._warn(reception.event, f"{name}: {unread}")
+        return unread is None
 
     # What goes out
 
@@ -323,11 +319,10 @@ class Controller:
                     self._send_outside(self._safe.on_withheld)
                 return False
             self._withheld.discard(name)
-            self._noted = sender.noted
         elif event in self._resets and self._resets[event].retry is not None:
             return False
         if event not in self._incoming:
-            self._happenings.change(event, name)
+            self._happenings.change(event)
         return True
 
     def _prepare(self, sender: _Sender) -> bool:
@@ -359,15 +354,15 @@ class Controller:
         self._withheld = {command for command in self._withheld if self._loop.engine.enabled(command)}
         event = self._events[name]
         direction = "in" if event in self._incoming else "internal"
-        noted, self._noted = self._noted, None
+        noted = self._happenings.noted(event) if self._log.active else None
         sender = self._senders.get(event)
         if sender is not None:
-            direction = "out"
+            direction, noted = "out", sender.noted
             sender.send(sender.message)
         elif event in self._cancels:
             direction = "out"
             self._cancels[event].cancel()
-        self._log.write(self._port.now(), direction, name, noted if direction != "internal" else None)
+        self._log.write(self._port.now(), direction, name, noted)
         if lost := self._log.lost():
             self._port.warn(f"the event log lost {lost} events")
         self._reports.note(name)

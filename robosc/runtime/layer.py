@@ -16,7 +16,7 @@ from robosc.runtime.state import StateReporter
 from robosc.runtime.throttle import Throttle
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable
 
     from robosc.runtime.agenda import Agenda
     from robosc.runtime.port import Message, Reporting
@@ -44,7 +44,8 @@ class Layer:
         )
         self._data = NodeData(graph, self._loop.engine)
         self._reports = StateReporter(graph, self._loop.engine, self._data, port, settings.configuration)
-        self._happenings = Happenings(graph, self._data, Throttle(port.warn, agenda.clock))
+        self._happenings = Happenings(graph, self._data, self._loop)
+        self._warn = Throttle(port.warn, agenda.clock)
         roles = Roles(graph.model)
         self._events = {event_name(each): each for each in roles.events}
         self._incoming = set(roles.incoming)
@@ -52,7 +53,6 @@ class Layer:
         self._ignored = {each for events in roles.data for each in events}
         assert graph.model.supervisor is not None
         self._explained = {each.event: [each.explanation] for each in graph.model.supervisor.guards if each.explanation}
-        self._noted: Mapping[str, Json] | None = None
         self.cancels: dict[sct.Event, Callable[[], None]] = {}
 
     def start(self) -> None:
@@ -80,35 +80,35 @@ class Layer:
     # From the robot
 
     def hear(self, subscription: rosgraph.Subscription, message: Message) -> None:
-        """A message on a topic, before it is forwarded."""
+        """A message on a topic, before it is forwarded. One that can't be read counts as not received."""
         for each in subscription.receptions:
-            self._happen(each.event, subscription.topic, each.inputs, message)
+            self._hear(each, subscription.topic, message)
 
     def respond(self, client: _Client, message: Message) -> None:
-        """The answer of a service, or the result of a goal that succeeded, before it is forwarded."""
-        self._happen(client.response.event, client.identifier, client.response.inputs, message)
+        """The answer of a service, or the result of a goal that succeeded, before it is forwarded.
+
+        One that can't be read counts as an error.
+        """
+        unread = self._happenings.perform(client.response.event, client.response.inputs, message)
+        if unread is not None:
+            self._port.warn(f"{client.identifier}: {unread}")
+            self._happenings.reject(client, message)
+        self._loop.settle()
 
     def feed_back(self, client: rosgraph.ActionClient, message: Message) -> None:
         """Feedback of the goal at hand, before it is forwarded."""
-        self._happen(client.feedback.event, client.identifier, client.feedback.inputs, message)
+        self._hear(client.feedback, client.identifier, message)
 
     def fail(self, client: _Client, why: str) -> None:
         """A call or goal has come to nothing."""
         self._port.warn(f"{client.identifier}: {why}")
-        self._happen(client.error, client.identifier)
+        self._happenings.perform(client.error)
+        self._loop.settle()
 
-    def _happen(
-        self,
-        event: sct.Event,
-        name: str,
-        inputs: Sequence[rosgraph.InputAssignment] = (),
-        message: Message = None,
-    ) -> None:
-        if self._loop.enabled(event_name(event)):
-            values = self._happenings.inputs(name, inputs, message)
-            self._happenings.change(event, name, message)
-            self._noted = self._happenings.noted(event, message) if self._log.active else None
-            self._loop.perform(event_name(event), values)
+    def _hear(self, reception: rosgraph.Reception, name: str, message: Message) -> None:
+        unread = self._happenings.perform(reception.event, reception.inputs, message)
+        if unread is not None:
+            self._warn(reception.event, f"{name}: {unread}")
         self._loop.settle()
 
     # From the controller
@@ -164,12 +164,12 @@ class Layer:
     def _before(self, name: str) -> bool:
         event = self._events[name]
         if event not in self._incoming:
-            self._happenings.change(event, name)
+            self._happenings.change(event)
         return True
 
     def _after(self, name: str) -> None:
         event = self._events[name]
-        noted, self._noted = self._noted, None
+        noted = self._happenings.noted(event) if self._log.active else None
         if event in self._ignored:
             return
         if event in self.cancels:

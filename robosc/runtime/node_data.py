@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robosc.evaluation import Value, as_double, evaluate, saturate
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
+from robosc.received import locations_reading
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
     from robosc.engine import Engine
     from robosc.runtime.port import Message
 
@@ -21,6 +24,13 @@ class PastEndError(Exception):
 
     def __init__(self, index: int, length: int) -> None:
         super().__init__(f"there is no element {index} in an array of {length}")
+
+
+class Received(NamedTuple):
+    """What an event brings, from the state before it: values of its inputs, by their names, and the node's new ones."""
+
+    inputs: dict[str, Any]
+    variables: dict[rosgraph.NodeVariable, Value]
 
 
 def fit(number: int) -> int:
@@ -52,20 +62,48 @@ class NodeData:
         plant: sct.Plant = location.eContainer()
         return plant.locations[self._engine.location(plant)] is location
 
-    def assignments(
-        self, event: sct.Event, data: Message = None
-    ) -> tuple[dict[rosgraph.NodeVariable, Value], list[PastEndError]]:
-        """What the event changes in the node from the present state on, and what it reads in vain."""
-        values: dict[rosgraph.NodeVariable, Value] = {}
-        faults = []
+    def received(
+        self, event: sct.Event, inputs: Sequence[rosgraph.InputAssignment] = (), data: Message = None
+    ) -> Received:
+        """What the transitions that the event takes in the present state make of its data; nothing is changed yet.
+
+        Raises PastEndError where one of them can't read what it needs: then the event must not happen.
+        """
+        return Received(self._inputs(event, inputs, data), self._assigned(event, data))
+
+    def _inputs(self, event: sct.Event, inputs: Sequence[rosgraph.InputAssignment], data: Message) -> dict[str, Any]:
+        values: dict[str, Any] = {}
+        for each in inputs:
+            try:
+                value = self.value(each.value, data)
+            except PastEndError:
+                if self._needs(event, each):
+                    raise
+            else:
+                values[each.input.name] = value.name if isinstance(value, ex.EnumerationLiteral) else value
+        return values
+
+    def _needs(self, event: sct.Event, assignment: rosgraph.InputAssignment) -> bool:
+        return any(map(self.is_in, locations_reading(event, assignment.input)))
+
+    def _assigned(self, event: sct.Event, data: Message) -> dict[rosgraph.NodeVariable, Value]:
+        return {
+            each.variable: bounded(self.value(each.value, data), each.variable.type)
+            for each in self._assignments(event)
+        }
+
+    def _assignments(self, event: sct.Event) -> Iterator[rosgraph.NodeAssignment]:
+        """What the event assigns in the present state."""
         for reaction in self._reactions.get(event, ()):
-            if any(self.is_in(each) for each in reaction.locations):
-                for each in reaction.assignments:
-                    try:
-                        values[each.variable] = bounded(self.value(each.value, data), each.variable.type)
-                    except PastEndError as fault:
-                        faults.append(fault)
-        return values, faults
+            if any(map(self.is_in, reaction.locations)):
+                yield from reaction.assignments
+
+    def read_now(self, event: sct.Event, inputs: Sequence[rosgraph.InputAssignment]) -> list[ex.Expression]:
+        """The values that the transitions read which the event takes in the present state."""
+        return [
+            *(each.value for each in inputs if self._needs(event, each)),
+            *(each.value for each in self._assignments(event)),
+        ]
 
     def values_read(self, event: sct.Event) -> list[ex.Expression]:
         """All values that the event may give to variables."""

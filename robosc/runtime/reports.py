@@ -185,12 +185,12 @@ class ReceivedData:
         self._found = {(): found["data",]} if list(found) == [("data",)] else found
 
     def read(self, data: NodeData, message: Message) -> Mapping[str, Json] | None:
-        """The data for the log; None where the node reads nothing, or past the end of an array."""
-        if not self._found:
-            return None
-        try:
-            values = {path: shown(data.value(part, message)) for path, part in self._found.items()}
-        except PastEndError:
+        """The data for the log, without what can't be read; None where that is nothing."""
+        values = {}
+        for path, part in self._found.items():
+            with suppress(PastEndError):
+                values[path] = shown(data.value(part, message))
+        if not values:
             return None
         return {"value": values[()] if () in values else nested(values)}
 

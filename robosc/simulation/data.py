@@ -11,11 +11,13 @@ from robosc.evaluation import as_double
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
 from robosc.metamodel.reflection import tree
+from robosc.received import reads_elements, receptions
 from robosc.roles import Roles, event_name
 from robosc.runtime.node_data import NodeData
+from robosc.simulation.unread import Unread, missing
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
 
     from robosc.engine import Engine
     from robosc.engine.state import Value
@@ -50,7 +52,12 @@ class EventData:
     def __init__(self, engine: Engine, graph: rosgraph.RosGraph | None) -> None:
         self._events = {event_name(each): each for each in Roles(engine.model).events}
         self._node = None if graph is None else NodeData(graph, engine)
-        self._assignments = {} if graph is None else dict(_assignments(graph))
+        received = [] if graph is None else receptions(graph)
+        self._assignments = {each.input: each for reception in received for each in reception.inputs}
+        self._receptions = {event_name(each.event): each for each in received}
+        clients: list[rosgraph.ServiceClient | rosgraph.ActionClient] = []
+        clients += [] if graph is None else [*graph.serviceClients, *graph.actionClients]
+        self._errors = {event_name(each.response.event): event_name(each.error) for each in clients}
 
     def inputs(self, event: str, data: Mapping[str, Any]) -> dict[str, Value]:
         """Values of the event's inputs by their names. Raises DataError, KeyError for an unknown event."""
@@ -69,6 +76,15 @@ class EventData:
             except ValueError as error:
                 raise DataError(f"{_label(each)}: {error}") from None
         return found
+
+    def unread(self, event: str, data: Mapping[str, Any]) -> Unread | None:
+        """Why the node could not read this data in the present state, as far as it is given; None: it could."""
+        reception = self._receptions.get(event)
+        if self._node is None or reception is None or "value" not in data:
+            return None
+        read = self._node.read_now(reception.event, [each for each in reception.inputs if reads_elements(each.value)])
+        fault = missing(read, data["value"])
+        return None if fault is None else Unread(str(fault), self._errors.get(event))
 
     def shaped(self, event: str, values: Mapping[str, Value]) -> dict[str, Any]:
         """Data with which the event's inputs have these values, by their names."""
@@ -172,15 +188,6 @@ def _basic(data: Any, kind: ex.Type | None, place: str) -> Any:
     if not isinstance(data, plain) or (isinstance(data, bool) and name in {"an integer", "a number"}):
         raise DataError(f"{place} is {json.dumps(data)}, expected {name}")
     return as_double(data) if isinstance(kind, ex.DoubleType) else data
-
-
-def _assignments(graph: rosgraph.RosGraph) -> Iterator[tuple[sct.Input, rosgraph.InputAssignment]]:
-    receptions = [each for topic in graph.subscriptions for each in topic.receptions]
-    receptions += [each.response for each in graph.serviceClients]
-    receptions += [reception for each in graph.actionClients for reception in (each.feedback, each.response)]
-    for reception in receptions:
-        for assignment in reception.inputs:
-            yield assignment.input, assignment
 
 
 def _reads(conversion: rosgraph.Conversion) -> list[_Read]:

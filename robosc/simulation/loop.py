@@ -7,10 +7,12 @@ from typing import TYPE_CHECKING, Any
 from robosc.engine import ControlLoop, Hooks, Settings
 from robosc.simulation.data import EventData
 from robosc.simulation.simulation import whole_state
+from robosc.simulation.unread import Unread
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from robosc.engine import Blocked
     from robosc.metamodel import rosgraph, sct
 
 #: What a script may say beside events: the period is over; a message from the robot with several events begins, ends.
@@ -43,15 +45,18 @@ class LoopSimulation:
         """What came of a step: the object that `simulate --loop --script` prints. Raises DataError."""
         inputs = {} if event in self.OWN else self.data.inputs(event, data)
         self._happened.clear()
-        by = None
+        by: Blocked | Unread | None = None
         if event in self.OWN:
             self._in_batch = event == BEGIN
             getattr(self._loop, event)()
         else:
             if not self._in_batch:
                 self._loop.begin()
-            by = self._loop.engine.blocked_by(event)
-            self._loop.perform(event, inputs)
+            by = self._loop.engine.blocked_by(event) or self.data.unread(event, data)
+            if not isinstance(by, Unread):
+                self._loop.perform(event, inputs)
+            elif by.error is not None:
+                self._loop.perform(by.error)
             if not self._in_batch:
                 self._loop.end()
         return {

@@ -15,6 +15,7 @@ from robosc.roles import event_name
 from robosc.simulation.data import DataError
 from robosc.simulation.script import read_script
 from robosc.simulation.simulation import whole_state
+from robosc.simulation.unread import Unread
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -103,7 +104,9 @@ class Session:
         blocked = ((each, engine.blocked_by(each)) for each in engine.events)
         return "\n".join(self._reason(each, by) for each, by in blocked if by is not None) or "everything can happen"
 
-    def _reason(self, event: str, by: Blocked) -> str:
+    def _reason(self, event: str, by: Blocked | Unread) -> str:
+        if isinstance(by, Unread):
+            return f"{event}: {by.why}, so it counts as {by.error or 'not received'}"
         model = self._simulation.engine.model
         if by is Blocked.PLANT:
             return f"{event}: the robot is not ready for it"

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from robosc.engine import Blocked
     from robosc.engine.state import State, Value
     from robosc.metamodel import rosgraph, sct
+    from robosc.simulation.unread import Unread
 
 
 def whole_state(engine: Engine) -> dict[str, Value]:
@@ -35,7 +36,7 @@ class Happened:
 
     event: str
     data: Mapping[str, Any]
-    by: Blocked | None
+    by: Blocked | Unread | None
     state: Mapping[str, Value]
 
     @property
@@ -70,7 +71,8 @@ class Simulation:
         Raises DataError, and KeyError where there is no such event.
         """
         inputs = self.data.inputs(event, data or {})
-        before, by = self.engine.state, self.engine.blocked_by(event)
+        before = self.engine.state
+        by = self.engine.blocked_by(event) or self.data.unread(event, data or {})
         if by is None:
             self.engine.perform(event, inputs)
         happened = Happened(event, data or {}, by, whole_state(self.engine))

@@ -13,10 +13,11 @@ from robosc.interfaces.wire import INTEGER_RANGES
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph
 from robosc.metamodel.reflection import tree
+from robosc.received import reads_elements
 from robosc.traces.shapes import Field, Leaf, Path, message, reads, wire_type
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Collection, Mapping, Sequence
 
     from robosc.interfaces import Edition, Part
     from robosc.runtime.node_data import NodeData
@@ -43,6 +44,8 @@ class Incoming:
 
     events: list[tuple[str, list[Read]]]
     fields: dict[Path, Field]
+    #: The events that a message may not be, since elements of arrays that they need may not be there.
+    unreadable: set[str]
     samples: dict[tuple[str, ...], list[dict[Path, Leaf]]] = field(default_factory=dict)
 
     @property
@@ -105,12 +108,15 @@ def incoming(
     edition: Edition,
     interface: rosgraph.Interface,
     part: Part,
-    receptions: Sequence[tuple[str, Mapping[Path, ex.Expression], Iterable[ex.Expression]]],
+    receptions: Sequence[tuple[str, Mapping[Path, ex.Expression], Collection[ex.Expression]]],
 ) -> Incoming:
     """What comes in as one message: for each event its name, what is shown of it, and the values that read it."""
     fields: dict[Path, Field] = {}
     events = []
+    unreadable = set()
     for event, shown, values in receptions:
+        if any(map(reads_elements, values)):
+            unreadable.add(event)
         for path, kind in reads(values):
             fields.setdefault(path, Field(kind, wire_type(edition, interface, part, path)))
         found = [
@@ -118,7 +124,7 @@ def incoming(
             for path, each in shown.items()
         ]
         events.append((event, found))
-    return Incoming(events, fields)
+    return Incoming(events, fields, unreadable)
 
 
 def find_samples(kind: Incoming, values: Values, data: NodeData, seed: int) -> None:
@@ -164,9 +170,14 @@ def _tried(
             made = dict(choice.choice(seen))
             for path in choice.sample(paths, min(len(paths), choice.randint(1, 3))):
                 made[path] = choice.choice(pools[path])
-    if choice.random() < 1 / 16:  # an array may be too short
-        made = dict(islice(made.items(), choice.randrange(len(made) + 1)))
+    if choice.random() < 1 / 16:
+        made = shortened(made, choice)
     return {path: made[path] for path in paths if path in made}
+
+
+def shortened(values: Mapping[Path, Leaf], choice: random.Random) -> dict[Path, Leaf]:
+    """Some of the values: an array may be too short."""
+    return dict(islice(values.items(), choice.randrange(len(values) + 1)))
 
 
 def _literal(read: Read, argument: Any, data: NodeData) -> str:

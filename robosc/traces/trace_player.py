@@ -16,7 +16,7 @@ import queue
 import time
 from array import array
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from itertools import accumulate
 from pathlib import Path
@@ -154,26 +154,37 @@ class Incoming:
 
     def __init__(self, described: dict[str, Any]) -> None:
         self.events = [each["event"] for each in described["events"]]
-        self._reads = [each["reads"] for each in described["events"]]
+        #: Those that a message may not be, as it can't be read.
+        self.unreadable = {each["event"] for each in described["events"] if each.get("unreadable")}
+        self._reads = {each["event"]: each["reads"] for each in described["events"]}
         self._samples = described["samples"]
 
     def message(self, lines: list[Line]) -> dict[str, Any]:
-        """The fields of a message that means these lines, one for each event. Raises TraceError."""
+        """The fields of a message that means these lines, and no other events. Raises TraceError."""
         given = next((each.message for each in lines if each.message is not None), None)
         if given is not None:
             return dict(given)
         direct: dict[tuple[str, ...], Any] = {}
         literals = []
-        for number, line in enumerate(lines):
-            reads = self._reads[number]
-            found = {} if line.data is None else self._values(line.data["value"], reads)
+        absent: list[tuple[str, ...]] = []
+        for event, reads in self._reads.items():
+            line = next((each for each in lines if each.event == event), None)
+            found = {} if line is None or line.data is None else self._values(line.data["value"], reads)
+            unread = []
             for read in reads:
                 path = tuple(read["path"])
                 if read["converted"]:
                     literals.append(found.get(path))
                 elif path in found:
                     direct[path] = math.nan if found[path] is None else found[path]
-        return with_fields(self._sample(literals, lines[0]), direct)
+                if path not in found and any(name.isdigit() for name in path):
+                    unread.append(path)
+            # Others may read what an event that did not happen would have read, but for one element.
+            absent += unread if line is not None else sorted(unread, key=last_index)[-1:]
+        message = self._sample(literals, lines[0])
+        for path in absent:
+            message = without(message, path)
+        return with_fields(message, direct)
 
     @staticmethod
     def _values(value: Any, reads: list[dict[str, Any]]) -> dict[tuple[str, ...], Any]:
@@ -189,6 +200,23 @@ class Incoming:
             return {}
         wanted = ", ".join(map(str, literals))
         raise TraceError(f"line {line.number} can't be played: no message is known that the node reads as {wanted}")
+
+
+def last_index(path: tuple[str, ...]) -> int:
+    """The last position in an array on a path."""
+    return int([name for name in path if name.isdigit()][-1])
+
+
+def without(message: dict[str, Any], path: tuple[str, ...]) -> dict[str, Any]:
+    """A copy of nested objects in which an array is too short for a path."""
+    copy: dict[str, Any] = json.loads(json.dumps(message))
+    end = max(number for number, name in enumerate(path) if name.isdigit())
+    owner = copy
+    for name in path[:end]:
+        owner = owner.get(name, {})
+    for index in [each for each in owner if int(each) >= int(path[end])]:
+        del owner[index]
+    return copy
 
 
 def with_fields(message: dict[str, Any], fields: dict[tuple[str, ...], Any]) -> dict[str, Any]:
@@ -310,12 +338,12 @@ class Player:
         self._topics = {each["topic"]: Incoming(each) for each in connections["subscriptions"]}
         self._answers: dict[str, Callable[[Line], None]] = {}
         for each in connections["services"]:
-            self._add(each["response"], partial(port.answer, each["name"]))
-            self._answers[each["error"]] = partial(self._fail, each["name"])
+            answer = self._add(each["response"], partial(port.answer, each["name"]))
+            self._answers[each["error"]] = partial(self._fail, each["name"], answer)
         for each in connections["actions"]:
             self._add(each["feedback"], partial(port.feed_back, each["name"]))
-            self._add(each["response"], partial(port.end, each["name"], "succeeded"))
-            self._answers[each["error"]] = partial(self._abort, each["name"])
+            answer = self._add(each["response"], partial(port.end, each["name"], "succeeded"))
+            self._answers[each["error"]] = partial(self._abort, each["name"], answer)
         self._cancels = {each["cancel"]: each["name"] for each in connections["actions"]}
         self._goals = {each["trigger"]: each["name"] for each in connections["actions"]}
         self._outlets = {event: each["topic"] for each in connections["publishers"] for event in each["events"]}
@@ -387,26 +415,44 @@ class Player:
         self._answers[line.event](line)
         return 1
 
-    def _add(self, described: dict[str, Any], send: Callable[[dict[str, Any]], None]) -> None:
+    def _add(self, described: dict[str, Any], send: Callable[[dict[str, Any]], None]) -> Callable[[Line], None]:
         incoming = Incoming(described)
-        self._answers[incoming.events[0]] = lambda line: send(incoming.message([line]))
+        (event,) = incoming.events
 
-    def _fail(self, service: str, line: Line) -> None:
+        def answer(line: Line) -> None:
+            send(incoming.message([replace(line, event=event)]))
+
+        self._answers[event] = answer
+        return answer
+
+    def _fail(self, service: str, answer: Callable[[Line], None], line: Line) -> None:
         done = self._log.peek()
-        if done is None or done.event != line.event:  # it may have come with the time that passed
+        if line.data is not None:  # an answer that can't be read
+            answer(line)
+        elif done is None or done.event != line.event:  # it may have come with the time that passed
             self._port.fail(service)
 
-    def _abort(self, action: str, line: Line) -> None:
-        del line
-        self._port.end(action, "aborted", {})
+    def _abort(self, action: str, answer: Callable[[Line], None], line: Line) -> None:
+        if line.data is not None:  # a result that can't be read
+            answer(line)
+        else:
+            self._port.end(action, "aborted", {})
 
-    @staticmethod
-    def _batch(lines: list[Line], position: int, incoming: Incoming) -> list[Line]:
-        """The lines that one message made: all events of its topic, in their order."""
-        batch = lines[position : position + len(incoming.events)]
-        if [each.event for each in batch] != incoming.events:
-            raise TraceError(f"line {lines[position].number}: one message makes {', '.join(incoming.events)}, in a row")
+    def _batch(self, lines: list[Line], position: int, incoming: Incoming) -> list[Line]:
+        """The lines that one message made: all events of its topic, in their order, but those that can't be read."""
+        batch: list[Line] = []
+        for event in incoming.events:
+            ahead = position + len(batch)
+            if ahead < len(lines) and lines[ahead].event == event and self._together(batch, lines[ahead]):
+                batch.append(lines[ahead])
+            elif event not in incoming.unreadable:
+                names = ", ".join(incoming.events)
+                raise TraceError(f"line {lines[position].number}: one message makes {names}, in a row")
         return batch
+
+    def _together(self, batch: list[Line], line: Line) -> bool:
+        """Whether a line may be of the same message as those before it."""
+        return not batch or (line.message is None and line.time - batch[-1].time < self._period / 20)
 
     # What the node does
 

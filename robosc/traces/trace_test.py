@@ -106,6 +106,7 @@ def _described(kind: Incoming) -> dict[str, Any]:
         "events": [
             {
                 "event": event,
+                **({"unreadable": True} if event in kind.unreadable else {}),
                 "reads": [{"path": list(each.path), "converted": each.conversion is not None} for each in shown],
             }
             for event, shown in kind.events

@@ -18,7 +18,7 @@ from robosc.runtime.port import Outcome
 from robosc.runtime.reports import ReceivedData
 from robosc.runtime.settings import Settings, controller_parameters
 from robosc.traces.robot import Robot
-from robosc.traces.samples import Incoming, Values, find_samples, incoming
+from robosc.traces.samples import Incoming, Values, find_samples, incoming, shortened
 from robosc.traces.shapes import Leaf, message, nested
 from robosc.traces.trace_player import START, between, just_after
 
@@ -32,6 +32,8 @@ if TYPE_CHECKING:
 _DAY = 24 * 3600 * 1000
 #: Of so many answers one is a failure.
 _FAILURES = 6
+#: Of so many messages with arrays one is without some of what is read.
+_UNREADABLE = 6
 
 
 def parameters(graph: rosgraph.RosGraph, configuration: Configuration) -> dict[str, bool | int]:
@@ -194,6 +196,8 @@ class Walk:
         if not kind.conversions:
             pools = {path: self._values.of(field) for path, field in kind.fields.items()}
             values = {path: self._choice.choice(pool) for path, pool in pools.items() if pool}
+        if kind.unreadable and self._choice.randrange(_UNREADABLE) == 0:
+            values = shortened(values, self._choice)
         return message(kind.fields, values), nested(values)
 
     def _known(self, seed: int) -> dict[sct.Event, Incoming]:

@@ -40,7 +40,7 @@ STEPS = [
     ("word", "word", {"data": 'idle "ü" \\ \n'}),
     ("idle", "word", {"data": "idle"}),
 ]
-EVENTS = {"scan": "detail", "count": "size", "word": "word"}
+EVENTS = {"scan": "side", "count": "size", "word": "word"}
 
 
 class Session:

@@ -99,6 +99,15 @@ def test_messages_pass_in_both_directions(trial: Trial) -> None:
     assert trial.blocked("allowed") == []
 
 
+def test_what_can_not_be_read_is_handed_on_but_counts_as_not_received(trial: Trial) -> None:
+    assert (trial.controller("short"), trial.controller("long")) == ([["scan", 1]], [["scan", 2]])
+    assert "/scan: there is no element 1 in an array of 1" in trial.output
+    scans = [each["data"] for each in trial.log if each["event"] == "message_scan.u_response"]
+    assert scans == [{"value": {"ranges": {"1": 0.75}}}]
+    scanner = trial.steps["low"]["blocked"][0]["components"]["Scanner"]
+    assert scanner == {"state": "seen", "variables": {"second": 0.75}}
+
+
 def test_what_a_requirement_forbids_is_blocked_and_told(trial: Trial) -> None:
     assert trial.robot("low") == []
     assert trial.blocked("low") == [("Drive.speed", "requirement", ["requirement speed needs Guard.charge > 20"])]

@@ -60,16 +60,6 @@ def test_does_nothing_before_the_first_tick(courier: World) -> None:
     assert target == {"pose": {"position": {"x": 0.5, "y": -1.5, "z": 13.0}}}
 
 
-def test_what_reads_past_the_end_is_skipped_and_said_once_in_five_seconds(courier: World) -> None:
-    for _ in range(3):
-        courier.hear("scan", ranges=[0.625], angle_min=0.0)
-    assert component(courier, "Scanner") == {"seen": "ahead", "first": 0.625, "before": 0.625, "fourth": 0.25}
-    assert courier.port.said == ["/scan: there is no element 3 in an array of 1"]
-    courier.wait(5)
-    courier.hear("scan", ranges=[0.625], angle_min=0.0)
-    assert len([each for each in courier.port.said if "element" in each]) == 2
-
-
 def test_integers_saturate_and_what_is_not_finite_is_withheld(courier: World) -> None:
     courier.port.types = {"data": "uint8"}
     courier.hear("count", data=299)

@@ -20,13 +20,14 @@ if TYPE_CHECKING:
     from robosc.metamodel import rosgraph
 
 USHER = Path(__file__).parents[1] / "m2t" / "layer" / "usher.rscd"
+MISSION = Path(__file__).parent / "mission.rscd"
 
 
 class Passage:
     """A layer, and its robot's graph by names."""
 
-    def __init__(self, log: Path) -> None:
-        self.graph = supervised(USHER)
+    def __init__(self, log: Path, model: Path = USHER) -> None:
+        self.graph = supervised(model)
         self.port = FakePort()
         self.agenda = Agenda(lambda: self.port.time)
         self.log = log
@@ -123,6 +124,25 @@ def test_answers_and_failures_move_the_supervisor_and_it_settles(passage: Passag
         ("internal", "service_light.c_reset"),
         ("out", "service_light.c_trigger"),
     ]
+
+
+def test_what_can_not_be_read_counts_as_not_received(tmp_path: Path) -> None:
+    passage = Passage(tmp_path / "events.jsonl", MISSION)
+    passage.hear("/route", name="short", poses=[])
+    assert passage.directions() == [("in", "message_length.u_response")]
+    assert passage.port.said == ["/route: there is no element 2 in an array of 0"]
+    # An answer is an error to the supervisor.
+    assert passage.passes("plan")
+    passage.layer.respond(passage.service, Record(cost=5.0, stops=[]))
+    assert passage.directions()[-2:] == [("in", "service_plan.u_error"), ("internal", "service_plan.c_reset")]
+    assert passage.port.said[-1] == "/plan: there is no element 0 in an array of 0"
+    assert passage.passes("plan")
+    passage.layer.respond(passage.service, Record(cost=5.0, stops=[1]))
+    assert passage.passes("visit")
+    passage.layer.feed_back(passage.action, Record(stops=[1]))
+    assert passage.directions()[-1] == ("out", "action_visit.c_trigger")
+    passage.layer.respond(passage.action, Record(stops=[1]))
+    assert ("in", "action_visit.u_error") in passage.directions()
 
 
 def test_who_is_turned_away_is_told_busy(passage: Passage) -> None:

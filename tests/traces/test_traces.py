@@ -38,6 +38,7 @@ MODELS = {
     "courier": CPP / "courier.rscd",
     "porter": CPP / "porter.rscd",
     "scout": ROOT / "tests" / "ros" / "faults" / "scout.rscd",
+    "mission": ROOT / "tests" / "runtime" / "mission.rscd",
 }
 SETTINGS = {"porter": CPP / "porter-config.json"}
 
@@ -114,12 +115,20 @@ def test_the_same_call_gives_the_same_test(case: Case) -> None:
 # Logs of robots
 
 
-@pytest.mark.parametrize("case", ["line_follower", "maze_solver", "porter"], indirect=True)
+@pytest.mark.parametrize("case", ["line_follower", "maze_solver", "porter", "courier", "scout"], indirect=True)
 def test_a_log_without_messages_is_played(case: Case) -> None:
     """What the node read is enough to make messages that it reads like that."""
     for line in case.trace:
         line.pop("message", None)
     case.play()
+
+
+@pytest.mark.parametrize("case", ["mission"], indirect=True)
+def test_a_walk_brings_data_that_can_not_be_read(case: Case) -> None:
+    events = [line["event"] for line in case.trace]
+    assert events.count("message_length.u_response") > events.count("message_route.u_response") > 0
+    unread = {line["event"] for line in case.trace if line["event"].endswith(".u_error") and "data" in line}
+    assert "service_plan.u_error" in unread
 
 
 def test_what_can_not_be_played_is_said(case: Case) -> None:

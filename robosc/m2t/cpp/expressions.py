@@ -28,8 +28,8 @@ class CppPrinter(ExpressionPrinter):
     """Prints what the node evaluates: doubles as `double`, whole numbers as the node's saturating `Integer`.
 
     `data` is the variable that holds the data which came in, `node` the one with the node's variables. Elements of
-    arrays are read through an `ArrayReader` called `read`, in the order of the text and as far as `and`, `or` and
-    `=>` need them.
+    arrays are read through an `ArrayReader`, the variable `reader`, in the order of the text and as far as `and`, `or`
+    and `=>` need them.
     """
 
     symbols: ClassVar[Mapping[type[ex.Expression], str]] = {
@@ -49,10 +49,11 @@ class CppPrinter(ExpressionPrinter):
         ex.UnaryMinus: "-",
     }
 
-    def __init__(self, names: CppNames, data: str = "message", node: str = "data_") -> None:
+    def __init__(self, names: CppNames, data: str = "message", node: str = "data_", reader: str = "read") -> None:
         self._names = names
         self._data = data
         self._node = node
+        self._reader = reader
 
     def precedence(self, expression: ex.Expression) -> int:
         """A state is a comparison in C++; an implication and a choice are printed in parentheses."""
@@ -119,7 +120,7 @@ class CppPrinter(ExpressionPrinter):
                 text += f".{step.name}"
             else:
                 assert isinstance(step, rosgraph.IndexStep)
-                text = f"read.at({text}, {step.index})"
+                text = f"{self._reader}.at({text}, {step.index})"
         return text
 
     def integer(self, expression: ex.Expression, kind: ex.IntegerType) -> str:
@@ -138,16 +139,6 @@ class CppPrinter(ExpressionPrinter):
 def parts(expression: ex.Expression) -> Iterator[ex.Expression]:
     """The expression and everything in it, from the outside inwards and from left to right."""
     return (each for _, each in tree(expression) if isinstance(each, ex.Expression))
-
-
-def reads_elements(expression: ex.Expression) -> bool:
-    """Whether an element of an array is read."""
-    return any(
-        isinstance(step, rosgraph.IndexStep)
-        for each in parts(expression)
-        if isinstance(each, rosgraph.WireAccess)
-        for step in each.steps
-    )
 
 
 def is_constant(expression: ex.Expression) -> bool:

@@ -9,13 +9,14 @@ from robosc.expressions import PRECEDENCE
 from robosc.headers import parts_with_headers
 from robosc.m2t.c.types import type_name
 from robosc.m2t.cpp import reports
-from robosc.m2t.cpp.expressions import CppPrinter, parts, reads_elements
+from robosc.m2t.cpp.expressions import CppPrinter, parts
 from robosc.m2t.cpp.names import CppNames
 from robosc.m2t.cpp.reasons import Reasons
 from robosc.m2t.cpp.shutdown import message_named
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
 from robosc.metamodel.expression_types import is_double
+from robosc.received import locations_reading, reads_elements
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -23,11 +24,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Assignment:
-    """`target = value`; skipped where the value reads past the end of an array."""
+    """`target = value`."""
 
     target: str
     value: str
-    reads_elements: bool
 
 
 @dataclass(frozen=True)
@@ -42,13 +42,16 @@ class Reaction:
 class Happening:
     """An event, its inputs, its data and what it changes in the node.
 
-    `keeps_old`: the values read `old`, a copy of the node's variables from before.
+    `copy` of the node's variables: `old`, which values read while the variables change; `next`, which changes while
+    values read the variables; or none. One that `reads_elements` of arrays changes a copy only, and does not happen
+    where one is not there; inputs that do are among the reactions, where a transition reads them.
     """
 
     event: str
     name: str
     inputs: list[Assignment]
-    keeps_old: bool
+    reads_elements: bool
+    copy: str
     reactions: list[Reaction]
     data: reports.EventData | None
 
@@ -62,6 +65,11 @@ class Subscription:
     interface: rosgraph.Interface
     receptions: list[Happening]
     unread: bool
+
+    @property
+    def reads_elements(self) -> bool:
+        """Whether a message may be one that can't be read."""
+        return any(each.reads_elements for each in self.receptions)
 
 
 @dataclass(frozen=True)
@@ -277,27 +285,30 @@ class Node:
         values = [each.value for each in reception.inputs]
         for reaction in self._reactions(reception.event):
             values += [each.value for each in reaction.assignments]
-        inputs = [
-            Assignment(
-                f"supervisor_.inputs.{self._names.c.member(each.input)}",
-                self._input(each),
-                reads_elements(each.value),
-            )
+        inputs = [self._input(each) for each in reception.inputs if not reads_elements(each.value)]
+        reading = [
+            Reaction(self._are_in(where), [self._input(each)])
             for each in reception.inputs
+            if reads_elements(each.value) and (where := locations_reading(reception.event, each.input))
         ]
-        return self._happening(reception.event, inputs, reports.received(values, self._names))
+        return self._happening(reception.event, inputs, reading, reports.received(values, self._names))
 
-    def _input(self, assignment: rosgraph.InputAssignment) -> str:
+    def _input(self, assignment: rosgraph.InputAssignment) -> Assignment:
         kind = assignment.input.type
+        value = self._printer(assignment.value)
         if isinstance(kind, ex.IntegerType):
-            return f"{self._printer.integer(assignment.value, kind)}.to<std::{type_name(kind)}>()"
-        return self._printer(assignment.value)
+            value = f"{self._printer.integer(assignment.value, kind)}.to<std::{type_name(kind)}>()"
+        return Assignment(f"supervisor_.inputs.{self._names.c.member(assignment.input)}", value)
 
     def _reactions(self, event: sct.Event) -> list[rosgraph.Reaction]:
         return [each for each in self._graph.reactions if each.event == event]
 
     def _happening(
-        self, event: sct.Event, inputs: Sequence[Assignment] = (), data: reports.EventData | None = None
+        self,
+        event: sct.Event,
+        inputs: Sequence[Assignment] = (),
+        reading: Sequence[Reaction] = (),
+        data: reports.EventData | None = None,
     ) -> Happening:
         reactions = self._reactions(event)
         assignments = [each for reaction in reactions for each in reaction.assignments]
@@ -307,35 +318,41 @@ class Node:
             for each in assignments
             for part in parts(each.value)
         )
-        printer = CppPrinter(self._names, node="old") if keeps_old else self._printer
+        reads = bool(reading) or any(reads_elements(each.value) for each in assignments)
+        copy = ("next" if assignments else "") if reads else "old" if keeps_old else ""
         return Happening(
             self._names.c.enumerator(event),
             f"{event.eContainer().name}.{event.name}",
             list(inputs),
-            keeps_old,
-            self._merged(reactions, printer),
+            reads,
+            copy,
+            [*reading, *self._merged(reactions, copy)],
             data,
         )
 
-    def _merged(self, reactions: Sequence[rosgraph.Reaction], printer: CppPrinter) -> list[Reaction]:
+    def _merged(self, reactions: Sequence[rosgraph.Reaction], copy: str) -> list[Reaction]:
         """Reactions of one component that do the same become one."""
         places: dict[tuple[sct.Plant, tuple[Assignment, ...]], list[sct.Location]] = {}
         for each in reactions:
-            assignments = tuple(self._assignment(assignment, printer) for assignment in each.assignments)
+            assignments = tuple(self._assignment(assignment, copy) for assignment in each.assignments)
             places.setdefault((each.locations[0].eContainer(), assignments), []).extend(each.locations)
-        return [Reaction(self._is_in(plant, where), list(what)) for (plant, what), where in places.items()]
+        return [Reaction(self._are_in(where), list(what)) for (_, what), where in places.items()]
 
-    def _is_in(self, plant: sct.Plant, locations: Sequence[sct.Location]) -> str | None:
-        if len(locations) == len(plant.locations):
+    def _are_in(self, locations: Sequence[sct.Location]) -> str | None:
+        """That a plant is in one of these locations of its own; None where one always is."""
+        plants: dict[sct.Plant, int] = {}
+        for each in locations:
+            plants[each.eContainer()] = plants.get(each.eContainer(), 0) + 1
+        if any(number == len(plant.locations) for plant, number in plants.items()):
             return None
         return " || ".join(self._names.is_in(each) for each in locations)
 
-    def _assignment(self, assignment: rosgraph.NodeAssignment, printer: CppPrinter) -> Assignment:
+    def _assignment(self, assignment: rosgraph.NodeAssignment, copy: str) -> Assignment:
         kind = assignment.variable.type
+        printer = CppPrinter(self._names, node="old") if copy == "old" else self._printer
         return Assignment(
-            f"data_.{self._names.variable(assignment.variable)}",
+            f"{'next' if copy == 'next' else 'data_'}.{self._names.variable(assignment.variable)}",
             printer.integer(assignment.value, kind) if isinstance(kind, ex.IntegerType) else printer(assignment.value),
-            reads_elements(assignment.value),
         )
 
     # What goes out

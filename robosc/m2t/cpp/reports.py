@@ -6,12 +6,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from robosc.m2t.c.comments import string_literal
-from robosc.m2t.cpp.expressions import CppPrinter, parts, reads_elements
+from robosc.m2t.cpp.expressions import CppPrinter, parts
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
+from robosc.received import reads_elements
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from robosc.m2t.cpp.names import CppNames
 
@@ -19,11 +20,23 @@ _Path = tuple[str, ...]
 
 
 @dataclass(frozen=True)
+class Member:
+    """A part of an event's data: its path as a literal, its value. One that `reads_elements` does so by `element`."""
+
+    path: str
+    value: str
+    reads_elements: bool
+
+
+@dataclass(frozen=True)
 class EventData:
-    """Data of an event, for the event log; left out where it reads past the end of an array."""
+    """Data of an event, for the event log: as one expression, or, where elements of arrays are read, member by member.
+
+    Elements that are not there are left out.
+    """
 
     json: str
-    reads_elements: bool
+    members: list[Member]
 
 
 @dataclass(frozen=True)
@@ -37,7 +50,7 @@ class Component:
 
 def received(values: Sequence[ex.Expression], names: CppNames) -> EventData | None:
     """What the node reads of a message, in the shape of the message; basic data is the value itself."""
-    printer = CppPrinter(names)
+    printer = CppPrinter(names, reader="element")
     found: dict[_Path, tuple[ex.Expression, ex.Type | None]] = {}
     for value in values:
         each = iter(parts(value))
@@ -52,7 +65,10 @@ def received(values: Sequence[ex.Expression], names: CppNames) -> EventData | No
     if list(found) == [("data",)]:
         found = {(): found["data",]}
     texts = {path: _json(printer(part), kind, names) for path, (part, kind) in found.items()}
-    return EventData(_nested(texts), any(reads_elements(part) for part, _ in found.values()))
+    reading = {path for path, (part, _) in found.items() if reads_elements(part)}
+    if not reading:
+        return EventData(_nested(texts), [])
+    return EventData("", [Member(_dotted(path), texts[path], path in reading) for path in _grouped(texts)])
 
 
 def component(plant: sct.Plant, variables: Sequence[rosgraph.NodeVariable], names: CppNames) -> Component:
@@ -90,6 +106,22 @@ def _path(access: ex.Expression) -> _Path:
         step.name if isinstance(step, rosgraph.FieldStep) else str(step.index)  # type: ignore[attr-defined]
         for step in access.steps
     )
+
+
+def _dotted(path: _Path) -> str:
+    return string_literal(".".join(path))
+
+
+def _grouped(paths: Iterable[_Path]) -> list[_Path]:
+    """The paths, those of one object behind each other, objects where their first member was."""
+    heads: dict[_Path, list[_Path]] = {}
+    for path in paths:
+        heads.setdefault(path[:1], []).append(path)
+    return [
+        head + rest
+        for head, found in heads.items()
+        for rest in ([()] if found == [head] else _grouped(path[1:] for path in found))
+    ]
 
 
 def _nested(texts: Mapping[_Path, str]) -> str:

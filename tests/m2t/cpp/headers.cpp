@@ -68,7 +68,12 @@ void elements_that_are_not_there_are_noticed() {
   CHECK(read.at(ranges, 1) == 2.5F && read.at(flags, 0) && read.at(names, 0) == "one" && read.complete());
   read.at(ranges, 4);
   read.at(names, 7);
-  CHECK(!read.complete() && read.index() == 4 && read.length() == 2);
+  CHECK(!read.complete() && read.fault() == "there is no element 4 in an array of 2");
+  JsonTree tree;
+  tree.add_if_there("ranges.4", [&](ArrayReader& element) { return double(element.at(ranges, 4)); });
+  CHECK(tree.empty());
+  tree.add_if_there("ranges.0", [&](ArrayReader& element) { return double(element.at(ranges, 0)); });
+  CHECK(!tree.empty() && to_json(tree) == "{\"ranges\":{\"0\":1.5}}");
   ArrayReader lazy;
   CHECK((read.at(ranges, 0) > 1.0F || lazy.at(ranges, 9) > 1.0F) && lazy.complete());
 }

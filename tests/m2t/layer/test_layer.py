@@ -62,7 +62,7 @@ def test_every_file(
 
 
 def test_packages_list_what_is_used(usher: robosc.Models, settings: Configuration) -> None:
-    messages = {"nav2_msgs", "std_msgs", "std_srvs"}
+    messages = {"nav2_msgs", "sensor_msgs", "std_msgs", "std_srvs"}
     ros1 = parse_package_string(robosc.generate("ros1-layer", usher, settings)["package.xml"])
     ros1.validate()
     assert ros1.name == "usher_layer"
@@ -106,7 +106,7 @@ def test_the_launch_file_of_ros1_re_maps_everything(usher: robosc.Models, settin
     group = ElementTree.fromstring(text).find("group")  # noqa: S314  # our own text
     assert group is not None
     found = {each.get("from"): each.get("to") for each in group.findall("remap")}
-    names = ["/stop", "/resume", "battery", "/speed", "label", "/lamp/light", *NAMES["ros1-layer"]]
+    names = ["/stop", "/resume", "battery", "/scan", "/speed", "label", "/lamp/light", *NAMES["ros1-layer"]]
     assert found == {each: f"/$(arg namespace)/$(arg name)/controller/{each.lstrip('/')}" for each in names}
     (node,) = group.findall("node")
     assert node.attrib == {"pkg": "usher_driver", "type": "driver.py", "name": "driver", "output": "screen"}
@@ -114,7 +114,7 @@ def test_the_launch_file_of_ros1_re_maps_everything(usher: robosc.Models, settin
 
 def test_the_launch_file_of_ros2_re_maps_everything(usher: robosc.Models, settings: Configuration) -> None:
     text = robosc.generate("ros2-layer", usher, settings)["launch/usher_layer.launch.py"]
-    names = ["/stop", "/resume", "battery", "/speed", "label", "/lamp/light", *NAMES["ros2-layer"]]
+    names = ["/stop", "/resume", "battery", "/scan", "/speed", "label", "/lamp/light", *NAMES["ros2-layer"]]
     layer, driver = launched(text).of("Node")
     assert (layer.named["package"], layer.named["executable"]) == ("usher_layer", "usher_layer")
     assert (driver.named["package"], driver.named["executable"]) == ("usher_driver", "driver.py")
@@ -146,7 +146,7 @@ def test_a_controller_with_a_launch_file_of_its_own(usher: robosc.Models) -> Non
     assert included.get("file") == "$(find my_robot)/launch/drive.launch"
     there = launched(robosc.generate("ros2-layer", usher, settings)["launch/usher_layer.launch.py"])
     remaps = there.of("SetRemap")
-    assert len(remaps) == 11
+    assert len(remaps) == 12
     assert remaps[0].positional == ("/stop", "/usher_layer/controller/stop")
     (include,) = there.of("IncludeLaunchDescription")
     (path,) = include.positional[0].positional

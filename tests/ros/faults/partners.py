@@ -27,6 +27,8 @@ HEARD = {"/cmd_vel": "geometry_msgs/Twist", STATE: "std_msgs/String"}
 SENT = {
     "/light": "std_msgs/Bool",
     "/travel_order": "std_msgs/Bool",
+    "/survey_order": "std_msgs/Bool",
+    "/tour_order": "std_msgs/Bool",
     "/scan": "sensor_msgs/LaserScan",
     "/charge": "std_msgs/Int16",
     "/pulse": "std_msgs/Int32",
@@ -153,10 +155,10 @@ class Scout:
     def rest(self) -> None:
         """Ends all that was ordered, and what hinders the robot."""
         self.world.do("repeat", topic="/scan", fields=CLEAR, hz=20)
-        for topic in ("/light", "/travel_order"):
+        for topic in ("/light", "/travel_order", "/survey_order", "/tour_order"):
             self.send(topic, data=False)
         self.send("/continue")
-        at_rest = {"Lamp": "dark", "Navigator": "home", "EmergencyStop": "in_service"}
+        at_rest = {"Lamp": "dark", "Navigator": "home", "Surveyor": "ready", "EmergencyStop": "in_service"}
         self.until(lambda: all(self.state(name) == state for name, state in at_rest.items()), "the node is at rest")
         since = self.now()
         self.until(lambda: PACE in self.speeds(since), "the robot drives")
@@ -170,6 +172,8 @@ class Scout:
         if self.server is None:
             server.do("serve", name="/lamp", kind="std_srvs/SetBool")
             server.do("act", name="/travel", kind="nav2_msgs/NavigateToPose")
+            server.do("serve", name="/survey", kind="nav2_msgs/GetCosts")
+            server.do("act", name="/tour", kind="nav2_msgs/FollowWaypoints")
         self.server = server
         return server
 

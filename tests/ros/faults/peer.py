@@ -164,9 +164,9 @@ class Peer:
         """Sends feedback on a goal."""
         self.goals[number].progress(fields)
 
-    def end(self, number, how):
-        """Ends a goal that was accepted: `succeeded`, `aborted`, `cancelled`."""
-        self.goals[number].end(how)
+    def end(self, number, how, fields=None):
+        """Ends a goal that was accepted: `succeeded`, `aborted`, `cancelled`; with fields of its result."""
+        self.goals[number].end(how, fields or {})
 
 
 def main(version, name):

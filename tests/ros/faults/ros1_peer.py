@@ -98,11 +98,11 @@ class _Goal:
         self.accepted.wait()
         self.handle.publish_feedback(fill(self.feedback(), fields))
 
-    def end(self, how):
+    def end(self, how, fields=None):
         self.accepted.wait()
         set_end = {
             "succeeded": self.handle.set_succeeded,
             "aborted": self.handle.set_aborted,
             "cancelled": self.handle.set_canceled,
         }
-        set_end[how](self.result())
+        set_end[how](fill(self.result(), fields or {}))

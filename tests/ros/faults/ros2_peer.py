@@ -102,7 +102,7 @@ class Ros:
                 return CancelResponse.ACCEPT
             do = cancelled(goal)
             if do == "grant":
-                goal.ends.put("cancelled")
+                goal.ends.put(("cancelled", {}))
             return CancelResponse.REJECT if do == "refuse" else CancelResponse.ACCEPT
 
         self.actions = ActionServer(
@@ -127,7 +127,7 @@ class _Goal:
         self.foreign = False
 
     def run(self):
-        how = self.ends.get()
+        how, fields = self.ends.get()
         if how == "cancelled":
             while not self.handle.is_cancel_requested:
                 time.sleep(0.001)
@@ -136,16 +136,16 @@ class _Goal:
             self.handle.abort()
         else:
             self.handle.succeed()
-        return self.action.Result()
+        return fill(self.action.Result(), fields)
 
     def progress(self, fields):
         self.accepted.wait()
         self.handle.publish_feedback(fill(self.action.Feedback(), fields))
 
-    def end(self, how):
+    def end(self, how, fields=None):
         self.accepted.wait()
         if how == "cancelled" and not self.handle.is_cancel_requested:
             # Only a client can have a goal cancelled: another one cancels all that there are.
             self.foreign = True
             self.cancel_all.call(CancelGoal.Request())
-        self.ends.put(how)
+        self.ends.put((how, fields or {}))

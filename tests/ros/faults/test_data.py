@@ -1,4 +1,4 @@
-"""Data that is short, no number, too large: what the node stores, and what it sends."""
+"""Data that is short, no number, too large: what counts as received, what the node stores, and what it sends."""
 
 from __future__ import annotations
 
@@ -16,20 +16,25 @@ if TYPE_CHECKING:
 def scan(scout: Scout, *ranges: float) -> Moment:
     """Lets the lidar publish this alone; the time from which on the node knows nothing else."""
     scout.world.do("repeat", topic="/scan", fields={"ranges": ranges}, hz=20)
-    scout.until_reported()
     # Others may be on their way, or be answered at this moment.
-    seen = scout.variable("Lidar", "scans")
-    scout.until(lambda: scout.variable("Lidar", "scans") > seen + 8, "the scans arrive")
+    scout.until_event(scout.now(), "message_view.u_response", count=9)
+    scout.until_reported()
     return scout.now()
 
 
 def test_array_too_short(scout: Scout) -> None:
     before = scout.now()
     since = scan(scout, 1.0)
+    scans = scout.variable("Lidar", "scans")
     scout.until_says(before, "/scan: there is no element 1 in an array of 1")
+    # The watchdog has heard nothing that counts.
+    scout.until_says(before, "/scan: silent for 500 ms")
     scout.until(lambda: len(scout.speeds(since)) > 5, "the robot drives on")
     assert set(scout.speeds(since)) == {PACE}
-    assert scout.variable("Lidar", "pace") == PACE
+    # The other event of the same message goes on; this one has not happened.
+    assert scout.events(since, "message_view.u_response")
+    assert scout.events(since, "message_rays.u_response") == []
+    assert (scout.variable("Lidar", "pace"), scout.variable("Lidar", "scans")) == (PACE, scans)
     # At most one report in five seconds.
     assert scout.says(before, "/scan: there is no element 1 in an array of 1") == 1
 
@@ -40,6 +45,45 @@ def test_array_empty(scout: Scout) -> None:
     assert set(scout.speeds(since)) == {0.0}
     assert scout.variable("Lidar", "front") == "nothing"
     assert scout.variable("Lidar", "pace") == PACE
+
+
+def test_answer_too_short(scout: Scout) -> None:
+    server, since = scout.serve(), scout.now()
+    failures = scout.variable("Surveyor", "failures")
+    server.do("answer_at_once", fields={"costs": [2.5]})
+    scout.send("/survey_order", data=True)
+    error = scout.until_event(since, "service_survey.u_error", count=2)
+    scout.until_reported()
+    assert scout.variable("Surveyor", "low") != 2.5
+    assert scout.variable("Surveyor", "failures") > failures
+    # What could be read of it is in the log; the reason is said once.
+    assert error["data"] == {"value": {"costs": {"0": 2.5}}}
+    assert scout.says(since, "/survey: there is no element 1 in an array of 1") == 1
+    assert scout.events(since, "service_survey.u_response") == []
+    server.do("answer_at_once", fields={"costs": [2.0, 3.0]})
+    scout.until_state("Surveyor", "done")
+    scout.until_reported()
+    assert (scout.variable("Surveyor", "low"), scout.variable("Surveyor", "high")) == (2.0, 3.0)
+
+
+def test_result_too_short(scout: Scout) -> None:
+    server, since = scout.serve(), scout.now()
+    heard = len(server.said)
+    scout.send("/tour_order", data=True)
+    for missed in ([7], [4, 5]):
+        number = server.wait("goal", heard)["goal"]
+        heard = len(server.said)
+        server.do("decide", number=number, accept=True)
+        server.do("end", number=number, how="succeeded", fields={"missed_waypoints": missed})
+        if missed == [7]:
+            error = scout.until_event(since, "action_tour.u_error")
+            scout.until_reported()
+            assert scout.variable("Surveyor", "first") != 7
+            assert error["data"] == {"value": {"missed_waypoints": {"0": 7}}}
+            assert scout.says(since, "/tour: there is no element 1 in an array of 1") == 1
+    scout.until_state("Surveyor", "done")
+    scout.until_reported()
+    assert (scout.variable("Surveyor", "first"), scout.variable("Surveyor", "second")) == (4, 5)
 
 
 @pytest.mark.parametrize(

@@ -20,6 +20,7 @@ class Ros1:
         import actionlib
         import rospy
         from nav2_msgs.msg import NavigateToPoseAction, NavigateToPoseGoal
+        from sensor_msgs.msg import LaserScan
         from std_msgs.msg import Empty, Float32, Int16, String
         from std_srvs.srv import SetBool
 
@@ -34,6 +35,7 @@ class Ros1:
         self.goals = []  # one that nobody keeps is forgotten
         rospy.Subscriber("/stop", Empty, lambda _: self.stopped())
         rospy.Subscriber("/resume", Empty, lambda _: self.tell("resume", True))
+        rospy.Subscriber("/scan", LaserScan, lambda message: self.tell("scan", len(message.ranges)))
         rospy.Subscriber("battery", Int16, lambda message: self.tell("battery", message.data))
         rospy.Subscriber("/do", String, lambda message: self.do(*json.loads(message.data)), queue_size=100)
 
@@ -83,6 +85,7 @@ class Ros2:
         from nav2_msgs.action import NavigateToPose
         from rclpy.action import ActionClient
         from rclpy.qos import DurabilityPolicy, QoSProfile
+        from sensor_msgs.msg import LaserScan
         from std_msgs.msg import Empty, Float32, Int16, String
         from std_srvs.srv import SetBool
 
@@ -99,6 +102,7 @@ class Ros2:
         self.action = ActionClient(node, NavigateToPose, "/go_to")
         node.create_subscription(Empty, "/stop", lambda _: self.stopped(), 100)
         node.create_subscription(Empty, "/resume", lambda _: self.tell("resume", True), 10)
+        node.create_subscription(LaserScan, "/scan", lambda message: self.tell("scan", len(message.ranges)), 10)
         node.create_subscription(Int16, "battery", lambda message: self.tell("battery", message.data), 10)
         node.create_subscription(String, "/do", lambda message: self.do(*json.loads(message.data)), 100)
 

@@ -17,6 +17,7 @@
 #include <nav2_msgs/NavigateToPoseAction.h>
 #include <ros/callback_queue.h>
 #include <ros/ros.h>
+#include <sensor_msgs/LaserScan.h>
 #include <std_msgs/Empty.h>
 #include <std_msgs/Float32.h>
 #include <std_msgs/Int16.h>
@@ -99,6 +100,9 @@ class Layer {
     message_battery_ = std::make_unique<MessageRelay<std_msgs::Int16>>(
         "battery", self + "/controller/battery",
         [this](const auto& message) { return on_message_battery(message); });
+    message_scan_ = std::make_unique<MessageRelay<sensor_msgs::LaserScan>>(
+        "/scan", self + "/controller/scan",
+        [this](const auto& message) { return on_message_scan(message); });
     message_speed_ = std::make_unique<MessageRelay<std_msgs::Float32>>(
         self + "/controller/speed", "/speed",
         [this](const auto&) { return pass_message_speed(); });
@@ -145,6 +149,27 @@ class Layer {
     supervisor_.inputs.message_battery_i_response = Integer(message.data).within(0, 100).to<std::uint8_t>();
     if (log_.active()) log_.note(Integer(message.data));
     usher_perform(&supervisor_, usher_message_battery_u_response);
+    usher_settle(&supervisor_);
+    return true;
+  }
+
+  bool on_message_scan(const sensor_msgs::LaserScan& message) {
+    if (usher_enabled(&supervisor_, usher_message_scan_u_response)) {
+      ArrayReader read;
+      auto next = data_;
+      next.Scanner.second = double(read.at(message.ranges, 1));
+      if (read.complete()) {
+        data_ = next;
+        if (log_.active()) {
+          JsonTree data;
+          data.add_if_there("ranges.1", [&](ArrayReader& element) { return double(element.at(message.ranges, 1)); });
+          if (!data.empty()) log_.note(data);
+        }
+        usher_perform(&supervisor_, usher_message_scan_u_response);
+      } else {
+        ROS_WARN_THROTTLE(5.0, "%s: %s", "/scan", read.fault().c_str());
+      }
+    }
     usher_settle(&supervisor_);
     return true;
   }
@@ -287,6 +312,7 @@ class Layer {
       case usher_message_stop_u_response:
       case usher_message_resume_u_response:
       case usher_message_battery_u_response:
+      case usher_message_scan_u_response:
       case usher_service_light_u_response:
       case usher_service_light_u_error:
       case usher_action_go_to_u_feedback:
@@ -329,6 +355,10 @@ class Layer {
                        .add("state", usher_location_name_component_Guard(supervisor_.state.component_Guard))
                        .add("variables", Json::object()
                            .add("charge", Integer(supervisor_.state.component_Guard_charge))));
+    components.add("Scanner",
+                   Json::object()
+                       .add("state", usher_location_name_component_Scanner(supervisor_.state.component_Scanner))
+                       .add("variables", Json::object().add("second", data_.Scanner.second)));
     components.add("Lamp",
                    Json::object()
                        .add("state", "lamp")
@@ -356,6 +386,9 @@ class Layer {
   // Data of the model that the supervisor does not need.
   struct {
     struct {
+      double second = 0.25;
+    } Scanner;
+    struct {
       bool lit = false;
     } Lamp;
     struct {
@@ -374,6 +407,7 @@ class Layer {
   std::unique_ptr<MessageRelay<std_msgs::Empty>> message_stop_;
   std::unique_ptr<MessageRelay<std_msgs::Empty>> message_resume_;
   std::unique_ptr<MessageRelay<std_msgs::Int16>> message_battery_;
+  std::unique_ptr<MessageRelay<sensor_msgs::LaserScan>> message_scan_;
   std::unique_ptr<MessageRelay<std_msgs::Float32>> message_speed_;
   std::unique_ptr<MessageRelay<std_msgs::String>> message_label_;
   std::unique_ptr<ServiceProxy<std_srvs::SetBool>> service_light_;

@@ -12,6 +12,7 @@ NAMES = [
     "/stop",
     "/resume",
     "battery",
+    "/scan",
     "/speed",
     "label",
     "/lamp/light",

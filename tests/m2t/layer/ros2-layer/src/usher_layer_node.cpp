@@ -16,6 +16,7 @@
 #include <nav2_msgs/action/navigate_to_pose.hpp>
 #include <rclcpp/rclcpp.hpp>
 #include <rclcpp_components/register_node_macro.hpp>
+#include <sensor_msgs/msg/laser_scan.hpp>
 #include <std_msgs/msg/empty.hpp>
 #include <std_msgs/msg/float32.hpp>
 #include <std_msgs/msg/int16.hpp>
@@ -106,6 +107,9 @@ class Layer : public rclcpp::Node {
     message_battery_ = std::make_unique<MessageRelay<std_msgs::msg::Int16>>(
         *this, guard_, "battery", "~/controller/battery", rclcpp::QoS(10), rclcpp::QoS(10),
         [this](const auto& message) { return on_message_battery(message); });
+    message_scan_ = std::make_unique<MessageRelay<sensor_msgs::msg::LaserScan>>(
+        *this, guard_, "/scan", "~/controller/scan", rclcpp::SensorDataQoS(), rclcpp::QoS(10),
+        [this](const auto& message) { return on_message_scan(message); });
     message_speed_ = std::make_unique<MessageRelay<std_msgs::msg::Float32>>(
         *this, guard_, "~/controller/speed", "/speed", rclcpp::QoS(10).keep_last(20).best_effort(), rclcpp::QoS(20),
         [this](const auto&) { return pass_message_speed(); });
@@ -165,6 +169,27 @@ class Layer : public rclcpp::Node {
     supervisor_.inputs.message_battery_i_response = Integer(message.data).within(0, 100).to<std::uint8_t>();
     if (log_.active()) log_.note(Integer(message.data));
     usher_perform(&supervisor_, usher_message_battery_u_response);
+    usher_settle(&supervisor_);
+    return true;
+  }
+
+  bool on_message_scan(const sensor_msgs::msg::LaserScan& message) {
+    if (usher_enabled(&supervisor_, usher_message_scan_u_response)) {
+      ArrayReader read;
+      auto next = data_;
+      next.Scanner.second = double(read.at(message.ranges, 1));
+      if (read.complete()) {
+        data_ = next;
+        if (log_.active()) {
+          JsonTree data;
+          data.add_if_there("ranges.1", [&](ArrayReader& element) { return double(element.at(message.ranges, 1)); });
+          if (!data.empty()) log_.note(data);
+        }
+        usher_perform(&supervisor_, usher_message_scan_u_response);
+      } else {
+        RCLCPP_WARN_THROTTLE(get_logger(), *get_clock(), 5000, "%s: %s", "/scan", read.fault().c_str());
+      }
+    }
     usher_settle(&supervisor_);
     return true;
   }
@@ -307,6 +332,7 @@ class Layer : public rclcpp::Node {
       case usher_message_stop_u_response:
       case usher_message_resume_u_response:
       case usher_message_battery_u_response:
+      case usher_message_scan_u_response:
       case usher_service_light_u_response:
       case usher_service_light_u_error:
       case usher_action_go_to_u_feedback:
@@ -350,6 +376,10 @@ class Layer : public rclcpp::Node {
                        .add("state", usher_location_name_component_Guard(supervisor_.state.component_Guard))
                        .add("variables", Json::object()
                            .add("charge", Integer(supervisor_.state.component_Guard_charge))));
+    components.add("Scanner",
+                   Json::object()
+                       .add("state", usher_location_name_component_Scanner(supervisor_.state.component_Scanner))
+                       .add("variables", Json::object().add("second", data_.Scanner.second)));
     components.add("Lamp",
                    Json::object()
                        .add("state", "lamp")
@@ -367,6 +397,9 @@ class Layer : public rclcpp::Node {
 
   // Data of the model that the supervisor does not need.
   struct {
+    struct {
+      double second = 0.25;
+    } Scanner;
     struct {
       bool lit = false;
     } Lamp;
@@ -386,6 +419,7 @@ class Layer : public rclcpp::Node {
   std::unique_ptr<MessageRelay<std_msgs::msg::Empty>> message_stop_;
   std::unique_ptr<MessageRelay<std_msgs::msg::Empty>> message_resume_;
   std::unique_ptr<MessageRelay<std_msgs::msg::Int16>> message_battery_;
+  std::unique_ptr<MessageRelay<sensor_msgs::msg::LaserScan>> message_scan_;
   std::unique_ptr<MessageRelay<std_msgs::msg::Float32>> message_speed_;
   std::unique_ptr<MessageRelay<std_msgs::msg::String>> message_label_;
   std::unique_ptr<ServiceProxy<std_srvs::srv::SetBool>> service_light_;

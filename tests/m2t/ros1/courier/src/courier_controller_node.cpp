@@ -163,43 +163,32 @@ class Controller {
   // What the robot tells. A message is one batch: its events in the order of the model, with nothing in between.
 
   void on_scan(const sensor_msgs::LaserScan& message) {
-    if (scan_watchdog_->hear()) ROS_INFO("%s: speaks again", "/scan");
+    bool read_whole = true;
     courier_begin(&supervisor_);
     supervisor_.inputs.message_side_i_response = to_Side(message);
     if (log_.active()) log_.note(courier_literal_name_Side(to_Side(message)));
     courier_perform(&supervisor_, courier_message_side_u_response);
-    {
-      const auto old = data_;
-      data_.Scanner.before = old.Scanner.first;
-      {
-        ArrayReader read;
-        const auto value = double(read.at(message.ranges, 0));
-        if (read.complete()) {
-          data_.Scanner.first = value;
-        } else {
-          ROS_WARN_THROTTLE(5.0, "%s: there is no element %zu in an array of %zu", "/scan", read.index(),
-              read.length());
+    if (courier_enabled(&supervisor_, courier_message_detail_u_response)) {
+      ArrayReader read;
+      auto next = data_;
+      next.Scanner.before = data_.Scanner.first;
+      next.Scanner.first = double(read.at(message.ranges, 0));
+      next.Scanner.fourth = double(read.at(message.ranges, 3));
+      if (read.complete()) {
+        data_ = next;
+        if (log_.active()) {
+          JsonTree data;
+          data.add_if_there("ranges.0", [&](ArrayReader& element) { return double(element.at(message.ranges, 0)); });
+          data.add_if_there("ranges.3", [&](ArrayReader& element) { return double(element.at(message.ranges, 3)); });
+          if (!data.empty()) log_.note(data);
         }
+        courier_perform(&supervisor_, courier_message_detail_u_response);
+      } else {
+        ROS_WARN_THROTTLE(5.0, "%s: %s", "/scan", read.fault().c_str());
+        read_whole = false;
       }
-      {
-        ArrayReader read;
-        const auto value = double(read.at(message.ranges, 3));
-        if (read.complete()) {
-          data_.Scanner.fourth = value;
-        } else {
-          ROS_WARN_THROTTLE(5.0, "%s: there is no element %zu in an array of %zu", "/scan", read.index(),
-              read.length());
-        }
-      }
-      if (log_.active()) {
-        ArrayReader read;
-        const auto data = Json::object()
-            .add("ranges", Json::object().add("0", double(read.at(message.ranges, 0)))
-            .add("3", double(read.at(message.ranges, 3))));
-        if (read.complete()) log_.note(data);
-      }
-      courier_perform(&supervisor_, courier_message_detail_u_response);
     }
+    if (read_whole && scan_watchdog_->hear()) ROS_INFO("%s: speaks again", "/scan");
     courier_end(&supervisor_);
   }
 

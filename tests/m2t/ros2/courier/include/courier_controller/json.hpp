@@ -175,6 +175,16 @@ class JsonTree {
     text_ += member(path.substr(parent.size())) + to_json(value);
   }
 
+  /// Adds what a function makes of elements of arrays, where these are there.
+  template <typename Function>
+  void add_if_there(const std::string& path, Function function) {
+    ArrayReader element;
+    const auto value = function(element);
+    if (element.complete()) add(path, value);
+  }
+
+  bool empty() const { return text_ == "{"; }
+
   friend std::string to_json(const JsonTree& tree) {
     const auto depth = std::count(tree.open_.begin(), tree.open_.end(), '.');
     return tree.text_ + std::string(static_cast<std::size_t>(depth) + 1, '}');

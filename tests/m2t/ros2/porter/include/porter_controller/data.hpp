@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <string>
 #include <type_traits>
 
 namespace porter_controller {
@@ -89,8 +90,11 @@ class ArrayReader {
 
   /// Whether all elements were there.
   bool complete() const { return complete_; }
-  std::size_t index() const { return index_; }
-  std::size_t length() const { return length_; }
+
+  /// What was not there.
+  std::string fault() const {
+    return "there is no element " + std::to_string(index_) + " in an array of " + std::to_string(length_);
+  }
 
  private:
   bool complete_ = true;

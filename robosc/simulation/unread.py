@@ -1,0 +1,101 @@
+"""Whether the data that a script gives to an event can be read by the transitions that the event takes."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from robosc.evaluation import Value, evaluate
+from robosc.metamodel import expression as ex
+from robosc.metamodel import rosgraph
+from robosc.runtime.node_data import PastEndError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+#: A value that a script does not give.
+_UNKNOWN: Any = object()
+#: For the operators that need no right side, the left one with which that is so.
+_DECIDED = {ex.Conjunction: False, ex.Disjunction: True, ex.Implication: False}
+
+
+@dataclass(frozen=True)
+class Unread:
+    """Why data can't be read, and what its event counts as then: an error; None: as not received."""
+
+    why: str
+    error: str | None
+
+    def __str__(self) -> str:
+        return "data"
+
+
+class _UnknownError(Exception):
+    """What a condition reads is not given."""
+
+
+def missing(expressions: Iterable[ex.Expression], value: Any) -> PastEndError | None:
+    """The first element that these expressions read and an array in the value lacks.
+
+    The value is that of an event's data, as JSON: of an array that is not there nothing is known.
+    """
+    return next(filter(None, (_missing(each, value) for each in expressions)), None)
+
+
+def _missing(expression: ex.Expression, value: Any) -> PastEndError | None:
+    match expression:
+        case rosgraph.WireAccess():
+            return _past_end(expression.steps, value)
+        case rosgraph.ConversionCall():
+            return _past_end(expression.argument.steps, value)
+        case ex.Conjunction() | ex.Disjunction() | ex.Implication():
+            fault = _missing(expression.left, value)
+            known = fault is None and _known(expression.left, value) is (not _DECIDED[type(expression)])
+            return _missing(expression.right, value) if known else fault
+        case ex.BinaryExpression():
+            return _missing(expression.left, value) or _missing(expression.right, value)
+        case ex.UnaryExpression():
+            return _missing(expression.operand, value)
+    return None
+
+
+def _past_end(steps: Sequence[rosgraph.WireStep], value: Any) -> PastEndError | None:
+    reached = value
+    for step in steps:
+        if isinstance(step, rosgraph.IndexStep) and isinstance(reached, list | dict):
+            length = len(reached) if isinstance(reached, list) else 1 + max(map(int, reached), default=-1)
+            if step.index >= length:
+                return PastEndError(step.index, length)
+        reached = _below(reached, step)
+    return None
+
+
+def _below(value: Any, step: rosgraph.WireStep) -> Any:
+    if isinstance(step, rosgraph.IndexStep):
+        if isinstance(value, list):
+            return value[step.index] if step.index < len(value) else _UNKNOWN
+        return value.get(str(step.index), _UNKNOWN) if isinstance(value, dict) else _UNKNOWN
+    assert isinstance(step, rosgraph.FieldStep)
+    return value.get(step.name, _UNKNOWN) if isinstance(value, dict) else _UNKNOWN
+
+
+def _known(condition: ex.Expression, value: Any) -> bool | None:
+    """The value of a condition; None where something that it reads is not given."""
+
+    def read(reference: ex.Expression) -> Value:
+        if not isinstance(reference, rosgraph.WireAccess):
+            raise _UnknownError
+        reached = value
+        for step in reference.steps:
+            reached = _below(reached, step)
+        if reached is None and isinstance(reference.type, ex.DoubleType):
+            return math.nan
+        if not isinstance(reached, bool | int | float | str):
+            raise _UnknownError
+        return reached
+
+    try:
+        return bool(evaluate(condition, read))
+    except _UnknownError:
+        return None
