@@ -25,7 +25,9 @@ WATCHED = Configuration.model_validate({"watchdogMs": {"route": 500}, "retryMs":
 def world(tmp_path: Path) -> World:
     made = World(MISSION, tmp_path / "events.jsonl", WATCHED)
     made.port.types = {"again": "boolean"}
-    return made.start()
+    made.start()
+    made.port.said.clear()
+    return made
 
 
 def pose(x: float, *tags: int) -> Record:
