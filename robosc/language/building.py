@@ -48,11 +48,17 @@ class Builder:
         self.references: dict[Any, dict[str, Name]] = {}
         self.findings: list[Diagnostic] = []
         self._text = text
+        #: Literals of 2^63, which is no integer, but the least one behind a minus.
+        self._unsigned: dict[Any, Node] = {}
 
     def build(self, node: Node, offset: int = 0) -> Any:
         """The element of a parse tree, whose text starts at an offset of the file's."""
         self._offset = offset
-        return self._build(node)
+        built = self._build(node)
+        for each in self._unsigned.values():
+            self._too_large(each)
+        self._unsigned.clear()
+        return built
 
     def _build(self, node: Node) -> Any:
         rule = node.rule_name
@@ -76,12 +82,17 @@ class Builder:
             start, end = node.position + self._offset, node.position_end + self._offset
             name = f"{element.package}/{element.rosType}"
             self.references[element] = {"type": Name(name, start, end)}
+        elif isinstance(element, ex.IntegerLiteral) and element.value > _LARGEST:
+            self._unsigned[element] = node
+        elif isinstance(element, ex.UnaryMinus):
+            self._unsigned.pop(element.operand, None)
         return element
 
     def _set(self, element: Any, feature: str, node: Node) -> None:
         definition = element.eClass.findEStructuralFeature(feature)
         if definition.is_attribute:
-            setattr(element, feature, self._word(node))
+            literal = isinstance(element, ex.IntegerLiteral)
+            setattr(element, feature, self._integer(node, literal=True) if literal else self._word(node))
         elif not definition.containment:
             start, end = node.position + self._offset, node.position_end + self._offset
             self.references.setdefault(element, {})[feature] = Name(node.value.lstrip("^"), start, end)
@@ -119,7 +130,7 @@ class Builder:
             case "Name" | "UnreservedName":
                 return node.value.lstrip("^")
             case "Integer" | "SignedInteger":
-                return self._integer(node)
+                return self._integer(node, literal=False)
             case "Double":
                 return self._double(node)
             case "String":
@@ -130,13 +141,17 @@ class Builder:
                 return getattr(rsc, node.rule_name).getEEnumLiteral(node.value)
         return True
 
-    def _integer(self, node: Node) -> int:
+    def _integer(self, node: Node, *, literal: bool) -> int:
         digits = "".join(node.value.split())
         # Python itself refuses to read numbers of more than some thousand digits.
-        if len(digits.lstrip("-0")) > 19 or not -_LARGEST - 1 <= int(digits) <= _LARGEST:
-            self._fault(node, "an integer lies between -9223372036854775808 and 9223372036854775807")
+        most = _LARGEST + 1 if literal else _LARGEST
+        if len(digits.lstrip("-0")) > 19 or not -_LARGEST - 1 <= int(digits) <= most:
+            self._too_large(node)
             return 0
         return int(digits)
+
+    def _too_large(self, node: Node) -> None:
+        self._fault(node, "an integer lies between -9223372036854775808 and 9223372036854775807")
 
     def _double(self, node: Node) -> float:
         value = float(node.value)

@@ -144,7 +144,7 @@ class BooleanLiteral(Expression):
     def __init__(self, *, value: bool | None = ..., source: str | None = ...) -> None: ...
 
 class IntegerLiteral(Expression):
-    """A whole number without sign."""
+    """A whole number without sign, up to 2^63 - 1; 2^63 as the operand of a UnaryMinus only."""
     value: int
     def __init__(self, *, value: int | None = ..., source: str | None = ...) -> None: ...
 

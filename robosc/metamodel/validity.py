@@ -16,6 +16,7 @@ from robosc.visible import visible
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+_LARGEST = 2**63 - 1
 _IDENTIFIER = re.compile("[A-Za-z_][A-Za-z0-9_]*")
 #: What is told to people, in logs too, as it stands.
 _TOLD = ("text", "origin", "explanation")
@@ -52,8 +53,8 @@ def _own_faults(element: Any) -> Iterator[tuple[Any, str]]:
             texts.append(("name", element.name))
         case rosgraph.FieldAssignment():
             texts += [("path", each) for each in element.path]
-        case ex.IntegerLiteral() | ex.DoubleLiteral() if element.value < 0:
-            yield element, "a literal has no sign; the sign is a UnaryMinus around it"
+        case ex.IntegerLiteral() | ex.DoubleLiteral():
+            yield from _literal_faults(element)
         case robosc.IndexSegment() | rosgraph.IndexStep() if element.index < 0:
             yield element, "an index counts from 0"
         case robosc.Access() if element.value == (element.item is not None):
@@ -69,3 +70,11 @@ def _told_faults(element: Any) -> Iterator[tuple[Any, str]]:
         told = getattr(element, feature, None)
         if told is not None and visible(told) != told:
             yield element, f"'{feature}' is to be one line without hidden characters"
+
+
+def _literal_faults(element: ex.IntegerLiteral | ex.DoubleLiteral) -> Iterator[tuple[Any, str]]:
+    most = _LARGEST + isinstance(element.eContainer(), ex.UnaryMinus)
+    if element.value < 0:
+        yield element, "a literal has no sign; the sign is a UnaryMinus around it"
+    elif isinstance(element, ex.IntegerLiteral) and element.value > most:
+        yield element, f"{element.value} is no integer of 64 bits"

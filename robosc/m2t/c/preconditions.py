@@ -53,6 +53,8 @@ def _expressions(model: sct.SupervisoryControlModel) -> Iterator[tuple[ex.Locate
 
 
 def _overflows(expression: ex.Expression, ranges: Ranges) -> Iterator[str]:
+    if isinstance(expression, ex.UnaryMinus) and isinstance(expression.operand, ex.IntegerLiteral):
+        return  # a number, the least one too
     for child in children_of(expression):
         assert isinstance(child, ex.Expression)
         yield from _overflows(child, ranges)

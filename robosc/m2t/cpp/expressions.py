@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 from robosc.expressions import ATOM, PRECEDENCE, ExpressionPrinter
 from robosc.m2t.c.comments import string_literal
+from robosc.m2t.c.types import number
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
 from robosc.metamodel.expression_types import is_double
@@ -76,6 +77,12 @@ class CppPrinter(ExpressionPrinter):
             return f"Integer({self(expression.left)}) {self.symbols[type(expression)]} {self.tight(expression.right)}"
         return super().binary(expression)
 
+    def unary(self, expression: ex.UnaryExpression) -> str:
+        """An operator before its operand; C++ has no literal of the least integer."""
+        if isinstance(expression, ex.UnaryMinus) and isinstance(expression.operand, ex.IntegerLiteral):
+            return number(-expression.operand.value)
+        return super().unary(expression)
+
     def atom(self, expression: ex.Expression) -> str:
         """Literals, references to the state, the node's variables and the data that came in, conversions."""
         match expression:
@@ -125,7 +132,9 @@ class CppPrinter(ExpressionPrinter):
 
     def integer(self, expression: ex.Expression, kind: ex.IntegerType) -> str:
         """A whole number as an `Integer`, within the bounds of its type."""
-        bounds = "" if kind.minimum is None or kind.maximum is None else f".within({kind.minimum}, {kind.maximum})"
+        bounds = ""
+        if kind.minimum is not None and kind.maximum is not None:
+            bounds = f".within({number(kind.minimum)}, {number(kind.maximum)})"
         if is_constant(expression):
             return f"Integer({self(expression)}){bounds}"
         return f"{self.tight(expression)}{bounds}" if bounds else self(expression)
