@@ -39,20 +39,13 @@ def _import_faults(imported: robosc.ImportedComponent) -> Iterator[Fault]:
     if imported.definition.eContainer() is not imported.library:
         yield imported, f"'{imported.definition.name}' is no component of {imported.library.name}"
         return
-    reached, pending = set(), [imported.library]
-    home = _around(imported, robosc.Base)
-    while pending:
-        library = pending.pop()
-        if library is home:
-            yield imported, f"{library.name} imports itself"
+    seen, component = {_around(imported, robosc.Component)}, imported.definition
+    while isinstance(component.type, robosc.ImportedComponent):
+        if component in seen:
+            yield imported, f"'{component.name}' is imported from itself"
             return
-        if library not in reached:
-            reached.add(library)
-            pending += [
-                each.type.library
-                for each in library.definitions
-                if isinstance(each, robosc.Component) and isinstance(each.type, robosc.ImportedComponent)
-            ]
+        seen.add(component)
+        component = component.type.definition
     own = _definitions(imported.definition)
     for each in imported.remappings:
         if each.communicationType not in own:

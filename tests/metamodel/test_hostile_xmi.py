@@ -62,6 +62,16 @@ CHANGES = {
         r"\1TurtlebotLibrary",
         "is no component of TurtlebotLibrary",
     ),
+    "component from itself": (
+        "EmergencyStopLibrary.robosc.xmi",
+        "</robosc:Library>",
+        (
+            '<definitions xsi:type="robosc:Component" name="C"><type xsi:type="robosc:ImportedComponent"><library'
+            ' href="EmergencyStopLibrary.robosc.xmi#/"/><definition href="#//@definitions.1"/></type></definitions>'
+            "</robosc:Library>"
+        ),
+        "'C' is imported from itself",
+    ),
     "doubled step": (
         GRAPH,
         r'(\s*<steps [^>]*name="ranges"/>)',
