@@ -330,7 +330,7 @@ ACCEPTED = {
     "a monitor": whole(members="  monitor c_a, q.u_r;"),
     "a monitor of all": whole(members="  monitor;"),
     "documentation": whole(
-        '@@doc("all", "of \\"it\\"\\n", )\n',
+        '@@doc("all", "of " + "\\"it\\"\\n", )\n',
         members='  @doc("y") disc bool y = true; @doc("c") controllable c_c;',
         first='    @@doc("an edge") edge c_a; @@doc("one") @@doc("two") edge c_c;',
         second='  @doc("nothing leads here") location b;',

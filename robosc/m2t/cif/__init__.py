@@ -1,7 +1,7 @@
 """CIF 3: the plants and requirements of a robot, and the plants under their supervisor (thesis 5.2).
 
-The text stays inside what the data-based synthesis of Eclipse ESCET 5 to 10 accepts; `docs/cif.md` says what is
-written.
+The text stays inside what the data-based synthesis of Eclipse ESCET accepts from version 5 on; `docs/cif.md` says what
+is written.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from robosc.diagnostics import Diagnostic, Severity
 from robosc.m2t.cif.arithmetic import assigned, condition
 from robosc.m2t.cif.linear import LARGEST, Unsupported, bounds, shift
-from robosc.m2t.cif.specification import Writer
+from robosc.m2t.cif.specification import Writer, folded
 from robosc.m2t.templates import environment
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
@@ -56,7 +56,9 @@ def generate(models: Models, _configuration: Configuration) -> dict[str, str]:
     specification = Writer(models.sct).specification()
     kinds = ["cif"] if models.sct.supervisor is None else ["cif", "supervised.cif"]
     return {
-        f"{models.sct.name}.{kind}": templates.get_template(f"robot.{kind}.j2").render(specification=specification)
+        f"{models.sct.name}.{kind}": folded(
+            templates.get_template(f"robot.{kind}.j2").render(specification=specification)
+        )
         for kind in kinds
     }
 

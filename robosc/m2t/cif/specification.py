@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from itertools import groupby
+from math import prod
+from textwrap import wrap
 from typing import TYPE_CHECKING
 
 from robosc.m2t.cif.arithmetic import assigned, condition, held
@@ -16,6 +19,15 @@ from robosc.metamodel.reflection import tree
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+
+
+_NOTHING_ADDED = "Synthesis added nothing to the requirements."
+#: Characters in a line, unless one word has more.
+_WIDTH = 120
+#: What stands in one line: up to a comma or one of these words, outside of strings.
+_PART = re.compile(
+    r'(?:"(?:[^"\\]|\\.)*"|[^\s"]|(?<!,)[ ](?!(?:and|or|=>|elif|else|when|do|goto|needs|disables|[+-])[ ]))+'
+)
 
 
 @dataclass(frozen=True)
@@ -31,17 +43,18 @@ class Events:
     """Events that are declared together, being alike."""
 
     controllable: bool
+    docs: Sequence[str]
     names: Sequence[str]
 
 
 @dataclass(frozen=True)
 class Variable:
-    """A variable, or an input without `initial`; `remark` where CIF holds another value than the model has."""
+    """A variable, or an input without `initial`; `docs` where CIF holds another value than the model has."""
 
     type: str
     name: str
     initial: str
-    remark: str
+    docs: Sequence[str]
 
 
 @dataclass(frozen=True)
@@ -77,26 +90,27 @@ class Plant:
 
 @dataclass(frozen=True)
 class Restriction:
-    """A requirement, of the model or as the supervisor keeps it; `texts` are its meaning in the robot model's words."""
+    """A requirement, of the model or as the supervisor keeps it; `docs` are its meaning in the robot model's words."""
 
     event: str
     kind: str
     condition: str
-    texts: Sequence[str]
+    docs: Sequence[str]
 
 
 @dataclass(frozen=True)
 class Specification:
     """A specification. The supervisor's parts are empty where there is none."""
 
-    name: str
+    docs: Sequence[str]
+    supervised_docs: Sequence[str]
+    added_docs: Sequence[str]
     enumerations: Sequence[Enumeration]
     plants: Sequence[Plant]
     requirements: Sequence[Restriction]
     kept: Sequence[Restriction]
     supervisor: str
     edges: Sequence[Edge]
-    states: str
 
 
 class Writer:
@@ -107,6 +121,7 @@ class Writer:
         self._names = CifNames(model)
         self._outside = CifPrinter(self._names, None)
         self._impossible = impossible(model)
+        self._transitions = _transitions(model)
         self._referred = {each.location for _, each in tree(model) if isinstance(each, sct.LocationReference)}
 
     def specification(self) -> Specification:
@@ -114,7 +129,9 @@ class Writer:
         model, supervisor = self._model, self._model.supervisor
         guards = [each for each in supervisor.guards if each.event not in self._impossible] if supervisor else []
         return Specification(
-            name=model.name,
+            docs=[quoted(f"The plants and requirements of {model.name}.")],
+            supervised_docs=self._counted(),
+            added_docs=[quoted("What synthesis added." if any(each.synthesis for each in guards) else _NOTHING_ADDED)],
             enumerations=[
                 Enumeration(self._names.declared(each), [self._names.declared(literal) for literal in each.literals])
                 for each in model.enumerations
@@ -130,7 +147,6 @@ class Writer:
             edges=[
                 Edge(self._names.used(each.event, None), self._condition(each.synthesis), (), "") for each in guards
             ],
-            states=f"{supervisor.controlledStates} of {supervisor.uncontrolledStates}" if supervisor else "",
         )
 
     def requirements(self) -> list[Restriction]:
@@ -138,8 +154,10 @@ class Writer:
         texts: dict[tuple[str, str, str], list[str]] = {}
         for each in self._model.requirements:
             said = self._names.used(each.event, None), str(each.kind), self._condition(each.condition)
-            texts.setdefault(said, []).append(remark(each.text))
-        return [Restriction(*said, list(dict.fromkeys(filter(None, found)))) for said, found in texts.items()]
+            texts.setdefault(said, []).append(each.text or "")
+        return [
+            Restriction(*said, list(map(quoted, dict.fromkeys(filter(None, found))))) for said, found in texts.items()
+        ]
 
     def plant(self, plant: sct.Plant) -> Plant:
         """A plant with all that is in it."""
@@ -147,13 +165,30 @@ class Writer:
         return Plant(
             name=self._names.declared(plant),
             events=[
-                Events(controllable, [self._names.declared(each) for each in events])
-                for controllable, events in groupby(self._possible(plant), key=lambda each: each.controllable)
+                Events(controllable, docs, [self._names.declared(each) for each in events])
+                for (controllable, docs), events in groupby(
+                    self._possible(plant), key=lambda each: (each.controllable, self._transitions.get(each, ()))
+                )
             ],
             inputs=[self._variable(each, "") for each in plant.inputs],
             variables=[self._variable(each, printer(held(each))) for each in plant.variables],
             locations=[self._location(each, plant, printer) for each in plant.locations],
         )
+
+    def _counted(self) -> list[str]:
+        """What the supervisor leaves of the plants, as it is counted here and in CIF."""
+        supervisor = self._model.supervisor
+        if supervisor is None:
+            return []
+        inputs = prod(_values(each) for plant in self._model.plants for each in plant.inputs)
+        left, all_of = supervisor.controlledStates, supervisor.uncontrolledStates
+        name = self._model.name
+        told = [f"The plants of {name} under their supervisor, which leaves them {left} of {all_of} states."]
+        if inputs > 1:
+            told.append(
+                f"CIF counts {left * inputs} of {all_of * inputs}: each of them with the {inputs} values of the inputs."
+            )
+        return list(map(quoted, told))
 
     def _possible(self, plant: sct.Plant) -> list[sct.Event]:
         return [each for each in plant.events if each not in self._impossible]
@@ -163,14 +198,15 @@ class Writer:
 
     def _variable(self, variable: sct.DiscreteVariable | sct.Input, initial: str) -> Variable:
         name = self._names.declared(variable)
-        kind, note = "bool", ""
+        kind, docs = "bool", []
         if isinstance(variable.type, ex.EnumerationType):
             kind = self._names.declared(variable.type.enumeration)
         elif isinstance(variable.type, ex.IntegerType):
             (low, high), up = bounds(variable), shift(variable)
             kind = f"int[{low + up}..{high + up}]"
-            note = f"{name} + {up}, with {name} in {low}..{high}" if up else ""
-        return Variable(kind, name, initial, note)
+            if up:
+                docs = [quoted(f"{name} + {up}, with {name} in {low}..{high}")]
+        return Variable(kind, name, initial, docs)
 
     def _location(self, location: sct.Location, plant: sct.Plant, printer: CifPrinter) -> Location:
         alone = plant.kind == sct.PlantKind.message and len(plant.locations) == 1
@@ -212,7 +248,53 @@ def impossible(model: sct.SupervisoryControlModel) -> set[sct.Event]:
     return found
 
 
-def remark(text: str | None) -> str:
-    """A text in one line of plain ASCII, which no comment can end."""
-    shown = " ".join((text or "").split()).encode("ascii", "backslashreplace").decode()
-    return "".join(each if each.isprintable() else f"\\x{ord(each):02x}" for each in shown)
+def quoted(text: str) -> str:
+    """A text as a string of CIF, in plain ASCII; a long one as a sum of strings, which can stand in several lines."""
+    shown = " ".join(text.split()).encode("ascii", "backslashreplace").decode()
+    shown = "".join(each if each.isprintable() else f"\\x{ord(each):02x}" for each in shown)
+    parts = wrap(shown, _WIDTH - 10, drop_whitespace=False, break_on_hyphens=False)
+    return " + ".join('"' + each.replace("\\", "\\\\").replace('"', '\\"') + '"' for each in parts)
+
+
+def folded(text: str) -> str:
+    """A specification in lines of a length that can be read; a break takes the place of a space."""
+    return "".join(_folded(line) for line in text.splitlines(keepends=True))
+
+
+def _folded(line: str) -> str:
+    if len(line) <= _WIDTH + 1:
+        return line
+    indent = " " * (len(line) - len(line.lstrip()))
+    made, length = [indent], len(indent)
+    for number, part in enumerate(_PART.findall(line.strip())):
+        if number and length + 1 + len(part) > _WIDTH:
+            made.append(f"\n{indent}  {part}")
+            length = len(indent) + 2 + len(part)
+        else:
+            made.append(f" {part}" if number else part)
+            length += len(part) + 1
+    return "".join(made) + "\n"
+
+
+def _transitions(model: sct.SupervisoryControlModel) -> dict[sct.Event, tuple[str, ...]]:
+    """What each transition of a component by itself does, whose event has no name but a number."""
+    steps: dict[sct.Event, dict[str, None]] = {}
+    edges = (edge for plant in model.plants for location in plant.locations for edge in location.edges)
+    for edge in edges:
+        if edge.event.kind == sct.EventKind.tau:
+            here, there = edge.eContainer().name, edge.target.name
+            steps.setdefault(edge.event, {})[f"in {here}" if here == there else f"from {here} to {there}"] = None
+    return {
+        event: (quoted(f"A transition of {event.eContainer().origin or event.eContainer().name} {', '.join(each)}."),)
+        for event, each in steps.items()
+    }
+
+
+def _values(member: sct.Input) -> int:
+    match member.type:
+        case ex.EnumerationType():
+            return len(member.type.enumeration.literals)
+        case ex.IntegerType():
+            low, high = bounds(member)
+            return high - low + 1
+    return 2

@@ -11,7 +11,7 @@ from robosc.verification.cif_reading import read
 _KINDS = {"message": "message", "service": "service", "action": "action", "component": "behaviour", "data": "data"}
 _EVENTS = [each.name for each in sct.EventKind.eLiterals]  # type: ignore[attr-defined]
 _PLANT = re.compile(r"plant \$?(\w+):")
-_SHIFTED = re.compile(r"  (?:disc|input) .* // \$?(\w+) \+ (\d+), with \$?\1 in (-\d+)\.\.(-?\d+)")
+_SHIFTED = re.compile(r'  @doc\("\$?(\w+) \+ (\d+), with \$?\1 in (-\d+)\.\.(-?\d+)"\)')
 
 
 def rebuild(text: str) -> sct.SupervisoryControlModel:
@@ -22,7 +22,7 @@ def rebuild(text: str) -> sct.SupervisoryControlModel:
     """
     specification = read(text)
     model = specification.model
-    model.name = re.match(r"// The plants .*?\bof (\w+)", text).group(1)
+    model.name = re.match(r'@@doc\("The plants .*?\bof (\w+)', text).group(1)
     for plant in model.plants:
         _name_kinds(plant)
     if specification.supervisor is not None:

@@ -155,7 +155,7 @@ def test_every_model_keeps_its_meaning(given: sct.SupervisoryControlModel) -> No
     text = generated(given)["robot.cif"]
     assert differences(given, rebuild(text)) == []
     # Synthesis takes no `*`, and a `-` only between the two sides of what is assigned.
-    plain = re.sub("//.*", "", text)
+    plain = re.sub('".*"', "", text)
     assert "*" not in plain
     assert all(re.fullmatch(r"[^()]*? - [^-]*", each) for each in re.findall(":= ([^,;]*-[^,;]*)", plain))
     assert "-" not in re.sub(":= [^,;]*", "", plain)
@@ -254,7 +254,7 @@ def test_updates(target: str, text: str, wanted: str) -> None:
 
 def test_a_negative_range_is_shifted_and_says_so() -> None:
     text = generated(updated("-5..100 = -2", "t"))["robot.cif"]
-    assert "  disc int[0..105] t = 3; // t + 5, with t in -5..100\n" in text
+    assert '  @doc("t + 5, with t in -5..100")\n  disc int[0..105] t = 3;\n' in text
 
 
 @pytest.mark.parametrize(
@@ -413,7 +413,53 @@ HOSTILE = [
     "two\nlines: plant y: location: initial; end",
     "\r\u2028end\x07",
     "größer",
+    '"); end plant y: location: initial; end @doc("',
+    "\\",
+    '\\"',
+    "a " * 200,
+    "a-" * 100,
+    '"' * 200,
 ]
+
+
+def test_long_lines_are_folded_between_words() -> None:
+    words = " and ".join(["p.b"] * 40)
+    given = expression(" and ".join(["b"] * 40), b="bool")
+    event = given.plants[0].events[0]
+    condition = copied(given.plants[0].locations[0].edges[0].guard)
+    kind = sct.RequirementKind.needs
+    given.requirements.append(sct.Requirement(event=event, kind=kind, condition=condition, text=f'"{words}\\"'))
+    text = generated(given)["robot.cif"]
+    assert max(map(len, text.splitlines())) <= 120
+    assert differences(given, rebuild(text)) == []
+    said = re.findall(r'"((?:[^"\\]|\\.)*)"', text[text.rindex("@doc") :])
+    assert "".join(said).replace("\\\\", "\\").replace('\\"', '"') == f'"{words}\\"'
+
+
+def test_a_transition_says_what_it_does() -> None:
+    given = model(
+        [
+            plant(
+                "component_X",
+                {"a": [edge("c_tau1", "b"), edge("c_tau2")], "b": [edge("c_tau2"), edge("c_tau1", "a")]},
+                controllable=["c_tau1", "c_tau2"],
+                origin="X",
+            )
+        ]
+    )
+    given.plants[0].events[0].kind = given.plants[0].events[1].kind = sct.EventKind.tau
+    text = generated(given)["robot.cif"]
+    assert (
+        '  @doc("A transition of X from a to b, from b to a.")\n  controllable c_tau1;\n'
+        '  @doc("A transition of X in a, in b.")\n  controllable c_tau2;\n'
+    ) in text
+
+
+def test_the_head_says_how_cif_counts() -> None:
+    given = listings()
+    given.supervisor = sct.Supervisor(uncontrolledStates=10, controlledStates=3, bddNodes=1)
+    head = generated(given)["Listings.supervised.cif"].splitlines()[1]
+    assert head == '@@doc("CIF counts 252 of 840: each of them with the 84 values of the inputs.")'
 
 
 @pytest.mark.parametrize("text", HOSTILE)
