@@ -4,7 +4,8 @@
 
 A mutant is to end in located findings or in generated code, within 10 s of the processor and 1 GB of memory, and in
 every hundredth the command line is to end with the right exit status. Each fifth is a saved model (XMI), of which the
-command line may tell nothing of other files; each fiftieth has a pipe, a device or the like where a file is looked for.
+command line may tell nothing of other files; each fiftieth has a pipe, a device or the like where a file is looked for;
+each hundredth is written by a command that a signal ends.
 A valid robot draws no error; its CIF is read back, and its engine in C does 200 random operations as the interpreter
 does them. Each model comes from a number alone: `--mutants 1 --valid 0 --seed N` tries the mutant N again. `--keep`
 writes the models that failed to a folder.
@@ -29,6 +30,7 @@ from typing import TYPE_CHECKING, Any
 ROOT = Path(__file__).parent.parent
 sys.path.insert(0, str(ROOT))
 
+from tests.fuzz.broken_off import broken_off_tried  # noqa: E402
 from tests.fuzz.mutants import mutant  # noqa: E402
 from tests.fuzz.saved_mutants import saved_mutant  # noqa: E402
 from tests.fuzz.special import special_tried  # noqa: E402
@@ -42,7 +44,9 @@ if TYPE_CHECKING:
 #: Seconds of the processor that one model may take, and bytes of memory beside what the program takes itself.
 LIMIT, MEMORY = 10, 10**9
 CHUNKS = {"mutants": 100, "valid": 25}
-CALLED_EACH, SAVED_EACH, SPECIAL_EACH = 100, 5, 50
+CALLED_EACH, SAVED_EACH, SPECIAL_EACH, BROKEN_OFF_EACH = 100, 5, 50, 100
+#: What is tried of a number that stands for no text of a model.
+OTHERS = {"saved": saved_tried, "special": special_tried, "broken off": broken_off_tried}
 
 
 @dataclass
@@ -96,6 +100,8 @@ def _peak() -> int:
 
 
 def _kind(seed: int) -> str:
+    if seed % BROKEN_OFF_EACH == 2:
+        return "broken off"
     return "special" if seed % SPECIAL_EACH == 3 else "saved" if seed % SAVED_EACH == 1 else "text"
 
 
@@ -107,9 +113,7 @@ def mutants(seeds: range) -> Result:
         for seed in seeds:
             kind = _kind(seed)
             if kind != "text":
-                status = result.try_one(
-                    seed, {"saved": saved_tried, "special": special_tried}[kind], Path(folder), seed
-                )
+                status = result.try_one(seed, OTHERS[kind], Path(folder), seed)
                 result.statuses[f"{kind}: {status}"] += status is not None
                 continue
             path.write_text(mutant(seed), encoding="utf-8")

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from tests.fuzz.broken_off import broken_off_tried
 from tests.fuzz.mutants import mutant
 from tests.fuzz.special import COMMANDS, KINDS, tried_with
 from tests.fuzz.trial import called, saved_tried, time_limit, tried
@@ -37,6 +38,11 @@ def test_saved_mutants(tmp_path: Path, first: int) -> None:
         with time_limit(60):
             statuses.add(saved_tried(tmp_path, seed))
     assert {0, 1} <= statuses
+
+
+def test_commands_that_are_broken_off(tmp_path: Path) -> None:
+    statuses = {broken_off_tried(tmp_path, seed) for seed in range(12)}
+    assert statuses > {0}
 
 
 @pytest.mark.parametrize("command", COMMANDS)
