@@ -8,6 +8,7 @@ import signal
 import sys
 from pathlib import Path
 from random import Random
+
 from robosc.cli import main
 from tests.fuzz.trial import said
 from tests.interruptions import interrupted
