@@ -115,8 +115,9 @@ def _has(program: str, environment: dict[str, str]) -> bool:
 
 
 def _plain_environment() -> dict[str, str]:
-    """An environment without any Python or ROS of the tests' own."""
-    kept = {name: os.environ[name] for name in ("HOME", "LANG", "LC_ALL", "USER") if name in os.environ}
+    """An environment without any Python or ROS of the tests' own; with what sanitizers are told."""
+    names = ("HOME", "LANG", "LC_ALL", "USER", "ASAN_OPTIONS", "TSAN_OPTIONS", "UBSAN_OPTIONS", "LDFLAGS")
+    kept = {name: os.environ[name] for name in names if name in os.environ}
     return kept | {"PATH": "/usr/sbin:/usr/bin:/sbin:/bin"}
 
 

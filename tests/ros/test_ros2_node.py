@@ -96,7 +96,9 @@ def last(log: Path) -> tuple[str, str]:
 def start_container(graph: Graph, program: str) -> subprocess.Popen[bytes]:
     prefixes = map(Path, graph.processes.environment["AMENT_PREFIX_PATH"].split(":"))
     containers = [prefix / "lib/rclcpp_components" / program for prefix in prefixes]
-    return graph.processes.start(program, [next(path for path in containers if path.exists())])
+    # It is not built with the sanitizer that what it loads may need.
+    preloaded = f"LD_PRELOAD={os.environ.get('ROBOSC_PRELOAD', '')}"
+    return graph.processes.start(program, ["env", preloaded, next(path for path in containers if path.exists())])
 
 
 def test_two_components_in_one_container(graph: Graph) -> None:

@@ -70,6 +70,8 @@ def _packages(target: str) -> list[Package]:
     ]
 
 
+#: Which of the packages are built, by their names; else all.
+CHOSEN = os.environ.get("ROBOSC_PACKAGES", "").split()
 #: The packages of the one workspace of each ROS, beside those of `interfaces`.
 ROS1_PACKAGES = [
     *_packages("ros1"),
@@ -184,6 +186,8 @@ def build(ros: Ros, folder: Path, packages: Sequence[Package], others: Sequence[
     source = folder / "src"
     source.mkdir(parents=True, exist_ok=True)
     for package in packages:
+        if CHOSEN and package.name not in CHOSEN:
+            continue
         out = folder / "generated" / package.name
         command: list[str | Path] = [sys.executable, "-m", "robosc", "transform", package.model, "-o", out]
         settings = ["--config", package.configuration] if package.configuration else []

@@ -95,7 +95,7 @@ class CppPrinter(ExpressionPrinter):
             case ex.StringLiteral():
                 return f"std::string({string_literal(expression.value)})"
             case ex.DoubleConversion():
-                return f"double({self(expression.operand)})"
+                return f"static_cast<double>({self(expression.operand)})"
             case ex.Conditional():
                 tight = map(self.tight, (expression.condition, expression.then, expression.otherwise))
                 return "({} ? {} : {})".format(*tight)

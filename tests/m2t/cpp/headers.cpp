@@ -41,6 +41,10 @@ void whole_numbers_saturate() {
   CHECK(-Integer(kLeast) == kMost);
   CHECK(Integer(kMost) * -2 == kLeast);
   CHECK(Integer(kLeast) * -1 == kMost);
+  CHECK(Integer(kLeast) * 1 == kLeast && Integer(kLeast / 2) * 2 == kLeast && Integer(2) * (kLeast / 2) == kLeast);
+  CHECK(Integer(kLeast) * kLeast == kMost && Integer(kMost) * kLeast == kLeast && Integer(kMost) * 0 == 0);
+  CHECK(Integer(3037000499) * 3037000499 == 9223372030926249001 && Integer(3037000500) * 3037000500 == kMost);
+  CHECK(Integer(kMost) + -1 == kMost - 1 && Integer(kLeast) - -1 == kLeast + 1 && Integer(-1) - kMost == kLeast);
   CHECK(Integer(-5) + 3 < 0 && Integer(-5) * -5 == 25 && Integer(1u) > Integer(-1));
   CHECK(Integer(7).within(-3, 5) == 5 && Integer(-7).within(-3, 5) == -3 && Integer(4).within(-3, 5) == 4);
   CHECK(Integer(300).to<std::uint8_t>() == 255 && Integer(-1).to<std::uint8_t>() == 0);

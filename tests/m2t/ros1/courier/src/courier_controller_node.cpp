@@ -254,7 +254,8 @@ class Controller {
     ratio_message_ = std_msgs::Float32();
     FieldWriter write(log_.active());
     if (supervisor_.state.data_ratio == courier_data_ratio_d1) {
-      write.set("data", ratio_message_.data, double(data_.Counter.total) / double(data_.Counter.capped));
+      write.set("data", ratio_message_.data, static_cast<double>(data_.Counter.total) /
+          static_cast<double>(data_.Counter.capped));
     }
     if (write.fault() != nullptr) {
       ROS_WARN_THROTTLE(5.0, "%s is withheld: its %s would not be finite", "ratio", write.fault());

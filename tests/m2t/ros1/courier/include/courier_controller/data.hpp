@@ -38,17 +38,23 @@ class Integer {
   explicit constexpr operator double() const { return static_cast<double>(value_); }
 
   friend Integer operator+(Integer a, Integer b) {
-    std::int64_t sum;
-    return __builtin_add_overflow(a.value_, b.value_, &sum) ? (a.value_ < 0 ? least : most) : sum;
+    if (b.value_ > 0 && a.value_ > most - b.value_) return most;
+    if (b.value_ < 0 && a.value_ < least - b.value_) return least;
+    return a.value_ + b.value_;
   }
   friend Integer operator-(Integer a, Integer b) {
-    std::int64_t difference;
-    return __builtin_sub_overflow(a.value_, b.value_, &difference) ? (a.value_ < 0 ? least : most) : difference;
+    if (b.value_ < 0 && a.value_ > most + b.value_) return most;
+    if (b.value_ > 0 && a.value_ < least + b.value_) return least;
+    return a.value_ - b.value_;
   }
   friend Integer operator*(Integer a, Integer b) {
-    std::int64_t product;
-    return __builtin_mul_overflow(a.value_, b.value_, &product) ? ((a.value_ < 0) != (b.value_ < 0) ? least : most)
-                                                                : product;
+    if (a.value_ == 0 || b.value_ == 0) return 0;
+    if ((a.value_ < 0) == (b.value_ < 0)) {
+      if (a.value_ > 0 ? a.value_ > most / b.value_ : a.value_ < most / b.value_) return most;
+    } else {
+      if (a.value_ > 0 ? b.value_ < least / a.value_ : a.value_ < least / b.value_) return least;
+    }
+    return a.value_ * b.value_;
   }
   friend Integer operator-(Integer a) { return Integer(0) - a; }
   friend constexpr bool operator==(Integer a, Integer b) { return a.value_ == b.value_; }

@@ -1,0 +1,177 @@
+"""Builds generated packages with sanitizers and drives them: one scenario, the faults, load and unload, the end.
+
+python benchmarks/sanitized.py [--ros 1|2] [--sanitizer address|thread] [--folder FOLDER] [--page] [PYTEST...]
+
+Without options all that this machine can: ROS 1 where it is installed, ROS 2 where `rclcpp` is. The tests are those of
+`tests/ros`; further arguments go to pytest. What came of it goes into `sanitized.json` and `docs/sanitizers.md`;
+`--page` writes the latter alone. Status 1: a sanitizer has found something in generated code.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections import Counter
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+from xml.etree import ElementTree
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+HERE = Path(__file__).parent
+ROOT = HERE.parent
+RESULTS, PAGE = HERE / "sanitized.json", ROOT / "docs" / "sanitizers.md"
+SANITIZERS = {"address": "address,undefined", "thread": "thread"}
+SCENARIO = "line_follower"
+PACKAGES = [f"{SCENARIO}_controller", "scout_controller", "porter_controller", "managed_porter", "usher_layer"]
+#: Loads and unloads in each container.
+ROUNDS = 170
+TESTS = ["tests/ros/faults", "tests/ros/test_scenarios.py", "tests/ros/test_layer.py", "tests/ros/test_ros{}_node.py"]
+#: What is left out, and why, for the page.
+OPTIONS = {
+    "ASAN_OPTIONS": "detect_leaks=0:new_delete_type_mismatch=0:verify_asan_link_order=0",
+    "UBSAN_OPTIONS": "print_stacktrace=1",
+    "TSAN_OPTIONS": "exitcode=0:second_deadlock_stack=1:history_size=4",
+}
+#: The page without its numbers.
+ABOUT = """# Sanitizers
+
+`python benchmarks/sanitized.py` builds generated packages with the address and undefined-behaviour sanitizers of GCC
+and with its thread sanitizer, and drives them on a live graph: a scenario, the [faults](faults.md), components that are
+loaded into both kinds of containers and unloaded again under a rain of messages, the ways to end a node. ROS itself is
+as it comes: reports on its libraries alone are counted apart; leaks, and `new-delete-type-mismatch` in `rcutils`, are
+not looked for. A test may fail here where the time that sanitizers cost breaks a bound.
+
+| | last run | packages | tests passed | failed | reports on generated code | on libraries alone |
+|---|---|---|---|---|---|---|"""
+Results = dict[str, dict[str, Any]]
+
+
+def drive(ros: int, sanitizer: str, folder: Path, more: list[str]) -> dict[str, Any]:
+    """Builds and drives one kind of packages; the tests that passed and failed, and what was reported where."""
+    reports = folder / f"reports-{ros}-{sanitizer}"
+    reports.mkdir(parents=True, exist_ok=True)
+    for old in reports.iterdir():
+        old.unlink()
+    flags = f"-g -O1 -fno-omit-frame-pointer -fsanitize={SANITIZERS[sanitizer]}"
+    library = {"address": "libasan.so", "thread": "libtsan.so"}[sanitizer]
+    asking = [shutil.which("g++") or "g++", f"-print-file-name={library}"]
+    found = subprocess.run(asking, capture_output=True, text=True, check=True)
+    workspace = folder / f"ros{ros}-{sanitizer}"
+    environment = {
+        **os.environ,
+        "CFLAGS": flags,
+        "CXXFLAGS": flags,
+        # Libraries of ROS may lack what only Python has.
+        "LDFLAGS": "-Wl,--unresolved-symbols=ignore-in-shared-libs",
+        "ROBOSC_PACKAGES": " ".join(PACKAGES),
+        "ROBOSC_PRELOAD": found.stdout.strip(),
+        "ROBOSC_ROUNDS": str(ROUNDS),
+        f"ROBOSC_ROS{ros}_WORKSPACE": str(workspace),
+        **{name: f"{options}:log_path={reports / 'report'}" for name, options in OPTIONS.items()},
+    }
+    scenarios = [path.name for path in (ROOT / "examples").iterdir() if path.is_dir() and path.name != SCENARIO]
+    chosen = f"ros{ros} and not run and not ({' or '.join(sorted(scenarios))})"
+    junit = folder / "junit.xml"
+    command = ["setarch", "--addr-no-randomize", sys.executable, "-m", "pytest", "-q", "-k", chosen]
+    tests = [] if any(argument.startswith("tests/") for argument in more) else [test.format(ros) for test in TESTS]
+    subprocess.run([*command, f"--junitxml={junit}", *tests, *more], cwd=ROOT, env=environment, check=False)
+    (suite,) = ElementTree.parse(junit).getroot()  # noqa: S314  # pytest's own
+    failed = int(suite.get("failures", 0)) + int(suite.get("errors", 0))
+    ours, others = sorted_reports(path.read_text(errors="replace") for path in sorted(reports.iterdir()))
+    return {
+        "date": datetime.now(UTC).date().isoformat(),
+        "packages": [package for package in PACKAGES if (workspace / "src" / package).exists()],
+        "passed": int(suite.get("tests", 0)) - failed - int(suite.get("skipped", 0)),
+        "failed": sorted(
+            f"{case.get('classname')}::{case.get('name')}"
+            for case in suite
+            if case.find("failure") is not None or case.find("error") is not None
+        ),
+        "reports": ours,
+        "elsewhere": others,
+    }
+
+
+def sorted_reports(texts: Iterable[str]) -> tuple[dict[str, int], dict[str, int]]:
+    """What was reported of generated code, and of libraries alone, each with how often."""
+    ours: Counter[str] = Counter()
+    others: Counter[str] = Counter()
+    for text in texts:
+        for report in re.split(r"(?m)^=+$", text):
+            for summary in re.findall(r"SUMMARY: (.*)|(runtime error: .*)", report):
+                line = re.sub(r"0x[0-9a-f]+|/\S*/", "", "".join(summary))
+                (ours if of_generated_code(report) else others)[line] += 1
+    return dict(sorted(ours.items())), dict(sorted(others.items()))
+
+
+def of_generated_code(report: str) -> bool:
+    """Whether generated code itself does what is reported: not what it called, nor what called it.
+
+    Libraries that were not built with the thread sanitizer tell it nothing of their atomic counters. The order of locks
+    is also that of who calls.
+    """
+    generated = re.compile("|".join(rf"/{package}/(?:src|include)/" for package in PACKAGES))
+    if "lock-order-inversion" in report:
+        return bool(generated.search(report))
+    stacks = [re.findall(r"(?m)^ *#\d+ .*", stanza) for stanza in report.split("\n\n")]
+    own = [[frame for frame in stack if not re.search(r"/usr/include/|lib[a-z]*san", frame)] for stack in stacks]
+    return any(generated.search(stack[0]) for stack in own if stack) or "runtime error" in report
+
+
+def page(results: Results) -> str:
+    """The page of the documentation."""
+    lines = [ABOUT]
+    for key, result in sorted(results.items()):
+        ros, sanitizer = key.split("-")
+        cells = [
+            f"ROS {ros[-1]}, {SANITIZERS[sanitizer].replace(',', ' and ')}",
+            result["date"],
+            ", ".join(f"`{package}`" for package in result["packages"]),
+            result["passed"],
+            len(result["failed"]),
+            sum(result["reports"].values()),
+            sum(result["elsewhere"].values()),
+        ]
+        lines.append("| " + " | ".join(map(str, cells)) + " |")
+    lines.append("")
+    for key, result in sorted(results.items()):
+        for where, found in (("generated code", result["reports"]), ("libraries", result["elsewhere"])):
+            lines += [f"- {key}, {where}, {count} times: `{text}`" for text, count in found.items()]
+        lines += [f"- {key}, failed: `{name}`" for name in result["failed"]]
+    return "\n".join(lines).rstrip("\n") + "\n"
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--ros", type=int, choices=[1, 2])
+    parser.add_argument("--sanitizer", choices=SANITIZERS)
+    parser.add_argument("--folder", type=Path)
+    parser.add_argument("--page", action="store_true")
+    chosen, more = parser.parse_known_args()
+    results: Results = json.loads(RESULTS.read_text(encoding="utf-8")) if RESULTS.exists() else {}
+    if not chosen.page:
+        sys.path.insert(0, str(ROOT))
+        from tests.ros.installations import find_ros1, find_ros2  # noqa: PLC0415  # only to measure
+
+        there = [ros for ros, found in ((1, find_ros1()), (2, find_ros2())) if found.ros]
+        with tempfile.TemporaryDirectory() as temporary:
+            for ros in [chosen.ros] if chosen.ros else there:
+                for sanitizer in [chosen.sanitizer] if chosen.sanitizer else SANITIZERS:
+                    result = drive(ros, sanitizer, (chosen.folder or Path(temporary)).absolute(), more)
+                    results[f"ros{ros}-{sanitizer}"] = result
+                    RESULTS.write_text(json.dumps(results, indent=1, sort_keys=True) + "\n", encoding="utf-8")
+    PAGE.write_text(page(results), encoding="utf-8")
+    return 1 if any(result["reports"] for result in results.values()) else 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
