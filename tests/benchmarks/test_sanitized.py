@@ -1,0 +1,37 @@
+"""Whose fault a sanitizer's report is, and the page with the last result."""
+
+from __future__ import annotations
+
+import json
+
+from benchmarks.sanitized import PAGE, RESULTS, page, sorted_reports
+
+OURS = """==================
+WARNING: ThreadSanitizer: data race (pid=1)
+  Write of size 8 at 0x7b38 by thread T14:
+    #0 operator delete(void*) <null> (libtsan.so.2+0x8)
+    #1 std::vector<int>::~vector() /usr/include/c++/12/bits/stl_vector.h:367 (a.so+0x1)
+    #2 usher_layer::Layer::~Layer() /ws/usher_layer/src/usher_layer_node.cpp:14 (a.so+0x2)
+
+  Previous read of size 8 at 0x7b38 by main thread:
+    #0 rclcpp::Executor::spin() /src/rclcpp/executor.cpp:2 (librclcpp.so+0x3)
+
+SUMMARY: ThreadSanitizer: data race /usr/include/c++/12/bits/stl_vector.h:367 in std::vector<int>::~vector()
+==================
+"""
+#: Generated code is what called it.
+THEIRS = OURS.replace("    #1", "    #1 rclcpp::Node::~Node() /src/rclcpp/node.cpp:7 (librclcpp.so+0x4)\n    #1")
+LOCKS = THEIRS.replace("data race", "lock-order-inversion (potential deadlock)")
+UNDEFINED = "/ws/x.c:3:4: runtime error: signed integer overflow\n    #0 0x1 in f /ws/x.c:3\n"
+
+
+def test_a_report_belongs_to_who_does_it() -> None:
+    race = "ThreadSanitizer: data race stl_vector.h:367 in std::vector<int>::~vector()"
+    assert sorted_reports([OURS, OURS]) == ({race: 2}, {})
+    assert sorted_reports([THEIRS]) == ({}, {race: 1})
+    assert sorted_reports([LOCKS]) == ({race.replace("data race", "lock-order-inversion (potential deadlock)"): 1}, {})
+    assert sorted_reports([UNDEFINED, ""]) == ({"runtime error: signed integer overflow": 1}, {})
+
+
+def test_the_page_tells_the_last_result() -> None:
+    assert PAGE.read_text(encoding="utf-8") == page(json.loads(RESULTS.read_text(encoding="utf-8")))
