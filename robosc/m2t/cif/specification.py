@@ -183,6 +183,8 @@ class Writer:
         inputs = prod(_values(each) for plant in self._model.plants for each in plant.inputs)
         left, all_of = supervisor.controlledStates, supervisor.uncontrolledStates
         name = self._model.name
+        if left is None or all_of is None:  # A supervisor of a saved model need not have been counted.
+            return [quoted(f"The plants of {name} under their supervisor.")]
         told = [f"The plants of {name} under their supervisor, which leaves them {left} of {all_of} states."]
         if inputs > 1:
             told.append(

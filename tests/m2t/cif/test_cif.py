@@ -460,6 +460,9 @@ def test_the_head_says_how_cif_counts() -> None:
     given.supervisor = sct.Supervisor(uncontrolledStates=10, controlledStates=3, bddNodes=1)
     head = generated(given)["Listings.supervised.cif"].splitlines()[1]
     assert head == '@@doc("CIF counts 252 of 840: each of them with the 84 values of the inputs.")'
+    given.supervisor = sct.Supervisor()
+    head, below, *_ = generated(given)["Listings.supervised.cif"].splitlines()
+    assert (head, below) == ('@@doc("The plants of Listings under their supervisor.")', "")
 
 
 @pytest.mark.parametrize("text", HOSTILE)
