@@ -23,6 +23,13 @@ def event_name(event: sct.Event) -> str:
     return f"{plant_of(event).name}.{event.name}"
 
 
+def provide_number(event: sct.Event) -> int:
+    """Which `provide` for its communication a data event chooses, from 1 in the order of the text; 0 for none."""
+    plant = plant_of(event)
+    edges = (edge for location in plant.locations for edge in location.edges if edge.event is event)
+    return 0 if any(edge.target.initial for edge in edges) else plant.events.index(event) + 1
+
+
 @dataclass(frozen=True)
 class Roles:
     """The events of a model by role. Each tuple is in event-table order: plants as the model has them, then events."""

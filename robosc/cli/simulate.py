@@ -18,11 +18,13 @@ from robosc.cli.report import Report
 from robosc.cli.saying import put, say
 from robosc.engine import Settings
 from robosc.language.text import decode
+from robosc.roles import event_name
 from robosc.simulation import Simulation, read_script, unfit_data
 from robosc.simulation.loop import LoopSimulation
 from robosc.simulation.script import RULE
 from robosc.simulation.session import Session, trace_line
 from robosc.supervision import supervise
+from robosc.supervision.wording import with_words
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -126,7 +128,8 @@ def _run(simulation: Simulation, number: int, seed: int) -> None:
 
 
 def _converse(simulation: Simulation, seed: int) -> None:
-    session = Session(simulation, seed)
+    named = {event_name(each): with_words(each) for each in simulation.engine.roles.events}
+    session = Session(simulation, seed, named)
     interactive = sys.stdin.isatty()
     if hasattr(sys.stdin, "reconfigure"):
         sys.stdin.reconfigure(errors="replace")

@@ -95,6 +95,8 @@ class Obstacles:
         if edge is not None and edge.guard is not None:
             parts = tuple(dict.fromkeys(map(self._said, self._failing(edge.guard, wanted=True))))
             asked = f"{self._transition(plant)} asks for `{self._print(edge.guard)}`"
+            if plant.kind == sct.PlantKind.data:
+                return Note(self._event, asked, parts)
             return Note(edge, f"`{name(plant)}` is in `{here.name}`, where {asked}", parts)
         if plant.kind in _CALLS and here.name in _PHASES:
             return Note(plant, f"`{name(plant)}` is in `{here.name}`: it {_PHASES[here.name]}")

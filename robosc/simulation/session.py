@@ -18,7 +18,7 @@ from robosc.simulation.simulation import whole_state
 from robosc.simulation.unread import Unread
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from robosc.diagnostics import Diagnostic
     from robosc.simulation.simulation import Happened, Simulation
@@ -36,13 +36,18 @@ MOST_AT_ONCE = 10_000
 
 
 class Session:
-    """Understands commands about a simulation; random events are the same for the same seed."""
+    """Understands commands about a simulation; random events are the same for the same seed.
 
-    def __init__(self, simulation: Simulation, seed: int) -> None:
+    `named`: what a person reads for an event, if not its name.
+    """
+
+    def __init__(self, simulation: Simulation, seed: int, named: Mapping[str, str] | None = None) -> None:
         self.ended = False
         self._simulation = simulation
         self._random = Random(seed)  # noqa: S311
         self._shown = whole_state(simulation.engine)
+        #: What a person reads for an event.
+        self._named = {each: (named or {}).get(each, each) for each in simulation.engine.events}
         self._commands: dict[str, Callable[[str], str]] = {
             "e": lambda _: self.enabled(),
             "d": lambda _: self._disabled(),
@@ -78,7 +83,8 @@ class Session:
         """The events that can happen, numbered."""
         enabled = self._simulation.enabled
         return (
-            "\n".join(f"{number:4} {each}" for number, each in enumerate(enabled, 1)) or "nothing can happen any more"
+            "\n".join(f"{number:4} {self._named[each]}" for number, each in enumerate(enabled, 1))
+            or "nothing can happen any more"
         )
 
     def state(self) -> str:
@@ -92,7 +98,7 @@ class Session:
             return f"{event}: {error}"
         if happened.by is not None:
             return self._reason(event, happened.by)
-        return "\n".join([event, *self._changes()])
+        return "\n".join([self._named[event], *self._changes()])
 
     def _changes(self) -> list[str]:
         """What is different from what was shown last."""
@@ -107,21 +113,23 @@ class Session:
     def _reason(self, event: str, by: Blocked | Unread) -> str:
         if isinstance(by, Unread):
             return f"{event}: {by.why}, so it counts as {by.error or 'not received'}"
-        model = self._simulation.engine.model
+        model, named = self._simulation.engine.model, self._named[event]
         if by is Blocked.PLANT:
-            return f"{event}: the robot is not ready for it"
+            return f"{named}: the robot is not ready for it"
         if by is Blocked.REQUIREMENT:
             texts = [each.text for each in self._simulation.engine.failing(event) if each.text]
-            return f"{event}: forbidden by {' and '.join(texts) or 'a requirement'}"
+            return f"{named}: forbidden by {' and '.join(texts) or 'a requirement'}"
         assert model.supervisor is not None
         guard = next(each for each in model.supervisor.guards if event_name(each.event) == event)
         needed = SctPrinter()(guard.synthesis) if guard.synthesis is not None else "false"
         otherwise = f"; otherwise, {guard.explanation}" if guard.explanation else ""
-        return f"{event}: forbidden by synthesis, which asks for {needed}{otherwise}"
+        return f"{named}: forbidden by synthesis, which asks for {needed}{otherwise}"
 
     def _undo(self) -> str:
         undone = self._simulation.undo()
-        return "nothing to undo" if undone is None else "\n".join([f"undone: {undone.event}", *self._changes()])
+        if undone is None:
+            return "nothing to undo"
+        return "\n".join([f"undone: {self._named[undone.event]}", *self._changes()])
 
     def _run(self, rest: str) -> str:
         number = _number(rest or "1")
@@ -133,7 +141,7 @@ class Session:
             if happened is None:
                 lines.append("nothing can happen any more")
                 break
-            lines.append(happened.event)
+            lines.append(self._named[happened.event])
         return "\n".join([*lines, *self._changes()])
 
     def _save(self, file: str) -> str:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from robosc.diagnostics import Span
 from robosc.metamodel import sct
-from robosc.roles import event_name, plant_of
+from robosc.roles import event_name, plant_of, provide_number
 from robosc.synthesis.decoding import text
 
 if TYPE_CHECKING:
@@ -27,7 +27,6 @@ _EVENTS = {
     sct.EventKind.cancel: "cancel of {}",
     sct.EventKind.reset: "reset of {}",
     sct.EventKind.tau: "transition of {}",
-    sct.EventKind.data: "choice of the data of {}",
 }
 
 
@@ -37,10 +36,25 @@ def name(plant: sct.Plant) -> str:
 
 
 def words(event: sct.Event) -> str:
-    """An event, such as `request to Platform.move`; of silent transitions also the line, and what tells them apart."""
-    said = _EVENTS[event.kind].format(f"`{name(plant_of(event))}`")
-    where = _where(event) if event.kind == sct.EventKind.tau else ""
+    """An event, such as `request to Platform.move`.
+
+    Of silent transitions and of statements that provide data also the line, and what tells them apart.
+    """
+    owner = f"`{name(plant_of(event))}`"
+    if event.kind == sct.EventKind.data:
+        number = provide_number(event)
+        said = f"choice of `provide` {number} for {owner}" if number else f"choice of no data for {owner}"
+        where = _where(event) if number else ""
+    else:
+        said = _EVENTS[event.kind].format(owner)
+        where = _where(event) if event.kind == sct.EventKind.tau else ""
     return f"{said} in {where}" if where else said
+
+
+def with_words(event: sct.Event) -> str:
+    """The event's name; of those whose name says nothing of the text that they come from, also that."""
+    unclear = event.kind in (sct.EventKind.tau, sct.EventKind.data) and event.source
+    return f"{event_name(event)} ({words(event)})" if unclear else event_name(event)
 
 
 def _where(event: sct.Event) -> str:
@@ -49,7 +63,7 @@ def _where(event: sct.Event) -> str:
     if span is None:
         return ""
     others = (Span.parse(each.source) for each in plant_of(event).events if each is not event)
-    shared = any(other is not None and other.line == span.line for other in others)
+    shared = any(other is not None and other.line == span.line and other != span for other in others)
     return f"line {span.line}, column {span.column}" if shared else f"line {span.line}"
 
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from robosc.expressions import RobotPrinter
 from robosc.m2t.c.comments import comment, comment_text, string_literal
 from robosc.m2t.c.types import index_type, interval_of, number, type_name
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
-from robosc.roles import event_name, plant_of
+from robosc.roles import event_name, plant_of, provide_number
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -103,16 +104,22 @@ class Declarations:
             sct.EventKind.feedback: f"{what} is under way{on}.",
             sct.EventKind.reset: f"{what} is ready to be used again.",
             sct.EventKind.tau: f"{what} changes by itself{self._steps(event)}.",
-            sct.EventKind.data: f"{what} is to be sent with other data{self._steps(event)}.",
+            sct.EventKind.data: f"{what} is to be sent {self._data(event)}.",
         }
         return meanings[event.kind]
 
+    def _data(self, event: sct.Event) -> str:
+        """Which data it is then sent with: that of a statement of the model, by its number and condition."""
+        number = provide_number(event)
+        if not number:
+            return "without data"
+        edges = self._context.table.edges[event].get(plant_of(event), {})
+        guard = next((edge.guard for edge in edges.values()), None)
+        return f"with the data of `provide` {number}" + (f", if {RobotPrinter()(guard)}" if guard else "")
+
     def _steps(self, event: sct.Event) -> str:
         edges = self._context.table.edges[event].get(plant_of(event), {})
-        steps = dict.fromkeys(
-            edge.target.name if event.kind == sct.EventKind.data else f"{location.name} to {edge.target.name}"
-            for location, edge in edges.items()
-        )
+        steps = dict.fromkeys(f"{location.name} to {edge.target.name}" for location, edge in edges.items())
         return f": {', '.join(steps)}" if steps else ""
 
     def _carries(self, event: sct.Event) -> list[str]:

@@ -16,6 +16,7 @@ from robosc.m2t.cif.names import CifNames
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 from robosc.metamodel.reflection import tree
+from robosc.roles import provide_number
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -121,7 +122,7 @@ class Writer:
         self._names = CifNames(model)
         self._outside = CifPrinter(self._names, None)
         self._impossible = impossible(model)
-        self._transitions = _transitions(model)
+        self._meanings = {**_transitions(model), **_choices(model)}
         self._referred = {each.location for _, each in tree(model) if isinstance(each, sct.LocationReference)}
 
     def specification(self) -> Specification:
@@ -167,7 +168,7 @@ class Writer:
             events=[
                 Events(controllable, docs, [self._names.declared(each) for each in events])
                 for (controllable, docs), events in groupby(
-                    self._possible(plant), key=lambda each: (each.controllable, self._transitions.get(each, ()))
+                    self._possible(plant), key=lambda each: (each.controllable, self._meanings.get(each, ()))
                 )
             ],
             inputs=[self._variable(each, "") for each in plant.inputs],
@@ -289,6 +290,17 @@ def _transitions(model: sct.SupervisoryControlModel) -> dict[sct.Event, tuple[st
     return {
         event: (quoted(f"A transition of {event.eContainer().origin or event.eContainer().name} {', '.join(each)}."),)
         for event, each in steps.items()
+    }
+
+
+def _choices(model: sct.SupervisoryControlModel) -> dict[sct.Event, tuple[str, ...]]:
+    """Which statement of the model each choice of data stands for."""
+    data = (each for plant in model.plants for each in plant.events if each.kind == sct.EventKind.data)
+    numbers = {each: provide_number(each) for each in data}
+    return {
+        event: (quoted(f"The choice of provide {number} for {event.eContainer().origin or event.eContainer().name}."),)
+        for event, number in numbers.items()
+        if number
     }
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.roles import event_name
-from robosc.supervision.wording import condition
+from robosc.supervision.wording import condition, with_words
 from robosc.synthesis.decoding import value
 from robosc.synthesis.encoding import domain_size, referenced, smallest
 from robosc.synthesis.paths import TraceStep
@@ -23,7 +23,8 @@ if TYPE_CHECKING:
 def happening(event: sct.Event, inputs: Mapping[Element, int]) -> str:
     """The event with those of its inputs whose codes are given."""
     values = {each.name: value(each, inputs[each]) for each in event.inputs if each in inputs}
-    return f"`{TraceStep(event_name(event), values)}`"
+    meaning = with_words(event).removeprefix(event_name(event))
+    return f"`{TraceStep(event_name(event), values)}`{meaning}"
 
 
 def on_one_side(step: str, translation: str, *, translated: bool) -> str:

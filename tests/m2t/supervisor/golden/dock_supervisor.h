@@ -68,11 +68,12 @@ typedef enum dock_event {
 
     /* ---- Data: the control loop chooses what the triggers send. ---- */
 
-    /* Light.light is to be sent with other data: d1. */
+    /* Light.light is to be sent with the data of `provide` 1, if Station.docked. */
     dock_data_light_c_d1,
-    /* Light.light is to be sent with other data: d2. */
+    /* Light.light is to be sent with the data of `provide` 2, if Power.low => Station.failures >
+     * 0. */
     dock_data_light_c_d2,
-    /* Light.light is to be sent with other data: none. */
+    /* Light.light is to be sent without data. */
     dock_data_light_c_none,
 
     /* ---- What comes from the robot: perform these. ---- */
