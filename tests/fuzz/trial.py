@@ -15,6 +15,7 @@ from click.testing import CliRunner
 import robosc
 from robosc import cli
 from robosc.checks import check
+from robosc.config import FILE_NAME
 from robosc.diagnostics import START, Diagnostic, ModelError, as_json, as_sarif, as_text, has_errors
 from robosc.language import read
 from robosc.metamodel import robosc as rsc
@@ -191,7 +192,8 @@ def said(*arguments: str) -> tuple[int, str]:
 
 def _located(findings: Sequence[Diagnostic], texts: dict[str, str]) -> None:
     """Findings stand in their texts, say something, and can be shown in each form."""
-    by_name = {each.rpartition("/")[2]: text for each, text in texts.items()}
+    # Of the configuration there is no text: what is said of it is what it lacks.
+    by_name = {FILE_NAME: "", **{each.rpartition("/")[2]: text for each, text in texts.items()}}
     for each in findings:
         text = texts[each.file] if each.file in texts else by_name[each.file]
         assert each.message, each
