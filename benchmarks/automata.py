@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
+from robosc.edges import edges_from, edges_of
 from robosc.evaluation import evaluate
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
@@ -70,13 +71,13 @@ def _plant(plant: sct.Plant) -> Automaton:
     initial: Valuation = {plant: next(each for each in plant.locations if each.initial)}
     for variable in plant.variables:
         initial[variable] = evaluate(variable.initial, _reading({}))
-    events = dict.fromkeys(edge.event for location in plant.locations for edge in location.edges)
+    events = dict.fromkeys(edge.event for edge in edges_of(plant))
     occurrences = [(event, *each) for event in events for each in _occurrences(event)]
 
     def successors(values: Valuation) -> Iterator[tuple[str, Valuation]]:
         for event, label, inputs in occurrences:
             read = _reading({**values, **inputs})
-            for edge in values[plant].edges:
+            for edge in edges_from(values[plant]):
                 if edge.event is event and (edge.guard is None or evaluate(edge.guard, read)):
                     updated = {
                         each.variable: _saturated(evaluate(each.value, read), each.variable.type)

@@ -84,17 +84,16 @@ def members(number: int) -> Files:
 
 
 def operators(number: int) -> Files:
-    """Operators in the condition of a requirement, on a few variables and states."""
-    parts = ["Gauge.low", "Gauge.height = 3", "Gauge.height > 5", "!Gauge.low"]
-    condition = "".join(f"{parts[i % 4]} {('or', 'and')[i % 7 == 6]} " for i in range(number)) + "Gauge.high"
+    """Operators in the condition of a requirement, none of which can be left out."""
+    level = f"integer(0..{number})"
+    condition = " and ".join(f"Gauge.height != {2 * i}" for i in range(number // 2))
     return _robot(
         _GO.format("none"),
         _behaviour(
             "Gauge",
-            ["outgoing message level with type: integer(0..9)"],
-            "variable height: integer(0..9) = 0",
-            "initial marked state low { on response from level do height := value goto high }",
-            "state high { on response from level do height := value goto low }",
+            [f"outgoing message level with type: {level}"],
+            f"variable height: {level} = 1",
+            "initial marked state measuring { on response from level do height := value }",
         ),
         f"requirement go needs {condition}",
     )

@@ -169,6 +169,7 @@ def generate(
     """
     from robosc.config import Configuration
     from robosc.diagnostics import ModelError, has_errors
+    from robosc.recursion import deep_recursion
     from robosc.targets import TARGETS
 
     if target not in TARGETS:
@@ -178,7 +179,9 @@ def generate(
     if TARGETS[target].needs_graph and models.rosgraph is None:
         raise ValueError(f"{target} needs the ROS graph")
     configuration = configuration or Configuration()
-    findings = TARGETS[target].findings(models, configuration)
+    with deep_recursion():
+        findings = TARGETS[target].findings(models, configuration)
     if has_errors(findings):
         raise ModelError(findings)
-    return TARGETS[target].files(models, configuration, with_tests=with_tests)
+    with deep_recursion():
+        return TARGETS[target].files(models, configuration, with_tests=with_tests)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from typing import Any
 
+from robosc.edges import edges_from
 from robosc.expressions import RobotPrinter
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
@@ -56,7 +57,7 @@ def _component(plant: sct.Plant, graph: rosgraph.RosGraph) -> dict[str, Any]:
         "transitions": [
             _transition(location, edge)
             for location in plant.locations
-            for edge in location.edges
+            for edge in edges_from(location)
             if edge.target != location or edge.updates or edge.guard or (edge.event, location) in assigning
         ],
     }

@@ -10,6 +10,7 @@ from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc, sct
 from robosc.metamodel.reflection import features, is_attribute
 from robosc.naming import written
+from robosc.recursion import deep_recursion
 from robosc.visible import visible
 
 _Kind = TypeVar("_Kind", bound=ex.Expression)
@@ -54,6 +55,11 @@ class ExpressionPrinter:
 
     def __call__(self, expression: ex.Expression) -> str:
         """The text of the expression, without parentheses around it."""
+        with deep_recursion():
+            return self.text(expression)
+
+    def text(self, expression: ex.Expression) -> str:
+        """The same, for who is printing already."""
         if isinstance(expression, ex.BinaryExpression):
             return self.binary(expression)
         if isinstance(expression, (ex.Negation, ex.UnaryMinus)):
@@ -68,7 +74,7 @@ class ExpressionPrinter:
 
     def unary(self, expression: ex.UnaryExpression) -> str:
         """An operator before its operand; two in a row are kept apart, so that `--x` is never printed."""
-        text = self(expression.operand)
+        text = self.text(expression.operand)
         bare = self.precedence(expression.operand) == ATOM
         return f"{self.symbols[type(expression)]}{text if bare else f'({text})'}"
 
@@ -84,7 +90,7 @@ class ExpressionPrinter:
         if same and isinstance(parent, ex.Implication):
             same = child is parent.right
         bare = (inner > outer and (outer, inner) not in _LOOSE_PAIRS) or same
-        return self(child) if bare else f"({self(child)})"
+        return self.text(child) if bare else f"({self.text(child)})"
 
     def precedence(self, expression: ex.Expression) -> int:
         """How tightly the text of the expression binds; a target that writes an atom with an operator says so here."""
@@ -163,7 +169,8 @@ class SctPrinter(ExpressionPrinter):
             case ex.BooleanLiteral():
                 return "true" if expression.value else "false"
             case ex.Conditional():
-                condition, then, otherwise = map(self, (expression.condition, expression.then, expression.otherwise))
+                parts = (expression.condition, expression.then, expression.otherwise)
+                condition, then, otherwise = [self.text(part) for part in parts]
                 return f"(if {condition} then {then} else {otherwise})"
         return super().atom(expression)
 

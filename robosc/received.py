@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from robosc.edges import edges_from
 from robosc.metamodel import rosgraph, sct
 from robosc.metamodel.reflection import tree
 from robosc.roles import plant_of
@@ -39,7 +40,7 @@ def locations_reading(event: sct.Event, value: sct.Input) -> list[sct.Location]:
         location
         for plant in model.plants
         for location in plant.locations
-        if any(edge.event is event and _reads(edge, value) for edge in location.edges)
+        if any(edge.event is event and _reads(edge, value) for edge in edges_from(location))
     ]
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 
+from robosc.edges import edges_of
 from robosc.metamodel import sct
 
 #: The kinds of events that run by themselves.
@@ -25,9 +26,13 @@ def event_name(event: sct.Event) -> str:
 
 def provide_number(event: sct.Event) -> int:
     """Which `provide` for its communication a data event chooses, from 1 in the order of the text; 0 for none."""
-    plant = plant_of(event)
-    edges = (edge for location in plant.locations for edge in location.edges if edge.event is event)
-    return 0 if any(edge.target.initial for edge in edges) else plant.events.index(event) + 1
+    return provide_numbers(plant_of(event))[event]
+
+
+def provide_numbers(plant: sct.Plant) -> dict[sct.Event, int]:
+    """The same for all events of a data plant."""
+    nothing = {edge.event for edge in edges_of(plant) if edge.target.initial}
+    return {event: 0 if event in nothing else number for number, event in enumerate(plant.events, start=1)}
 
 
 @dataclass(frozen=True)

@@ -155,6 +155,7 @@ OPENERS = {
     "cli",  # the null device, for streams that are closed
     "cli.format",  # the standard output
     "diagnostics.rules",  # what ships with the tool, here and in the next three
+    "memory",  # what the kernel tells of the process
     "metamodel._ecore",
     "metamodel.stubs",
     "traces.trace_test",

@@ -16,6 +16,7 @@ from robosc.diagnostics import Diagnostic, in_order
 from robosc.interfaces import Interfaces
 from robosc.metamodel.files import path_of
 from robosc.metamodel.places import place
+from robosc.recursion import deep_recursion
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -26,6 +27,7 @@ for _module in iter_modules(__path__):
     import_module(f"{__name__}.{_module.name}")
 
 
+@deep_recursion()
 def check(
     base: rsc.Base | None, known: Iterable[Diagnostic] = (), interfaces: Interfaces | None = None
 ) -> list[Diagnostic]:

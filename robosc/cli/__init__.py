@@ -17,6 +17,7 @@ from robosc import __version__
 from robosc.cli import interruption
 from robosc.cli.saying import say
 from robosc.files import noting
+from robosc.recursion import deep_recursion
 from robosc.visible import visible, visible_lines
 
 if TYPE_CHECKING:
@@ -106,7 +107,7 @@ class _Commands(click.Group):
                 # A terminal that lacks a character, or a file name that is no text, shall not end in an error.
                 stream.reconfigure(errors="backslashreplace")
         try:
-            with noting():
+            with noting(), deep_recursion():
                 return super().invoke(ctx)
         except (click.ClickException, click.exceptions.Exit, click.Abort, BrokenPipeError):
             raise

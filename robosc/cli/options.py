@@ -41,5 +41,5 @@ memory = click.option(
     metavar="MB",
     default=4096,
     show_default=True,
-    help="The most memory for the decision diagrams of synthesis, in megabytes of 2^20 bytes.",
+    help="The most memory for synthesis and generating, in megabytes of 2^20 bytes.",
 )

@@ -10,6 +10,7 @@ from threading import Event, Thread, Timer, current_thread, main_thread
 from typing import TYPE_CHECKING
 
 from robosc.cli import INTERRUPTED
+from robosc.memory import TooFewAddressesError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -70,6 +71,8 @@ def synthesizing() -> Iterator[Statistics]:
     try:
         with interruptible(), progress(lambda: _how_far(statistics)):
             yield statistics
+    except TooFewAddressesError:
+        raise
     except MemoryError as error:
         helps = "let `synthesize` or `transform` have more `--memory`, or give integers smaller ranges"
         raise MemoryError(f"{str(error) or 'out of memory'}: {helps}") from error

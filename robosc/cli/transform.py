@@ -14,6 +14,7 @@ from robosc.cli.reading import read_configuration, read_models
 from robosc.cli.report import Report
 from robosc.cli.saying import say
 from robosc.config import LOCATIONS
+from robosc.memory import bounded
 from robosc.output import write
 from robosc.supervision import supervise
 from robosc.targets import TARGETS, Target, together
@@ -103,7 +104,7 @@ def command(
         report.stop_on_errors()
         folder = Path(output or f"build/{models.sct.name}")
         files = {}
-        with together():
+        with together(), bounded(megabytes << 20, "generating"):
             for target in targets:
                 with progress(f"generating {target.name}"):
                     files[target] = target.files(

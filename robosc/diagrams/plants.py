@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from robosc.diagrams.automata import EVERY, State, Step, automaton
 from robosc.diagrams.graph import Graph
+from robosc.edges import edges_from
 from robosc.expressions import SctPrinter
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
@@ -34,7 +35,7 @@ class _Plant(SctPrinter):
         steps = [
             Step(number, numbers[edge.target], self.label(edge))
             for location, number in numbers.items()
-            for edge in location.edges
+            for edge in edges_from(location)
         ]
         return automaton(
             key,

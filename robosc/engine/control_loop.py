@@ -9,7 +9,7 @@ from robosc.engine.interpreter import Engine
 from robosc.roles import event_name, plant_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Mapping
+    from collections.abc import Callable, Collection, Mapping, Sequence
 
     from robosc.engine.state import State, Value
     from robosc.metamodel import sct
@@ -60,7 +60,7 @@ class ControlLoop:
         self._cancels = [event_name(each) for each in roles.cancels]
         self._triggers = [event_name(each) for each in roles.triggers]
         self._silent = [event_name(each) for each in roles.silent]
-        self._data = [[(event_name(each), _places(each)) for each in events] for events in roles.data]
+        self._data = [_places(events) for events in roles.data]
         self._bound = roles.settling_bound
         self._data_plants = {event_name(event): plant for event, plant in roles.data_plants.items()}
         self._topics = {
@@ -222,7 +222,7 @@ class ControlLoop:
             if chosen is not None:
                 event, places = chosen
                 location = self.engine.location(places.plant)
-                if places.targets.get(location) != location:
+                if places.target(location) != location:
                     self._run(event)
 
     def _data_locations(self) -> dict[str, int]:
@@ -231,21 +231,25 @@ class ControlLoop:
 
 @dataclass(frozen=True)
 class _Places:
-    """Where a data event leads its plant, by the location that it is in."""
+    """Where a data event leads its plant: from everywhere to one location, else by the location that it is in."""
 
     plant: sct.Plant
+    everywhere: int | None
     targets: Mapping[int, int]
 
+    def target(self, location: int) -> int | None:
+        """The location after the event in a location."""
+        return self.targets.get(location) if self.everywhere is None else self.everywhere
 
-def _places(event: sct.Event) -> _Places:
-    plant = plant_of(event)
+
+def _places(events: Sequence[sct.Event]) -> list[tuple[str, _Places]]:
+    """The data events of one plant by name."""
+    plant = plant_of(events[0])
     numbers = {location: number for number, location in enumerate(plant.locations)}
-    return _Places(
-        plant,
-        {
-            numbers[location]: numbers[edge.target]
-            for location in plant.locations
-            for edge in location.edges
-            if edge.event is event
-        },
-    )
+    everywhere = {edge.event: numbers[edge.target] for edge in plant.edges}
+    targets: dict[sct.Event, dict[int, int]] = {event: {} for event in events}
+    for location, number in numbers.items():
+        for edge in location.edges:
+            if edge.event in targets:
+                targets[edge.event][number] = numbers[edge.target]
+    return [(event_name(event), _Places(plant, everywhere.get(event), targets[event])) for event in events]

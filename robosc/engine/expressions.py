@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
+from robosc.recursion import deep_recursion
 
 #: The value of an expression, given the cells of a state and the inputs: an integer; false and true are 0 and 1.
 Function = Callable[[Sequence[int], Sequence[int]], int]
@@ -33,19 +34,23 @@ class Compiler:
 
     def __call__(self, expression: ex.Expression) -> Function:
         """The function of an expression. Raises ValueError for what no sct model holds: doubles, strings, division."""
+        with deep_recursion():
+            return self.function(expression)
+
+    def function(self, expression: ex.Expression) -> Function:
+        """The same, by a call that takes none of the C stack."""
         match expression:
             case ex.BinaryExpression():
-                return self._binary(expression, self(expression.left), self(expression.right))
+                return self._binary(expression, self.function(expression.left), self.function(expression.right))
             case ex.Negation():
-                inner = self(expression.operand)
+                inner = self.function(expression.operand)
                 return lambda cells, inputs: not inner(cells, inputs)
             case ex.UnaryMinus():
-                inner = self(expression.operand)
+                inner = self.function(expression.operand)
                 return lambda cells, inputs: -inner(cells, inputs)
             case ex.Conditional():
-                condition, then, otherwise = (
-                    self(each) for each in (expression.condition, expression.then, expression.otherwise)
-                )
+                parts = (expression.condition, expression.then, expression.otherwise)
+                condition, then, otherwise = [self.function(each) for each in parts]
                 return lambda cells, inputs: (then if condition(cells, inputs) else otherwise)(cells, inputs)
         return self._atom(expression)
 

@@ -41,13 +41,16 @@ class _Edge:
 
 @dataclass(frozen=True)
 class _Participation:
-    """How one plant takes part in an event: an edge or nothing for each location; `cell` holds the location."""
+    """How one plant takes part in an event: an edge or nothing for each location; `cell` holds the location.
+
+    One edge alone is that of every location.
+    """
 
     cell: int | None
     edges: tuple[_Edge | None, ...]
 
     def edge(self, cells: tuple[int, ...]) -> _Edge | None:
-        return self.edges[0 if self.cell is None else cells[self.cell]]
+        return self.edges[0 if self.cell is None or len(self.edges) == 1 else cells[self.cell]]
 
 
 @dataclass(frozen=True)
@@ -192,11 +195,13 @@ class Engine:
         edges: dict[sct.Event, list[_Edge | None]] = {}
         for location, number in numbers.items():
             for edge in location.edges:
-                edges.setdefault(edge.event, [None] * len(numbers))[number] = _Edge(
-                    self._function(edge.guard), tuple(map(self._update, edge.updates)), numbers[edge.target]
-                )
+                edges.setdefault(edge.event, [None] * len(numbers))[number] = self._edge(edge, numbers)
         cell = self._layout.cells.get(plant)
-        return {event: _Participation(cell, tuple(by_location)) for event, by_location in edges.items()}
+        taken = {event: _Participation(cell, tuple(by_location)) for event, by_location in edges.items()}
+        return taken | {edge.event: _Participation(cell, (self._edge(edge, numbers),)) for edge in plant.edges}
+
+    def _edge(self, edge: sct.Edge, numbers: Mapping[sct.Location, int]) -> _Edge:
+        return _Edge(self._function(edge.guard), tuple(map(self._update, edge.updates)), numbers[edge.target])
 
     def _update(self, update: sct.Update) -> _Update:
         cell = self._layout.cells[update.variable]

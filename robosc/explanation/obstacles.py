@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from robosc.edges import edges_from
 from robosc.explanation.answers import Note
 from robosc.expressions import RobotPrinter
 from robosc.metamodel import expression as ex
@@ -87,7 +88,7 @@ class Obstacles:
         return plant.locations[self._codes[plant]]
 
     def _edge(self, plant: sct.Plant) -> sct.Edge | None:
-        return next((each for each in self._here(plant).edges if each.event is self._event), None)
+        return next((each for each in edges_from(self._here(plant)) if each.event is self._event), None)
 
     def _plant(self, plant: sct.Plant) -> Note:
         here = self._here(plant)
@@ -100,7 +101,9 @@ class Obstacles:
             return Note(edge, f"`{name(plant)}` is in `{here.name}`, where {asked}", parts)
         if plant.kind in _CALLS and here.name in _PHASES:
             return Note(plant, f"`{name(plant)}` is in `{here.name}`: it {_PHASES[here.name]}")
-        others = [f"`{each.name}`" for each in plant.locations if any(own.event is self._event for own in each.edges)]
+        others = [
+            f"`{each.name}`" for each in plant.locations if any(own.event is self._event for own in edges_from(each))
+        ]
         elsewhere = (
             f"it has one in {listed(others)}" if len(others) <= _NAMED else f"{len(others)} other states have one"
         )
@@ -152,9 +155,9 @@ class Obstacles:
         by = in_words(steps, self._space.model)
         found = []
         for plant in relation.enabled_by:
-            edge = next(each for each in self._here(plant).edges if each.event is relation.event)
+            edge = next(each for each in edges_from(self._here(plant)) if each.event is relation.event)
             changed = [each for each in (plant, *plant.variables) if self._codes[each] != after[each]]
-            found += [(each, _change(each, edge, after, by)) for each in changed]
+            found += [(each, _change(each, edge, self._here(plant), after, by)) for each in changed]
         return [note for each, note in found if each in self._in_the_way] or [note for _, note in found]
 
     @cached_property
@@ -180,10 +183,9 @@ def blamed(space: Space, end: Codes) -> list[Note]:
     ]
 
 
-def _change(element: Element, edge: sct.Edge, after: Codes, by: str) -> Note:
-    """What an edge, taken by an event, makes of its plant or of a variable."""
+def _change(element: Element, edge: sct.Edge, here: sct.Location, after: Codes, by: str) -> Note:
+    """What an edge, taken from here by an event, makes of its plant or of a variable."""
     if isinstance(element, sct.Plant):
-        here: sct.Location = edge.eContainer()
         return Note(edge, f"`{name(element)}` goes from `{here.name}` to `{edge.target.name}` by {by}")
     whole = f"`{name(element.eContainer())}.{element.name}`"
     return Note(edge, f"{whole} becomes {text(value(element, after[element]))} by {by}")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from robosc.edges import edges_from
 from robosc.engine import Blocked
 from robosc.explanation.answers import Note, Possibility
 from robosc.explanation.explaining import explain_after, explain_beyond
@@ -80,7 +81,7 @@ def _never(space: Space, event: sct.Event) -> list[Note]:
 def _never_takes_part(space: Space, plant: sct.Plant, event: sct.Event) -> list[Note]:
     notes = []
     for location in plant.locations:
-        for edge in (each for each in location.edges if each.event is event):
+        for edge in (each for each in edges_from(location) if each.event is event):
             is_reached = (space.uncontrolled & space.encoding.location(location)).satisfiable()
             why = (
                 "is never reached"

@@ -17,6 +17,7 @@ from robosc.language.scopes import File
 from robosc.language.text import decode
 from robosc.metamodel import robosc as rsc
 from robosc.metamodel.files import set_path
+from robosc.recursion import deep_recursion
 from robosc.resources import locate
 
 if TYPE_CHECKING:
@@ -41,6 +42,7 @@ class Reading:
     texts: dict[str, str] = field(default_factory=dict)
 
 
+@deep_recursion()
 def read(path: Path | str, library_paths: Iterable[Path | str] = (), interfaces: Interfaces | None = None) -> Reading:
     """Reads a robot or a library and all that it imports, and links its names.
 

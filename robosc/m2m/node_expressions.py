@@ -52,15 +52,24 @@ class NodeExpressions:
 
         `data` says what `value` with its segments means where the expression stands.
         """
+        return self.translated(expression, within, data)
+
+    def translated(
+        self,
+        expression: ex.Expression,
+        within: Instance | None,
+        data: Callable[[Sequence[robosc.AccessSegment]], ex.Expression] | None = None,
+    ) -> ex.Expression:
+        """The same, by a call that takes none of the C stack."""
         match expression:
             case robosc.Access():
                 return self._access(expression, within, data)
             case ex.BooleanLiteral() | ex.IntegerLiteral() | ex.DoubleLiteral() | ex.StringLiteral():
                 return type(expression)(value=expression.value)  # type: ignore[arg-type]
             case ex.UnaryExpression():
-                return type(expression)(operand=self(expression.operand, within, data))
+                return type(expression)(operand=self.translated(expression.operand, within, data))
         assert isinstance(expression, ex.BinaryExpression)
-        left, right = self(expression.left, within, data), self(expression.right, within, data)
+        left, right = self.translated(expression.left, within, data), self.translated(expression.right, within, data)
         if isinstance(expression, (*_NUMERIC, *_COMPARISONS, ex.Division)):
             double = isinstance(expression, ex.Division) or is_double(left) or is_double(right)
             if double:

@@ -16,6 +16,7 @@ from robosc.metamodel import robosc, rosgraph, sct
 from robosc.metamodel.files import derive_paths
 from robosc.naming import Names
 from robosc.needed import transitions
+from robosc.recursion import deep_recursion
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -42,6 +43,7 @@ class _Part(NamedTuple):
     part: Part
 
 
+@deep_recursion()
 def transform(trace: Trace, interfaces: Interfaces | None = None) -> rosgraph.RosGraph:
     """The ROS graph of the robot whose transformation to the sct model left this trace.
 

@@ -14,11 +14,13 @@ from robosc.metamodel import robosc, sct
 from robosc.metamodel.files import derive_paths
 from robosc.naming import Names
 from robosc.needed import Data, needed, transitions
+from robosc.recursion import deep_recursion
 
 #: What comes from outside, or must always be possible: a component elsewhere than in the right state ignores it.
 _NEVER_BLOCKED = (sct.EventKind.response, sct.EventKind.error, sct.EventKind.feedback, sct.EventKind.cancel)
 
 
+@deep_recursion()
 def transform(robot: robosc.Robot) -> tuple[sct.SupervisoryControlModel, Trace]:
     """The plants and requirements of a robot that the checks accept, and what became of what.
 
@@ -287,10 +289,9 @@ class _Transformation:
             self.trace.provided[statement] = location
             self.trace.origins[location] = statement
         steps.append((_data_event(plant, "c_none", plant.source), nothing, None))
-        for location in plant.locations:
-            for event, target, provided in steps:
-                edge = _edge(location, event, target)
-                edge.guard = self.none_holds(statements) if provided is None else self.holds(provided)
+        for event, target, provided in steps:
+            edge = _edge(plant, event, target)
+            edge.guard = self.none_holds(statements) if provided is None else self.holds(provided)
 
     def holds(self, statement: robosc.ProvideStatement) -> ex.Expression | None:
         return None if statement.condition is None else self.expressions.condition(statement.condition, None)
@@ -368,9 +369,10 @@ def _location(plant: sct.Plant, name: str, *, initial: bool = False, marked: boo
     return location
 
 
-def _edge(location: sct.Location, event: sct.Event, target: sct.Location) -> sct.Edge:
+def _edge(leaving: sct.Location | sct.Plant, event: sct.Event, target: sct.Location) -> sct.Edge:
+    """An edge that leaves a location, or each of a plant's."""
     edge = sct.Edge(event=event, target=target)
-    location.edges.append(edge)
+    leaving.edges.append(edge)
     return edge
 
 

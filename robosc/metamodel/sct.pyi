@@ -22,7 +22,8 @@ class Plant(expression.NamedElement):
     inputs: MutableSequence[Input]
     variables: MutableSequence[DiscreteVariable]
     locations: MutableSequence[Location]
-    def __init__(self, *, kind: PlantKind | None = ..., origin: str | None = ..., topic: str | None = ..., events: Iterable[Event] = ..., inputs: Iterable[Input] = ..., variables: Iterable[DiscreteVariable] = ..., locations: Iterable[Location] = ..., name: str | None = ..., source: str | None = ...) -> None: ...
+    edges: MutableSequence[Edge]
+    def __init__(self, *, kind: PlantKind | None = ..., origin: str | None = ..., topic: str | None = ..., events: Iterable[Event] = ..., inputs: Iterable[Input] = ..., variables: Iterable[DiscreteVariable] = ..., locations: Iterable[Location] = ..., edges: Iterable[Edge] = ..., name: str | None = ..., source: str | None = ...) -> None: ...
 
 class PlantKind:
     """message, service, action: communication (thesis listings 5.1 to 5.3); behaviour: a component's automaton; data: the provide statements of one communication (listing 5.4)."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from typing import TYPE_CHECKING, Any
 
+from robosc.edges import edges_of
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 from robosc.metamodel.expression_types import ExpressionTypes, declared_type
@@ -86,20 +87,28 @@ def _plant(plant: sct.Plant, types: ExpressionTypes) -> Iterator[Fault]:
                 yield event, f"the input '{carried.name}' is another plant's"
     for variable in plant.variables:
         yield from _initial(variable, types)
+    everywhere: set[sct.Event] = set()
+    yield from _twice(plant, f"plant '{plant.name}' has in every location", everywhere)
     for location in plant.locations:
-        seen = set()
-        for edge in location.edges:
-            if edge.event in seen:
-                yield edge, f"location '{location.name}' has two edges for '{edge.event.name}'"
-            seen.add(edge.event)
-            if edge.target.eContainer() is not plant:
-                yield edge, f"the target '{edge.target.name}' is another plant's location"
-            yield from _updates(edge, plant, types)
+        if location.edges:
+            yield from _twice(location, f"location '{location.name}' has", set(everywhere))
+    for edge in edges_of(plant):
+        if edge.target.eContainer() is not plant:
+            yield edge, f"the target '{edge.target.name}' is another plant's location"
+        yield from _updates(edge, plant, types)
+
+
+def _twice(leaving: sct.Location | sct.Plant, where: str, seen: set[sct.Event]) -> Iterator[Fault]:
+    """The edges for events that an edge before has, or that are `seen` already; adds to these."""
+    for edge in leaving.edges:
+        if edge.event in seen:
+            yield edge, f"{where} two edges for '{edge.event.name}'"
+        seen.add(edge.event)
 
 
 def _unused(model: sct.SupervisoryControlModel) -> Iterator[Fault]:
     """The events on no edge: whether they can happen, or never, nobody could say."""
-    used = {edge.event for plant in model.plants for location in plant.locations for edge in location.edges}
+    used = {edge.event for plant in model.plants for edge in edges_of(plant)}
     for plant in model.plants:
         for event in plant.events:
             if event not in used:

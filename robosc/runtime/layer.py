@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.definition import definition_text
+from robosc.edges import edges_from, edges_of
 from robosc.engine import ControlLoop, Hooks
 from robosc.metamodel import rosgraph, sct
 from robosc.roles import Roles, event_name, plant_of
@@ -135,11 +136,11 @@ class Layer:
 
     def _missing(self, plant: sct.Plant, event: sct.Event) -> list[str]:
         """The location of a plant that takes part in the event, where it has no transition for it."""
-        if not any(edge.event == event for location in plant.locations for edge in location.edges):
+        if not any(edge.event == event for edge in edges_of(plant)):
             return []
         here = next(each for each in plant.locations if self._data.is_in(each))
         possible = any(
-            edge.event == event and (edge.guard is None or self._data.value(edge.guard)) for edge in here.edges
+            edge.event == event and (edge.guard is None or self._data.value(edge.guard)) for edge in edges_from(here)
         )
         return [] if possible else [f"{plant.origin or plant.name}.{here.name}"]
 

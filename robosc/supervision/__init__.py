@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from robosc.diagnostics import Diagnostic, ModelError, Severity, has_errors
 from robosc.metamodel.places import place
+from robosc.recursion import deep_recursion
 from robosc.supervision.findings import findings_of
 from robosc.supervision.wording import blocking, forbid, in_words, trouble_in_words
 from robosc.synthesis import MEMORY, Statistics, Synthesis, synthesize
@@ -42,6 +43,7 @@ class EmptySupervisorError(ModelError):
         super().__init__([Diagnostic(file, span, Severity.ERROR, "empty-supervisor", message, hint)])
 
 
+@deep_recursion()
 def supervise(
     model: sct.SupervisoryControlModel, *, memory: int = MEMORY, statistics: Statistics | None = None
 ) -> Supervision:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from robosc.diagnostics import Diagnostic, Severity, in_order
+from robosc.edges import edges_from, edges_of
 from robosc.metamodel import sct
 from robosc.metamodel.places import place
 from robosc.roles import plant_of
@@ -106,7 +107,7 @@ class _Findings:
     def provide_gap(self, observed: ProvideGap) -> Diagnostic:
         plant = plant_of(observed.event)
         done = _DONE.get(plant.kind, "sent")
-        edges = [edge for location in observed.data.locations for edge in location.edges]
+        edges = edges_of(observed.data)
         read = [each for edge in edges for each in referenced(edge.guard)]
         return _finding(
             observed.data,
@@ -175,7 +176,7 @@ class _Findings:
     def _asking(self, event: sct.Event) -> Iterable[Element]:
         """What decides whether an event is allowed: the plants that take part in it and what requirements read."""
         for plant in self._model.plants:
-            if any(edge.event is event for location in plant.locations for edge in location.edges):
+            if any(edge.event is event for edge in edges_of(plant)):
                 yield plant
         for requirement in self._requirements(event):
             yield from referenced(requirement.condition)
@@ -193,8 +194,8 @@ def _blamed(requirements: Sequence[sct.Requirement], event: sct.Event) -> Any:
 def _guard(event: sct.Event) -> str:
     """Why a transition is never taken that no requirement restricts."""
     plant = plant_of(event)
-    locations = [each for each in plant.locations if any(edge.event is event for edge in each.edges)]
-    guarded = any(edge.guard is not None for each in locations for edge in each.edges if edge.event is event)
+    locations = [each for each in plant.locations if any(edge.event is event for edge in edges_from(each))]
+    guarded = any(edge.guard is not None for each in locations for edge in edges_from(each) if edge.event is event)
     if len(locations) == len(plant.locations):
         return "its guard never holds"
     state = f"`{name(plant)}.{locations[0].name}`"
@@ -215,7 +216,7 @@ def _entered(event: sct.Event) -> Iterable[tuple[sct.Plant, sct.Location]]:
         edge.target
         for plant in plants
         for location in plant.locations
-        for edge in location.edges
+        for edge in edges_from(location)
         if plant.kind == sct.PlantKind.behaviour and edge.event is event and edge.target is not location
     ]
     return [(each.eContainer(), each) for each in dict.fromkeys(targets)]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.diagnostics import Span
+from robosc.edges import edges_from
 from robosc.metamodel import sct
 from robosc.roles import event_name, plant_of, provide_number
 from robosc.synthesis.decoding import text
@@ -74,7 +75,7 @@ def change(event: sct.Event) -> str:
         return f"{name(plant)} is ready to be used again"
     steps: dict[sct.Event, dict[str, None]] = {}
     for location in plant.locations:
-        for edge in location.edges:
+        for edge in edges_from(location):
             steps.setdefault(edge.event, {})[f"{location.name} to {edge.target.name}"] = None
     own = steps.get(event, {})
     alike = any(each.kind == sct.EventKind.tau and steps[each] == own for each in steps if each is not event)

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from robosc.diagnostics import Diagnostic, ModelError, Severity
 from robosc.metamodel import sct
 from robosc.metamodel.places import place
+from robosc.recursion import deep_recursion
 from robosc.roles import event_name
 from robosc.synthesis.bdd import Diagrams, with_enough_memory
 from robosc.synthesis.encoding import Encoding, Layout
@@ -61,6 +62,7 @@ class Synthesis:
         return sum(self.statistics.seconds.values())
 
 
+@deep_recursion()
 def synthesize(
     model: sct.SupervisoryControlModel, *, memory: int = MEMORY, statistics: Statistics | None = None
 ) -> Synthesis:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, TypeAlias
 from oxidd.bcdd import BCDDFunction, BCDDManager
 from oxidd.util import BooleanOperator, DDMemoryError
 
+from robosc.memory import TooFewAddressesError, address_space, bounded
 from robosc.synthesis.statistics import Statistics
 
 if TYPE_CHECKING:
@@ -21,6 +22,8 @@ Diagram: TypeAlias = BCDDFunction
 
 #: What a node and its share of the operation cache take, measured.
 _BYTES_PER_NODE = 40
+#: The addresses that the library takes beside the nodes, most of them for the stack of its one thread, measured.
+_LIBRARY = (1 << 30) + (192 << 20)
 _FIRST_CAPACITY = 1 << 18
 _GROWTH = 4
 #: The share of the room at which the library would collect garbage, a little less, and the one that may be in use then.
@@ -33,6 +36,7 @@ class Diagrams:
 
     def __init__(self, levels: int, capacity: int, statistics: Statistics | None = None) -> None:
         """Room for `capacity` nodes; an operation that needs more raises DDMemoryError. `statistics` are kept."""
+        _refuse_where_addresses_lack(capacity)
         self._manager = BCDDManager(capacity, capacity, 1)
         self._manager.add_vars(levels)
         self._capacity = capacity
@@ -93,16 +97,27 @@ def split(diagram: Diagram, level: int) -> tuple[Diagram, Diagram]:
     return cofactors
 
 
+def _refuse_where_addresses_lack(capacity: int) -> None:
+    """The library would end the process."""
+    wanted, left = _LIBRARY + capacity * _BYTES_PER_NODE, address_space()
+    if left is not None and left < wanted:
+        raise TooFewAddressesError(
+            f"decision diagrams need {wanted >> 20} MiB of addresses, and `ulimit -v` leaves {max(left, 0) >> 20}"
+        )
+
+
 def with_enough_memory(run: Callable[[int], T], memory: int) -> T:
     """`run` with room for a number of nodes, again from the start with more room each time that it did not suffice.
 
-    `memory` bounds the bytes that the nodes may take; raises MemoryError beyond it.
+    `memory` bounds the bytes that the nodes may take, and those of the whole process; raises MemoryError beyond it, and
+    where the system allows too few addresses.
     """
     most = memory // _BYTES_PER_NODE
     capacity = min(_FIRST_CAPACITY, most)
     while True:
         try:
-            return run(capacity)
+            with bounded(memory, "synthesis"):
+                return run(capacity)
         except DDMemoryError:
             if capacity == most:
                 raise MemoryError(f"synthesis needs more than {memory >> 20} MiB for its decision diagrams") from None

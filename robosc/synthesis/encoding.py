@@ -14,6 +14,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, TypeAlias
 
 from robosc.diagnostics import Diagnostic, ModelError, Severity
+from robosc.edges import edges_of
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 from robosc.metamodel.places import place
@@ -193,6 +194,11 @@ class Encoding:
         """Where the location's plant is in it."""
         return self.has_code(location.eContainer(), self.location_code(location))
 
+    def source(self, edge: sct.Edge) -> Diagram:
+        """Where the edge's plant is in a location that the edge leaves."""
+        around = edge.eContainer()
+        return self.in_domain(around) if isinstance(around, sct.Plant) else self.location(around)
+
     def next_location(self, location: sct.Location) -> Diagram:
         """Where the location's plant will be in it."""
         return self.becomes(location.eContainer(), arithmetic.constant(self.diagrams, self.location_code(location)))
@@ -352,14 +358,13 @@ def _couplings(model: sct.SupervisoryControlModel, index: Mapping[Element, int])
     """Which elements meet in one relation: for each event, all that its edges and requirements touch."""
     touched: dict[sct.Event, dict[Element, None]] = {}
     for plant in model.plants:
-        for location in plant.locations:
-            for edge in location.edges:
-                own = touched.setdefault(edge.event, {})
-                own[plant] = None
-                own.update(dict.fromkeys(referenced(edge.guard)))
-                for update in edge.updates:
-                    own[update.variable] = None
-                    own.update(dict.fromkeys(referenced(update.value)))
+        for edge in edges_of(plant):
+            own = touched.setdefault(edge.event, {})
+            own[plant] = None
+            own.update(dict.fromkeys(referenced(edge.guard)))
+            for update in edge.updates:
+                own[update.variable] = None
+                own.update(dict.fromkeys(referenced(update.value)))
     for requirement in model.requirements:
         touched.setdefault(requirement.event, {}).update(dict.fromkeys(referenced(requirement.condition)))
     return [sorted(each, key=index.__getitem__) for each in touched.values()]

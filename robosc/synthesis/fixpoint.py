@@ -12,16 +12,16 @@ modeled as extended finite automata, T-ASE 2011, on reachable states only.
 from __future__ import annotations
 
 import sys
-from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import count, groupby
 from typing import TYPE_CHECKING
 
+from robosc.recursion import deep_recursion
 from robosc.synthesis.bdd import Diagram, Diagrams, split
 from robosc.synthesis.leaps import Leaps, hopeless
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Sequence
 
     from robosc.synthesis.encoding import Encoding
     from robosc.synthesis.relation import Step
@@ -59,7 +59,7 @@ class _Saturation:
 
     def closure(self, states: Diagram, within: Diagram) -> Diagram:
         """The least set that holds `states` and whatever the steps add within the bound."""
-        with _recursion(self._diagrams.levels + len(self._groups)):
+        with deep_recursion(2 * (self._diagrams.levels + len(self._groups)) + 1000):
             return self._close(states, within, 0)
 
     def _close(self, states: Diagram, within: Diagram, group: int) -> Diagram:
@@ -140,14 +140,3 @@ def supervise(encoding: Encoding, steps: Sequence[Step], uncontrollable: Sequenc
 def _level(diagram: Diagram) -> int:
     level = diagram.node_level()
     return sys.maxsize if level is None else level
-
-
-@contextmanager
-def _recursion(depth: int) -> Iterator[None]:
-    """Room for a recursion over all levels."""
-    limit = sys.getrecursionlimit()
-    sys.setrecursionlimit(max(limit, 2 * depth + 1000))
-    try:
-        yield
-    finally:
-        sys.setrecursionlimit(limit)

@@ -8,6 +8,7 @@ from functools import cached_property
 from itertools import combinations
 from typing import TYPE_CHECKING
 
+from robosc.edges import edges_of
 from robosc.metamodel import sct
 from robosc.roles import Roles, plant_of
 from robosc.synthesis.decoding import Value, pick, value
@@ -384,5 +385,4 @@ def forbidding(relation: EventRelation, states: Diagram) -> tuple[sct.Requiremen
 
 def _provides_something(plant: sct.Plant, event: sct.Event) -> bool:
     """Whether a data event chooses data: the initial location stands for none."""
-    edges = (edge for location in plant.locations for edge in location.edges if edge.event is event)
-    return not any(edge.target.initial for edge in edges)
+    return not any(edge.target.initial for edge in edges_of(plant) if edge.event is event)

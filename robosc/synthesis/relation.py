@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from robosc.edges import edges_of
 from robosc.metamodel import sct
 from robosc.synthesis import arithmetic
 from robosc.synthesis.bdd import Diagram, and_exists
@@ -65,7 +66,7 @@ class EventRelation:
         self._edges = edges
         changed = [each for edges in self._edges for each in _changed(edges)]
         self.changed = tuple(each for each in changed if encoding.layout.domains[each].size > 1)
-        self.enabled_by = {edges[0].eContainer().eContainer(): self._enabled(edges) for edges in self._edges}
+        self.enabled_by = {edges[0].target.eContainer(): self._enabled(edges) for edges in self._edges}
         self.enabled = self._conjunction(self.enabled_by.values())
         self.asked = {each: self._asked(each) for each in requirements}
         self.requirement = self._conjunction(self.asked.values())
@@ -162,7 +163,7 @@ class EventRelation:
     def _enabled(self, edges: Sequence[sct.Edge]) -> Diagram:
         result = self._encoding.diagrams.false
         for edge in edges:
-            result |= self._encoding.location(edge.eContainer()) & self._encoding.holds(edge.guard)
+            result |= self._encoding.source(edge) & self._encoding.holds(edge.guard)
         return result
 
     def _moves(self, edges: Sequence[sct.Edge]) -> Diagram:
@@ -172,7 +173,7 @@ class EventRelation:
         changed = _changed(edges)
         for edge in edges:
             values = {update.variable: update.value for update in edge.updates}
-            move = encoding.location(edge.eContainer()) & encoding.holds(edge.guard)
+            move = encoding.source(edge) & encoding.holds(edge.guard)
             for element in changed:
                 if element in values:
                     assert isinstance(element, sct.DiscreteVariable)
@@ -190,9 +191,8 @@ def event_relations(model: sct.SupervisoryControlModel, encoding: Encoding) -> l
     edges: dict[sct.Event, list[list[sct.Edge]]] = {}
     for plant in model.plants:
         own: dict[sct.Event, list[sct.Edge]] = {}
-        for location in plant.locations:
-            for edge in location.edges:
-                own.setdefault(edge.event, []).append(edge)
+        for edge in edges_of(plant):
+            own.setdefault(edge.event, []).append(edge)
         for event, each in own.items():
             edges.setdefault(event, []).append(each)
     requirements: dict[sct.Event, list[sct.Requirement]] = {}

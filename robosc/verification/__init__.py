@@ -9,6 +9,7 @@ from dataclasses import replace
 from time import perf_counter
 from typing import TYPE_CHECKING
 
+from robosc.recursion import deep_recursion
 from robosc.synthesis.bdd import Diagrams, with_enough_memory
 from robosc.synthesis.encoding import Encoding, Layout
 from robosc.verification.properties import properties
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
 __all__ = ["Outcome", "Verdict", "verify", "verify_system"]
 
 
+@deep_recursion()
 def verify(models: Models, configuration: Configuration) -> list[Verdict]:
     """The verdicts on a model with its supervisor, and on the C and the CIF that the configuration makes of it.
 
@@ -32,6 +34,7 @@ def verify(models: Models, configuration: Configuration) -> list[Verdict]:
     return [*verify_system(models.sct), *validate(models, configuration)]
 
 
+@deep_recursion()
 def verify_system(model: sct.SupervisoryControlModel, *, memory: int = 4 << 30) -> list[Verdict]:
     """The verdicts on a model under its supervisor, whatever it was made from, the model left as it is.
 

@@ -11,6 +11,7 @@ from benchmarks.walk_families import FAMILIES, write
 from robosc.checks import check
 from robosc.diagnostics import ModelError
 from robosc.language import read
+from robosc.metamodel import sct
 
 SIZES = (30, 120)
 #: What grows with n·log n, and what is small beside what is done once, may lie a little above 1.
@@ -71,3 +72,27 @@ def test_memory_for_namespaces(tmp_path):
     path = write("namespaces", 4000, tmp_path)
     reading(path)
     assert memory(reading, path) < 50 * path.stat().st_size
+
+
+def generating(path):
+    robot = robosc.load(path)
+    models = robosc.Models(robosc.to_sct(robot), robosc.to_rosgraph(robot), robot)
+    robosc.synthesize(models.sct)
+    robosc.generate("supervisor", models)
+    return models
+
+
+@pytest.mark.parametrize("family", ["provides", "operators"])
+def test_generating(family, tmp_path):
+    counts = []
+    for number in SIZES:
+        (tmp_path / str(number)).mkdir()
+        path = write(family, number, tmp_path / str(number))
+        generating(path)
+        counts.append(calls(generating, path)[0])
+    assert exponent(*counts) < MOST, counts
+
+
+def test_data_plants_are_as_long_as_the_text(tmp_path):
+    model = robosc.to_sct(robosc.load(write("provides", 50, tmp_path)))
+    assert sum(1 for each in model.eAllContents() if isinstance(each, sct.Edge)) < 60

@@ -1,5 +1,6 @@
 """What a robot model means as plants and requirements."""
 
+from robosc.edges import edges_from
 from robosc.expressions import SctPrinter
 from robosc.metamodel import expression as ex
 
@@ -49,7 +50,7 @@ def edges(model, name):
     return {
         (location.name, edge.event.name, edge.target.name)
         for location in plant(model, name).locations
-        for edge in location.edges
+        for edge in edges_from(location)
     }
 
 
@@ -80,7 +81,7 @@ def test_a_component_never_blocks_what_it_hears_of_elsewhere(to_sct):
     loops = {
         (location.name, edge.event)
         for location in plant(model, "component_Sensor").locations
-        for edge in location.edges
+        for edge in edges_from(location)
         if edge.target is location
     }
     assert loops == {("clear", far), ("blocked", near)}
@@ -214,7 +215,7 @@ def test_provided_data_becomes_a_data_plant(to_sct):
         for here in ("none", "d1", "d2")
         for event, there in (("c_d1", "d1"), ("c_d2", "d2"), ("c_none", "none"))
     }
-    guards = {edge.event.name: edge.guard for edge in plant(model, "data_go").locations[0].edges}
+    guards = {edge.event.name: edge.guard for edge in edges_from(plant(model, "data_go").locations[0])}
     assert {name: show(guard) if guard else None for name, guard in guards.items()} == {
         "c_d1": "component_Sensor.clear",
         "c_d2": None,

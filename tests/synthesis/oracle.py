@@ -5,6 +5,7 @@ from functools import cached_property
 from itertools import product
 from typing import Any
 
+from robosc.edges import edges_from, edges_of
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 
@@ -94,11 +95,11 @@ class Oracle:
         """The edges that the plants take together; None where the event is not enabled."""
         taken = []
         for plant in self.model.plants:
-            if not any(edge.event is event for location in plant.locations for edge in location.edges):
+            if not any(edge.event is event for edge in edges_of(plant)):
                 continue
             possible = [
                 edge
-                for edge in state[self.places[plant]].edges
+                for edge in edges_from(state[self.places[plant]])
                 if edge.event is event and self.value(edge.guard, state, {})
             ]
             if not possible:

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import assume, event, given
 from hypothesis import strategies as st
 
+from robosc.edges import edges_from
 from robosc.metamodel import sct
 from robosc.roles import event_name, plant_of
 from robosc.synthesis import Observations, observations, synthesize
@@ -101,7 +102,7 @@ class Definitions:
             for state in self.allowed(each)
             if not any(
                 self.oracle.value(edge.guard, state, {})
-                for edge in state[self.oracle.places[data]].edges
+                for edge in edges_from(state[self.oracle.places[data]])
                 if not edge.target.initial
             )
         }
@@ -136,7 +137,7 @@ class Definitions:
                 for p in self.oracle.model.plants
                 if p is not plant_of(each)
                 for location in p.locations
-                for edge in location.edges
+                for edge in edges_from(location)
             )
         ]
 

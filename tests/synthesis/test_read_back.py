@@ -3,6 +3,7 @@
 from hypothesis import event, given
 
 from robosc.config import Configuration
+from robosc.edges import edges_from
 from robosc.m2t import cif
 from robosc.metamodel import sct
 from robosc.metamodel.reflection import tree
@@ -36,7 +37,7 @@ def read(text: str) -> sct.SupervisoryControlModel:
     model = rebuild(text)
     for plant in model.plants:
         for location in plant.locations:
-            for edge in location.edges:
+            for edge in edges_from(location):
                 for _, each in (found for update in edge.updates for found in tree(update)):
                     if isinstance(each, sct.InputReference) and each.input not in edge.event.inputs:
                         edge.event.inputs.append(each.input)

@@ -15,6 +15,7 @@ from jsonschema import Draft202012Validator
 
 import robosc
 from robosc import config
+from robosc.edges import edges_from
 from robosc.engine import Engine
 from robosc.interfaces import Interfaces
 from robosc.metamodel import expression as ex
@@ -236,7 +237,7 @@ def test_data_that_changes_on_its_way_is_noticed(case: Case, monkeypatch: pytest
 def test_a_node_that_forgets_is_noticed(case: Case) -> None:
     lidar = next(each for each in case.graph.model.plants if each.origin == "Lidar" and each.variables)
     for location in lidar.locations:
-        for edge in location.edges:
+        for edge in edges_from(location):
             edge.updates.clear()
     with pytest.raises(TraceError, match=r"does not do what the trace says|but the node did"):
         case.play()

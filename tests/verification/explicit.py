@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
 
+from robosc.edges import edges_from
 from robosc.metamodel import sct
 from robosc.roles import event_name, plant_of
 from robosc.synthesis import TraceStep
@@ -103,7 +104,7 @@ class Explicit:
 
     def _ready(self, event: sct.Event, plant: sct.Plant, state: State) -> bool:
         location = state[self.oracle.places[plant]]
-        return any(each.event is event and self.oracle.value(each.guard, state, {}) for each in location.edges)
+        return any(each.event is event and self.oracle.value(each.guard, state, {}) for each in edges_from(location))
 
     def broken(self, requirement: sct.Requirement) -> set[State]:
         wanted = requirement.kind == sct.RequirementKind.needs

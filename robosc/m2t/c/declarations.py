@@ -9,7 +9,7 @@ from robosc.m2t.c.comments import comment, comment_text, string_literal
 from robosc.m2t.c.types import index_type, interval_of, number, type_name
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
-from robosc.roles import event_name, plant_of, provide_number
+from robosc.roles import event_name, plant_of, provide_numbers
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -24,6 +24,7 @@ class Declarations:
 
     def __init__(self, context: Context) -> None:
         self._context = context
+        self._numbers: dict[sct.Plant, dict[sct.Event, int]] = {}
 
     def prepared(self) -> dict[str, Any]:
         """The values that the templates put in."""
@@ -110,7 +111,10 @@ class Declarations:
 
     def _data(self, event: sct.Event) -> str:
         """Which data it is then sent with: that of a statement of the model, by its number and condition."""
-        number = provide_number(event)
+        plant = plant_of(event)
+        if plant not in self._numbers:
+            self._numbers[plant] = provide_numbers(plant)
+        number = self._numbers[plant][event]
         if not number:
             return "without data"
         edges = self._context.table.edges[event].get(plant_of(event), {})

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from robosc.expressions import ATOM
 from robosc.m2t.c.expressions import CPrinter
-from robosc.m2t.c.guards import Edges, within
+from robosc.m2t.c.guards import Edges, Everywhere, within
 from robosc.m2t.c.nodes import All
 from robosc.m2t.c.types import interval_of, number, signed, type_name
 from robosc.metamodel import expression as ex
@@ -60,6 +60,8 @@ class Effects:
 
     def _units(self, plant: sct.Plant, edges: Edges) -> Iterable[_Unit]:
         """Updates that are the same on all edges, one by one; else by location."""
+        if isinstance(edges, Everywhere) and not edges.edge.updates:
+            return []
         printer = CPrinter(self.names, self.ranges)
         groups: dict[tuple[tuple[str, str], ...], tuple[list[sct.Location], list[sct.Update]]] = {}
         for location, edge in edges.items():
@@ -129,6 +131,8 @@ class Effects:
         """The change of location. Staying counts as going to the same location, so that one statement often does."""
         if len(plant.locations) == 1:
             return []
+        if isinstance(edges, Everywhere):
+            return [f"state->{self.names.member(plant)} = {self.names.enumerator(edges.edge.target)};"]
         targets: dict[sct.Location, list[sct.Location]] = {}
         for location, edge in edges.items():
             targets.setdefault(edge.target, []).append(location)

@@ -9,6 +9,7 @@ from robosc.m2t.c.nodes import COMPARISONS, Junction, Not, children_of, is_condi
 from robosc.m2t.c.types import Interval, index_type, number, signed, type_name
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
+from robosc.recursion import deep_recursion
 
 if TYPE_CHECKING:
     from collections.abc import Collection
@@ -74,6 +75,11 @@ class CPrinter(ExpressionPrinter):
 
     def __call__(self, node: Node) -> str:
         """The text, without parentheses around it."""
+        with deep_recursion():
+            return self.text(node)
+
+    def text(self, node: Node) -> str:
+        """The same, for who is printing already."""
         node = self.ranges.reduced(node)
         constant = self.constant(node)
         if constant is not None:
@@ -84,12 +90,12 @@ class CPrinter(ExpressionPrinter):
         if joined is not None:
             return f" {'&&' if joined.neutral else '||'} ".join(self.terms(joined))
         assert isinstance(node, ex.Expression)
-        return super().__call__(node)
+        return super().text(node)
 
     def terms(self, joined: Junction) -> list[str]:
         """The conditions of a conjunction or disjunction, each once, in the parentheses that they need in it."""
         bound = PRECEDENCE[ex.Conjunction]
-        texts = [self(part) if self.precedence(part) > bound else f"({self(part)})" for part in joined.parts]
+        texts = [self.text(part) if self.precedence(part) > bound else f"({self.text(part)})" for part in joined.parts]
         return list(dict.fromkeys(texts))
 
     def constant(self, node: Node) -> str | None:
@@ -126,7 +132,7 @@ class CPrinter(ExpressionPrinter):
         if isinstance(inner, sct.LocationReference):
             others = [each for each in inner.location.eContainer().locations if each is not inner.location]
             return self.location(others[0], "==") if len(others) == 1 else self.location(inner.location, "!=")
-        return f"!{self(inner)}" if self.precedence(inner) == ATOM else f"!({self(inner)})"
+        return f"!{self.text(inner)}" if self.precedence(inner) == ATOM else f"!({self.text(inner)})"
 
     def unary(self, expression: ex.UnaryExpression) -> str:
         """A minus, in a type that holds the result."""
@@ -136,12 +142,12 @@ class CPrinter(ExpressionPrinter):
         """An operand: integers in the type in which the parent computes, conditions in parentheses."""
         if isinstance(parent, (*_ARITHMETIC, *COMPARISONS)) and enumeration_of(child) is None:
             if is_condition(child):
-                text = self(child)
+                text = self.text(child)
                 return text if self.precedence(child) == ATOM else f"({text})"
             if working_type(parent, self.ranges) != "int":
                 return self.converted(parent, child)
             if isinstance(parent, COMPARISONS) and self._beside_unsigned(parent, child):
-                return f"{self(child)}U"
+                return f"{self.text(child)}U"
         return super().operand(parent, child, chain=chain)
 
     def _beside_unsigned(self, parent: ex.BinaryExpression, child: ex.Expression) -> bool:
@@ -158,7 +164,7 @@ class CPrinter(ExpressionPrinter):
     def converted(self, parent: ex.Expression, child: ex.Expression) -> str:
         """An operand of arithmetic as a unary expression."""
         wanted = working_type(parent, self.ranges)
-        text = self(child)
+        text = self.text(child)
         constant = self.ranges(child).single is not None
         kept = constant or wanted == "int" or self.type(child) == wanted
         bare = self.precedence(child) == ATOM
@@ -201,19 +207,21 @@ class CPrinter(ExpressionPrinter):
 
     def choice(self, expression: ex.Conditional) -> str:
         """A conditional expression, both of its values of one type."""
-        condition = self(expression.condition)
+        condition = self.text(expression.condition)
         if self.precedence(expression.condition) <= _CONDITIONAL:
             condition = f"({condition})"
         branches = (expression.then, expression.otherwise)
         if is_condition(expression):
-            values = [self(each) if self.precedence(each) > _CONDITIONAL else f"({self(each)})" for each in branches]
+            values = [
+                self.text(each) if self.precedence(each) > _CONDITIONAL else f"({self.text(each)})" for each in branches
+            ]
         else:
             values = [self.cast(self.type(expression), each) for each in branches]
         return f"{condition} ? {values[0]} : {values[1]}"
 
     def cast(self, kind: str, node: ex.Expression) -> str:
         """The value converted to a type, unless it is of that type."""
-        text = self(node)
+        text = self.text(node)
         if self.type(node) == kind:
             return text if self.precedence(node) > _CONDITIONAL else f"({text})"
         return f"({kind}){text if self.precedence(node) == ATOM else f'({text})'}"

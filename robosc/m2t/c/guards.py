@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import PurePath
 from typing import TYPE_CHECKING
 
@@ -10,13 +11,33 @@ from robosc.metamodel import sct
 from robosc.metamodel.places import parse_source
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Sequence
+    from collections.abc import Collection, Iterator, Sequence
 
     from robosc.m2t.c.expressions import CPrinter
     from robosc.metamodel import expression as ex
 
 #: The edges of one event in one plant, by the location they start from.
-Edges = dict[sct.Location, sct.Edge]
+Edges = Mapping[sct.Location, sct.Edge]
+
+
+class Everywhere(Mapping[sct.Location, sct.Edge]):
+    """The one edge that an event has in every location of a plant."""
+
+    def __init__(self, plant: sct.Plant, edge: sct.Edge) -> None:
+        self.plant = plant
+        self.edge = edge
+
+    def __getitem__(self, location: sct.Location) -> sct.Edge:
+        """The edge."""
+        return self.edge
+
+    def __iter__(self) -> Iterator[sct.Location]:
+        """All locations."""
+        return iter(self.plant.locations)
+
+    def __len__(self) -> int:
+        """How many locations there are."""
+        return len(self.plant.locations)
 
 
 class EventTable:
@@ -27,9 +48,14 @@ class EventTable:
             event: {} for plant in model.plants for event in plant.events
         }
         for plant in model.plants:
+            own: dict[sct.Event, dict[sct.Location, sct.Edge]] = {}
             for location in plant.locations:
                 for edge in location.edges:
-                    self.edges[edge.event].setdefault(plant, {})[location] = edge
+                    own.setdefault(edge.event, {})[location] = edge
+            for event, edges in own.items():
+                self.edges[event][plant] = edges
+            for edge in plant.edges:
+                self.edges[edge.event][plant] = Everywhere(plant, edge)
         assert model.supervisor is not None
         self._guards = {guard.event: guard for guard in model.supervisor.guards}
         self._requirements: dict[sct.Event, list[sct.Requirement]] = {}
@@ -59,7 +85,8 @@ class EventTable:
 
     def stays(self, event: sct.Event, plant: sct.Plant) -> Node:
         """Where the event would leave a plant, which takes part in it, in its location."""
-        loops = [location for location, edge in self.edges[event].get(plant, {}).items() if edge.target is location]
+        edges = self.edges[event].get(plant, {})
+        loops = [location for location, edge in edges.items() if edge.target is location]
         return within(plant, loops, plant.locations)
 
 
@@ -72,6 +99,8 @@ def within(plant: sct.Plant, locations: Collection[sct.Location], possible: Sequ
 
 
 def _possible(plant: sct.Plant, edges: Edges, printer: CPrinter) -> Node:
+    if isinstance(edges, Everywhere):
+        return All(_given(edges.edge.guard))
     by_guard: dict[str, tuple[list[Node], list[sct.Location]]] = {}
     for location, edge in edges.items():
         guard = All(_given(edge.guard))

@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.diagnostics import Diagnostic, Severity
+from robosc.edges import edges_of
 from robosc.m2t.c.expressions import working_type
-from robosc.m2t.c.nodes import children_of, is_condition
+from robosc.m2t.c.nodes import Node, children_of, is_condition
 from robosc.m2t.c.ranges import Ranges
 from robosc.metamodel import expression as ex
 from robosc.metamodel.places import place
@@ -38,12 +39,11 @@ def preconditions(model: sct.SupervisoryControlModel) -> list[Diagnostic]:
 def _expressions(model: sct.SupervisoryControlModel) -> Iterator[tuple[ex.Located, ex.Expression]]:
     """Every expression that the engine computes, with what it stands in."""
     for plant in model.plants:
-        for location in plant.locations:
-            for edge in location.edges:
-                if edge.guard is not None:
-                    yield edge, edge.guard
-                for update in edge.updates:
-                    yield update, update.value
+        for edge in edges_of(plant):
+            if edge.guard is not None:
+                yield edge, edge.guard
+            for update in edge.updates:
+                yield update, update.value
     # What the author can change about a guard is a requirement on its event.
     requirements = {each.event: each for each in reversed(model.requirements)}
     for guard in model.supervisor.guards if model.supervisor else ():
@@ -53,14 +53,19 @@ def _expressions(model: sct.SupervisoryControlModel) -> Iterator[tuple[ex.Locate
 
 
 def _overflows(expression: ex.Expression, ranges: Ranges) -> Iterator[str]:
-    if isinstance(expression, ex.UnaryMinus) and isinstance(expression.operand, ex.IntegerLiteral):
-        return  # a number, the least one too
-    for child in children_of(expression):
-        assert isinstance(child, ex.Expression)
-        yield from _overflows(child, ranges)
-    computes = isinstance(expression, (ex.BinaryExpression, ex.UnaryExpression, ex.Conditional))
-    if computes and not all(is_condition(child) for child in children_of(expression)):
-        try:
-            working_type(expression, ranges)
-        except OverflowError as fault:
-            yield str(fault)
+    parts: list[Node] = []
+    pending: list[Node] = [expression]
+    while pending:
+        parts.append(pending.pop())
+        pending += children_of(parts[-1])
+    # Operands before the operators on them, from left to right.
+    for part in reversed(parts):
+        if isinstance(part, ex.UnaryMinus) and isinstance(part.operand, ex.IntegerLiteral):
+            continue  # a number, the least one too
+        computes = isinstance(part, (ex.BinaryExpression, ex.UnaryExpression, ex.Conditional))
+        if computes and not all(is_condition(child) for child in children_of(part)):
+            assert isinstance(part, ex.Expression)
+            try:
+                working_type(part, ranges)
+            except OverflowError as fault:
+                yield str(fault)

@@ -12,10 +12,12 @@ from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Hashable, Mapping, Sequence
 
 #: How many values a variable may have for the conditions on it to be decided by trying them all.
 _TRIED = 1024
+#: The same for all conditions on it together.
+_TRIALS = 1 << 16
 _REFLEXIVE = (ex.Equation, ex.LessOrEqual, ex.GreaterOrEqual)
 _IRREFLEXIVE = (ex.Inequation, ex.LessThan, ex.GreaterThan)
 _COMMUTATIVE = (ex.Equation, ex.Inequation, ex.Addition, ex.Multiplication)
@@ -38,11 +40,17 @@ class Ranges:
         self._cells: dict[Node, frozenset[Cell]] = {}
         self._joined: dict[Node, Junction | None] = {}
         self._reduced: dict[Node, Node] = {}
+        self._shapes: dict[Node, int] = {}
+        self._numbers: dict[Hashable, int] = {}
 
     def __call__(self, node: Node) -> Interval:
         """The values that the expression can have."""
+        return self.values(node)
+
+    def values(self, node: Node) -> Interval:
+        """The same, by a call that takes none of the C stack."""
         if node not in self._values:
-            self._values[node] = self._decided(node, _evaluate(node, {}, self))
+            self._values[node] = self._decided(node, _evaluate(node, {}, self.values))
         return self._values[node]
 
     def cells(self, node: Node) -> frozenset[Cell]:
@@ -61,7 +69,7 @@ class Ranges:
         joined = junction(node)
         if joined is None:
             return None
-        undecided = [self.reduced(part) for part in joined.parts if self(part).single is None]
+        undecided = [self.reduced(part) for part in joined.parts if self.values(part).single is None]
         inner = [(part, self.joined(part)) for part in undecided]
         parts = [
             each
@@ -72,18 +80,15 @@ class Ranges:
 
     def _distinct(self, parts: Sequence[Node]) -> list[Node]:
         """Parts without those that say the same as one before."""
-        kept: dict[frozenset[Cell], list[Node]] = {}
+        kept: dict[int, Node] = {}
         for part in parts:
-            alike = kept.setdefault(self.cells(part), [])
-            if not any(self.same(part, each) for each in alike):
-                alike.append(part)
-        left = {part for group in kept.values() for part in group}
-        return [part for part in dict.fromkeys(parts) if part in left]
+            kept.setdefault(self._shape(part), part)
+        return list(kept.values())
 
     def reduced(self, node: Node) -> Node:
         """The part of an expression that decides it, where the rest is constant."""
         if node not in self._reduced:
-            part = self._deciding(node) if self(node).single is None else None
+            part = self._deciding(node) if self.values(node).single is None else None
             self._reduced[node] = node if part is None else self.reduced(part)
         return self._reduced[node]
 
@@ -92,7 +97,7 @@ class Ranges:
         if joined is not None:
             return joined.parts[0] if len(joined.parts) == 1 else None
         if isinstance(node, ex.Conditional):
-            condition = self(node.condition).single
+            condition = self.values(node.condition).single
             if condition is not None:
                 return node.then if condition else node.otherwise
             return node.then if self.same(node.then, node.otherwise) else None
@@ -106,13 +111,13 @@ class Ranges:
     def _compared(self, node: ex.BinaryExpression) -> Node | None:
         """What a comparison of conditions comes down to, where one of them is constant."""
         for side, other in ((node.left, node.right), (node.right, node.left)):
-            value = self(side).single
+            value = self.values(side).single
             if value is not None:
                 return other if value == isinstance(node, ex.Equation) else Not(other)
         return None
 
     def _read(self, node: Node) -> frozenset[Cell]:
-        if self(node).single is not None:
+        if self.values(node).single is not None:
             return frozenset()
         node = self.reduced(node)
         own = _cell(node)
@@ -120,24 +125,29 @@ class Ranges:
             return frozenset([own])
         joined = self.joined(node)
         children = children_of(node) if joined is None else joined.parts
-        return frozenset().union(*(self.cells(child) for child in children))
+        return frozenset().union(*[self.cells(child) for child in children])
 
     def same(self, one: Node, other: Node) -> bool:
         """Whether two expressions are written the same once all that is constant has been left out."""
-        single = self(one).single
+        return self._shape(one) == self._shape(other)
+
+    def _shape(self, node: Node) -> int:
+        """A number that the expressions share that are written the same."""
+        if node not in self._shapes:
+            written = self._written(node)
+            self._shapes[node] = self._numbers.setdefault(written, len(self._numbers))
+        return self._shapes[node]
+
+    def _written(self, node: Node) -> Hashable:
+        single = self.values(node).single
         if single is not None:
-            return self(other).single == single
-        one, other = self.reduced(one), self.reduced(other)
-        if type(one) is not type(other) or self(one) != self(other):
-            return False
-        if isinstance(one, sct.LocationReference) and isinstance(other, sct.LocationReference):
-            return one.location is other.location
-        if _cell(one) is not _cell(other):
-            return False
-        mine, theirs = children_of(one), children_of(other)
-        if all(map(self.same, mine, theirs)):
-            return True
-        return isinstance(one, _COMMUTATIVE) and all(map(self.same, mine, reversed(theirs)))
+            return single
+        node = self.reduced(node)
+        location = node.location if isinstance(node, sct.LocationReference) else None
+        parts = [self._shape(child) for child in children_of(node)]
+        if isinstance(node, _COMMUTATIVE):
+            parts.sort()
+        return type(node), self.values(node), location, _cell(node), tuple(parts)
 
     def _decided(self, node: Node, values: Interval) -> Interval:
         """Decides what intervals can't: a comparison of equals, conditions on one cell that contradict each other."""
@@ -162,14 +172,15 @@ class Ranges:
         """Whether all conditions of the group can be `neutral` for one value of what they depend on."""
         domains = [_domain(cell) for cell in cells]
         # No `len`: that of a range ends at 2^63.
-        if prod(domain.high - domain.low + 1 for domain in domains) > _TRIED:
+        values_of_all = prod(domain.high - domain.low + 1 for domain in domains)
+        if values_of_all > _TRIED or values_of_all * len(group) > _TRIALS:
             return True
         for values in product(*(range(domain.low, domain.high + 1) for domain in domains)):
             at = dict(zip(cells, values, strict=True))
 
             def evaluate(node: Node, at: Mapping[Cell, int] = at) -> Interval:
                 # What is decided may read other cells, of which nothing is known here.
-                return self(node) if self(node).single is not None else _evaluate(node, at, evaluate)
+                return self.values(node) if self.values(node).single is not None else _evaluate(node, at, evaluate)
 
             if all(evaluate(part).single in {neutral, None} for part in group):
                 return True

@@ -57,7 +57,7 @@ class Shared(CPrinter):
     def body(self, condition: Condition) -> str:
         """The condition itself."""
         self._hidden = condition
-        text = self(condition.node)
+        text = self.text(condition.node)
         self._hidden = None
         return text
 
@@ -70,7 +70,7 @@ class Shared(CPrinter):
         """The outermost operator of a guard, and its operands: what each means without sharing, and its text."""
         joined = self._joined(node)
         if joined is None:
-            return "&&", [(frozenset([self._plain(node)]), self(node))]
+            return "&&", [(frozenset([self._plain(node)]), self.text(node))]
         return "&&" if joined.neutral else "||", [
             (part.key[1] if isinstance(part, Condition) else frozenset([self._text(joined, part)]), text)
             for part, text in self._replaced(joined)
@@ -140,7 +140,7 @@ class Shared(CPrinter):
         )
         while True:
             self._use([Condition(f"condition_{n}", *each) for n, each in enumerate(chosen, 1)])
-            texts = [*map(self, guards.values()), *map(self.body, self.conditions)]
+            texts = [*map(self.text, guards.values()), *map(self.body, self.conditions)]
             calls = Counter(name for text in texts for name in set(re.findall(r"\bcondition_\d+\b", text)))
             kept = [each for each, made in zip(chosen, self.conditions, strict=True) if calls[made.name] > 1]
             if kept == chosen:

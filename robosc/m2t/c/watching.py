@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import textwrap
-from itertools import accumulate
+from itertools import accumulate, islice
 from typing import TYPE_CHECKING, Any
 
 from robosc.m2t.c.comments import comment_text
+from robosc.m2t.c.guards import Everywhere
 from robosc.m2t.c.sharing import Condition
 from robosc.m2t.c.types import unsigned_type
 from robosc.roles import event_name, plant_of
@@ -105,7 +106,8 @@ class Watching:
     def _writes(self, event: sct.Event) -> set[Cell]:
         written: set[Cell] = set()
         for plant, edges in self._context.table.edges[event].items():
-            for location, edge in edges.items():
+            # What is the same in every location is seen in the first two.
+            for location, edge in islice(edges.items(), 2 if isinstance(edges, Everywhere) else None):
                 written |= {update.variable for update in edge.updates}
                 if edge.target is not location:
                     written.add(plant)

@@ -66,6 +66,6 @@ class CifPrinter(ExpressionPrinter):
         word, text = "if", ""
         rest: ex.Expression = expression
         while isinstance(rest, ex.Conditional):
-            text += f"{word} {self(rest.condition)}: {self(rest.then)} "
+            text += f"{word} {self.text(rest.condition)}: {self.text(rest.then)} "
             word, rest = "elif", rest.otherwise
-        return f"{text}else {self(rest)} end"
+        return f"{text}else {self.text(rest)} end"

@@ -9,6 +9,7 @@ from math import prod
 from textwrap import wrap
 from typing import TYPE_CHECKING
 
+from robosc.edges import edges_from, edges_of
 from robosc.m2t.cif.arithmetic import assigned, condition, held
 from robosc.m2t.cif.expressions import CifPrinter
 from robosc.m2t.cif.linear import bounds, shift
@@ -16,7 +17,7 @@ from robosc.m2t.cif.names import CifNames
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 from robosc.metamodel.reflection import tree
-from robosc.roles import provide_number
+from robosc.roles import provide_numbers
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -123,6 +124,8 @@ class Writer:
         self._outside = CifPrinter(self._names, None)
         self._impossible = impossible(model)
         self._meanings = {**_transitions(model), **_choices(model)}
+        #: The texts of guards, some of which are those of every location.
+        self._guards: dict[sct.Edge, str] = {}
         self._referred = {each.location for _, each in tree(model) if isinstance(each, sct.LocationReference)}
 
     def specification(self) -> Specification:
@@ -219,15 +222,21 @@ class Writer:
             marked=location.marked,
             edges=[
                 self._edge(each, location, plant, printer)
-                for each in location.edges
+                for each in edges_from(location)
                 if each.event not in self._impossible
             ],
         )
 
+    def _guard(self, edge: sct.Edge, printer: CifPrinter) -> str:
+        if edge not in self._guards:
+            assert edge.guard is not None
+            self._guards[edge] = printer(condition(edge.guard))
+        return self._guards[edge]
+
     def _edge(self, edge: sct.Edge, location: sct.Location, plant: sct.Plant, printer: CifPrinter) -> Edge:
         return Edge(
             event=self._names.used(edge.event, plant),
-            guard="" if edge.guard is None else printer(condition(edge.guard)),
+            guard="" if edge.guard is None else self._guard(edge, printer),
             updates=[
                 f"{self._names.declared(each.variable)} := {printer(assigned(each.variable, each.value))}"
                 for each in edge.updates
@@ -244,7 +253,7 @@ def impossible(model: sct.SupervisoryControlModel) -> set[sct.Event]:
     found = {event for plant in model.plants for event in plant.events}
     found -= {each.event for each in model.requirements}
     for plant in model.plants:
-        for edge in (edge for location in plant.locations for edge in location.edges):
+        for edge in edges_of(plant):
             never = isinstance(edge.guard, ex.BooleanLiteral) and not edge.guard.value
             if not never or edge.event.eContainer() is not plant:
                 found.discard(edge.event)
@@ -295,8 +304,8 @@ def _transitions(model: sct.SupervisoryControlModel) -> dict[sct.Event, tuple[st
 
 def _choices(model: sct.SupervisoryControlModel) -> dict[sct.Event, tuple[str, ...]]:
     """Which statement of the model each choice of data stands for."""
-    data = (each for plant in model.plants for each in plant.events if each.kind == sct.EventKind.data)
-    numbers = {each: provide_number(each) for each in data}
+    plants = (each for each in model.plants if each.kind == sct.PlantKind.data)
+    numbers = {event: number for each in plants for event, number in provide_numbers(each).items()}
     return {
         event: (quoted(f"The choice of provide {number} for {event.eContainer().origin or event.eContainer().name}."),)
         for event, number in numbers.items()

@@ -72,9 +72,11 @@ class CppPrinter(ExpressionPrinter):
         if isinstance(expression, ex.Implication):
             return f"(!{self.tight(expression.left)} || {self.tight(expression.right)})"
         if isinstance(expression, ex.Inequation) and is_double(expression.left):
-            return f"differ({self(expression.left)}, {self(expression.right)})"
+            return f"differ({self.text(expression.left)}, {self.text(expression.right)})"
         if isinstance(expression, _ARITHMETIC) and not is_double(expression) and is_constant(expression):
-            return f"Integer({self(expression.left)}) {self.symbols[type(expression)]} {self.tight(expression.right)}"
+            return (
+                f"Integer({self.text(expression.left)}) {self.symbols[type(expression)]} {self.tight(expression.right)}"
+            )
         return super().binary(expression)
 
     def unary(self, expression: ex.UnaryExpression) -> str:
@@ -95,10 +97,10 @@ class CppPrinter(ExpressionPrinter):
             case ex.StringLiteral():
                 return f"std::string({string_literal(expression.value)})"
             case ex.DoubleConversion():
-                return f"static_cast<double>({self(expression.operand)})"
+                return f"static_cast<double>({self.text(expression.operand)})"
             case ex.Conditional():
-                tight = map(self.tight, (expression.condition, expression.then, expression.otherwise))
-                return "({} ? {} : {})".format(*tight)
+                parts = (expression.condition, expression.then, expression.otherwise)
+                return "({} ? {} : {})".format(*[self.tight(part) for part in parts])
         return self._reference(expression)
 
     def _reference(self, expression: ex.Expression) -> str:
@@ -136,12 +138,12 @@ class CppPrinter(ExpressionPrinter):
         if kind.minimum is not None and kind.maximum is not None:
             bounds = f".within({number(kind.minimum)}, {number(kind.maximum)})"
         if is_constant(expression):
-            return f"Integer({self(expression)}){bounds}"
-        return f"{self.tight(expression)}{bounds}" if bounds else self(expression)
+            return f"Integer({self.text(expression)}){bounds}"
+        return f"{self.tight(expression)}{bounds}" if bounds else self.text(expression)
 
     def tight(self, expression: ex.Expression) -> str:
         """The text, in parentheses where it is not a single operand."""
-        text = self(expression)
+        text = self.text(expression)
         return text if self.precedence(expression) == ATOM else f"({text})"
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from robosc.edges import edges_from
 from robosc.m2t.c.comments import string_literal
 from robosc.m2t.cpp.expressions import CppPrinter
 from robosc.metamodel import sct
@@ -70,7 +71,7 @@ class Passages:
 
     def _missing(self, plant: sct.Plant, event: sct.Event) -> list[Reason]:
         """That a plant which takes part in the event can't, with its location."""
-        edges = {location: edge for location in plant.locations for edge in location.edges if edge.event == event}
+        edges = {location: edge for location in plant.locations for edge in edges_from(location) if edge.event == event}
         if not edges or (len(edges) == len(plant.locations) and not any(edge.guard for edge in edges.values())):
             return []
         possible = " || ".join(self._taken(location, edge) for location, edge in edges.items())

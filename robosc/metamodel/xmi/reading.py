@@ -1,7 +1,6 @@
 """XMI files to models, with everything found wrong at once."""
 
 import re
-import sys
 from collections.abc import MutableMapping
 from pathlib import Path, PurePosixPath
 from typing import Any
@@ -12,13 +11,15 @@ from robosc.files import read
 from robosc.metamodel.reflection import features, is_attribute
 from robosc.metamodel.validity import faults
 from robosc.metamodel.xmi.building import Document, Reference, build
-from robosc.metamodel.xmi.format import DEEPEST, a
+from robosc.metamodel.xmi.format import a
 from robosc.metamodel.xmi.markup import parse
+from robosc.recursion import deep_recursion
 
 _FRAGMENT = re.compile(r"/(/@\w+(\.[0-9]{1,9})?)*", re.ASCII)
 _ADDRESS = re.compile(r"[\w.+-]+:|/")
 
 
+@deep_recursion()
 def load(path: str | Path, texts: MutableMapping[str, str] | None = None) -> Any:
     """The root element of the model in an XMI file; files that it refers to are loaded with it.
 
@@ -27,8 +28,6 @@ def load(path: str | Path, texts: MutableMapping[str, str] | None = None) -> Any
     such model keeps (`robosc.metamodel.validity`). Nothing is ever fetched, and no entity expanded. `texts` gets
     what was read, by the names that findings carry.
     """
-    # What reads a model follows its expressions by recursion, a few calls for each operator in a row.
-    sys.setrecursionlimit(max(sys.getrecursionlimit(), 20 * DEEPEST))
     return _Loading(Path(path), {} if texts is None else texts).root
 
 

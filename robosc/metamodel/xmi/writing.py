@@ -14,6 +14,8 @@ from robosc.metamodel.reflection import contents, features, is_attribute
 from robosc.metamodel.xmi.format import DEEPEST, UNWRITABLE, XMI, XSI
 from robosc.metamodel.xmi.values import to_text
 
+_DEEPEST_INDENT = 40
+
 
 def to_texts(roots: Mapping[str, Any]) -> dict[str, str]:
     """The text of each file, given the root of its model; both by relative path, with `/`.
@@ -68,13 +70,13 @@ class _Document:
         while pending:
             depth, tag, element = pending.pop()
             if element is None:
-                lines.append(f"{'  ' * depth}{tag}")
+                lines.append(f"{_indent(depth)}{tag}")
                 continue
             if depth > DEEPEST:
                 raise _unwritable(element, f"more than {DEEPEST} elements are inside each other")
             attributes, children = self._features(element)
             opened = "".join(f" {name}={quoteattr(value)}" for name, value in attributes)
-            lines.append(f"{'  ' * depth}<{tag}{opened}{'>' if children else '/>'}")
+            lines.append(f"{_indent(depth)}<{tag}{opened}{'>' if children else '/>'}")
             if children:
                 pending.append((depth, f"</{tag}>", None))
                 pending += [(depth + 1, tag_or_line, child) for tag_or_line, child in reversed(children)]
@@ -142,6 +144,11 @@ class _Document:
         declared = "".join(f' xmlns:{prefix}="{uri}"' for prefix, uri in spaces.items())
         lines[0] = f'{tag} xmi:version="2.0"{declared}\n   {lines[0].removeprefix(tag)}'
         return "\n".join(['<?xml version="1.0" encoding="UTF-8"?>', *lines, ""])
+
+
+def _indent(depth: int) -> str:
+    """No reader follows an expression of thousands of operators by its indentation, which would be most of the text."""
+    return "  " * min(depth, _DEEPEST_INDENT)
 
 
 def _unwritable(element: Any, message: str) -> ModelError:

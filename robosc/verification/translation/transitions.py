@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from robosc.edges import edges_of
 from robosc.roles import event_name
 from robosc.synthesis import arithmetic
 from robosc.synthesis.encoding import domain_size, smallest
@@ -55,9 +56,8 @@ def participants(automata: Iterable[sct.Plant]) -> dict[sct.Event, list[list[sct
     found: dict[sct.Event, list[list[sct.Edge]]] = {}
     for automaton in automata:
         own: dict[sct.Event, list[sct.Edge]] = {}
-        for location in automaton.locations:
-            for edge in location.edges:
-                own.setdefault(edge.event, []).append(edge)
+        for edge in edges_of(automaton):
+            own.setdefault(edge.event, []).append(edge)
         for event, edges in own.items():
             found.setdefault(event, []).append(edges)
     return found
@@ -75,7 +75,7 @@ def together(automata: Iterable[Sequence[sct.Edge]], encoding: Encoding, *, satu
     for edges in automata:
         possible = diagrams.false
         for edge in edges:
-            taken = encoding.location(edge.eContainer()) & encoding.holds(edge.guard)
+            taken = encoding.source(edge) & encoding.holds(edge.guard)
             codes: dict[Element, Vector] = {
                 edge.target.eContainer(): arithmetic.constant(diagrams, encoding.location_code(edge.target))
             }

@@ -6,6 +6,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from robosc.edges import edges_from
 from robosc.engine.expressions import Compiler
 from robosc.m2t.c.nodes import All, Not, Some, children_of
 from robosc.m2t.c.ranges import Ranges
@@ -20,7 +21,7 @@ def _expressions(made: sct.SupervisoryControlModel) -> Iterator[ex.Expression]:
     roots = [each.condition for each in made.requirements]
     for owner in made.plants:
         for location in owner.locations:
-            for each in location.edges:
+            for each in edges_from(location):
                 roots += [each.guard] if each.guard is not None else []
                 roots += [update.value for update in each.updates]
     while roots:

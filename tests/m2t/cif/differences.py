@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from itertools import product, zip_longest
 from typing import Any
 
+from robosc.edges import edges_from, edges_of
 from robosc.evaluation import evaluate, saturate
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
@@ -93,7 +94,8 @@ class _Comparison:
     def location(self, mine: sct.Location, yours: sct.Location) -> Iterator[str]:
         if (mine.initial, mine.marked) != (yours.initial, yours.marked):
             yield f"location {_name(mine)} is marked or initial or not"
-        for one, other in zip_longest([each for each in mine.edges if each.event not in self.absent], yours.edges):
+        present = [each for each in edges_from(mine) if each.event not in self.absent]
+        for one, other in zip_longest(present, edges_from(yours)):
             where = f"{_name(mine)} -{_name(one.event)}->"
             if _name(one.event) != _name(other.event) or _index(one.target) != _index(other.target):
                 yield f"{where} is for {_name(other.event)} to {_name(other.target)}"
@@ -119,9 +121,7 @@ class _Comparison:
 
 
 def _never(event: Any, plants: Any) -> bool:
-    guards = [
-        edge.guard for plant in plants for location in plant.locations for edge in location.edges if edge.event is event
-    ]
+    guards = [edge.guard for plant in plants for edge in edges_of(plant) if edge.event is event]
     return bool(guards) and not any(
         guard is None or any(_value(guard, state, None) for state in _states(guard, guard)) for guard in guards
     )

@@ -1,0 +1,154 @@
+"""How all of robosc grows with models that are long in one respect; writes `docs/walks.md`.
+
+    python benchmarks/walks.py [--families provides imports] [--sizes 100 400 1600 5000] [--limit 120] [--output FOLDER]
+
+The models are those of `benchmarks/walk_families.py`. Each goes through all of robosc in a process of its own, of which
+the seconds of the processor are counted after everything has been loaded and a small model has warmed it up. What was
+measured is kept in `benchmarks/walks.json`: what is left out this time stays on the page. `tests/benchmarks` holds the
+same walks to account in calls instead of seconds.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import resource
+import subprocess
+import sys
+import tempfile
+from functools import partial
+from math import log
+from pathlib import Path
+from statistics import linear_regression
+from time import process_time
+from typing import Any
+
+ROOT = Path(__file__).parent.parent
+sys.path.insert(0, str(ROOT))
+
+import robosc  # noqa: E402
+from benchmarks.walk_families import FAMILIES, write  # noqa: E402
+from robosc.checks import check  # noqa: E402
+from robosc.diagnostics import has_errors  # noqa: E402
+from robosc.language import read  # noqa: E402
+
+SIZES = (100, 400, 1600, 5000)
+TARGETS = ("cif", "supervisor", "ros1", "ros2", "xmi")
+#: In CIF each location has its edges, so that this text grows with the square of the statements.
+WITHOUT = {"provides": ("cif",)}
+MOST = 1.3
+
+HEAD = """\
+# Long models
+
+What a model costs that is long in one respect: seconds of the processor from its text to generated CIF, C, ROS 1, ROS 2
+and XMI, or to its findings where it is wrong on purpose, without what is loaded once; and the memory of the whole
+process at its peak. *k* is the exponent of *N^k* that fits best, and shall be below {most}.
+`python benchmarks/walks.py` measured it on {machine} and wrote this page; tests count the calls of the same walks.
+
+One text is longer: in CIF each location of an automaton has its own edges, so that *N* `provide` statements for one
+communication become *N²* edges there. 400 of them take 32 MB of text. They are measured without CIF.
+"""
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--families", nargs="+", choices=list(FAMILIES), default=list(FAMILIES))
+    parser.add_argument("--sizes", nargs="+", type=int, default=SIZES)
+    parser.add_argument("--limit", type=int, default=120, help="the seconds of the processor that a model may take")
+    parser.add_argument("--output", type=Path, help="a folder for the page and what is kept")
+    parser.add_argument("--machine", default="two shared cores", help="what the page says of the machine")
+    parser.add_argument("--one", nargs=3, metavar=("FAMILY", "N", "FOLDER"), help=argparse.SUPPRESS)
+    options = parser.parse_args()
+    if options.one:
+        family, number, folder = options.one
+        print(json.dumps(_one(family, int(number), Path(folder))))
+        return 0
+    kept = (options.output or ROOT / "benchmarks") / "walks.json"
+    results: dict[str, Any] = json.loads(kept.read_text()) if kept.exists() else {"families": {}}
+    results["machine"] = options.machine
+    for family in options.families:
+        results["families"][family] = [_measured(family, number, options.limit) for number in options.sizes]
+        kept.write_text(json.dumps(results, indent=1, sort_keys=True) + "\n")
+        print(family, *(f"{each['seconds']:.1f}" for each in results["families"][family]), file=sys.stderr, flush=True)
+    (options.output or ROOT / "docs").joinpath("walks.md").write_text(page(results))
+    steep = [family for family, points in results["families"].items() if exponent(points) >= MOST]
+    print(*(f"{family} grows faster than N^{MOST}" for family in steep), sep="\n", file=sys.stderr)
+    return int(bool(steep))
+
+
+def _measured(family: str, number: int, limit: int) -> dict[str, Any]:
+    with tempfile.TemporaryDirectory() as folder:
+        done = subprocess.run(
+            [sys.executable, __file__, "--one", family, str(number), folder],
+            stdout=subprocess.PIPE,
+            text=True,
+            check=False,
+            preexec_fn=partial(resource.setrlimit, resource.RLIMIT_CPU, (limit, limit)),  # it forks on one thread
+        )
+    found = json.loads(done.stdout) if done.returncode == 0 else {"seconds": float(limit), "memory": 0.0}
+    return {"n": number, "finished": done.returncode == 0, **found}
+
+
+def _one(family: str, number: int, folder: Path) -> dict[str, float]:
+    _through(family, write(family, 10, folder))
+    path = write(family, number, folder)
+    began = process_time()
+    _through(family, path)
+    seconds = process_time() - began
+    return {"seconds": seconds, "memory": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024}
+
+
+def _through(family: str, path: Path) -> None:
+    if path.suffix == ".xmi":
+        check(robosc.load(path))
+        return
+    reading = read(path)
+    if has_errors([*reading.findings, *check(reading.base, reading.findings)]):
+        return
+    robot = robosc.load(path)
+    models = robosc.Models(robosc.to_sct(robot), robosc.to_rosgraph(robot), robot)
+    robosc.synthesize(models.sct)
+    for target in TARGETS:
+        if target not in WITHOUT.get(family, ()):
+            robosc.generate(target, models)
+
+
+def exponent(points: list[dict[str, Any]]) -> float:
+    """The exponent of the growth, of the sizes that were finished; that of too slow ones is out of sight."""
+    finished = [each for each in points if each["finished"]]
+    if len(finished) < 2:
+        return float("inf")
+    slope = linear_regression(
+        [log(each["n"]) for each in finished], [log(max(each["seconds"], 0.01)) for each in finished]
+    ).slope
+    return float(slope)
+
+
+def page(results: dict[str, Any]) -> str:
+    """The page of the documentation."""
+    sizes = sorted({each["n"] for points in results["families"].values() for each in points})
+    lines = [HEAD.format(machine=results["machine"], most=MOST)]
+    lines += [
+        f"| | {' | '.join(f'N = {size:,}' for size in sizes)} | MB | k |",
+        f"| --- |{' ---: |' * (len(sizes) + 2)}",
+    ]
+    for family in FAMILIES:
+        points = {each["n"]: each for each in results["families"].get(family, ())}
+        if not points:
+            continue
+        title = (FAMILIES[family].__doc__ or family).partition("\n")[0].rstrip(".")
+        cells = [_seconds(points.get(size)) for size in sizes]
+        memory = max(each["memory"] for each in points.values())
+        lines.append(f"| {title} | {' | '.join(cells)} | {memory:.0f} | {exponent([*points.values()]):.2f} |")
+    return "\n".join([*lines, ""])
+
+
+def _seconds(point: dict[str, Any] | None) -> str:
+    if point is None:
+        return "-"
+    return f"{point['seconds']:.2f} s" if point["finished"] else f"over {point['seconds']:.0f} s"
+
+
+if __name__ == "__main__":
+    sys.exit(main())
