@@ -36,7 +36,9 @@ if TYPE_CHECKING:
 @model
 @click.option("--event", metavar="EVENT", help="Why EVENT can or can't happen in a state.")
 @click.option(
-    "--state", metavar="STATE", help="That state: `Door=open,Gauge.level=3`, or JSON. Else it is the first one."
+    "--state",
+    metavar="STATE",
+    help="That state: `Door=open,Gauge.level=3`, or JSON, such as `~/state` tells. Else it is the first one.",
 )
 @click.option("--why-empty", is_flag=True, help="Why the robot has no supervisor.")
 @click.option("--why-never", metavar="EVENT", help="Why EVENT can never happen, in whatever state.")
@@ -64,6 +66,7 @@ def command(
     Examples:
       robosc explain line_follower.rscd --event move
       robosc explain line_follower.rscd --event move --state EmergencyStop=stopped,LineDetector=following
+      robosc explain line_follower.rscd --event move --state "$(ros2 topic echo --once --full-length /line_follower/state)"
       robosc explain line_follower.rscd --why-never halt
       robosc explain broken.rscd --why-empty
 

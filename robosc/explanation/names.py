@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import json
+import re
+from contextlib import suppress
 from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
 
@@ -67,13 +70,15 @@ def _plant_names(plant: sct.Plant) -> list[str]:
 
 
 def state_given(model: sct.SupervisoryControlModel, given: str) -> dict[Element, int]:
-    """The codes of the elements that a state names: `Door=open,Gauge.level=3`, or JSON as `robosc simulate` prints it.
+    """The codes of the elements that a state names.
 
-    Raises NamingError where the text is neither, or names what is not there.
+    It is given as `Door=open,Gauge.level=3`, as JSON that `robosc simulate` prints, or as what a node tells on
+    `~/state` or `~/blocked`, bare or as ROS prints it. Raises NamingError where the text is nothing of that, or names
+    what is not there.
     """
     elements = _elements(model)
     codes: dict[Element, int] = {}
-    for name, chosen in _pairs(given):
+    for name, chosen in _pairs(model, _echoed(given)):
         found = elements.get(name, [])
         if not found:
             raise NamingError(f"the state has no `{name}`", _close(name, elements, ""))
@@ -119,12 +124,29 @@ def _elements(model: sct.SupervisoryControlModel) -> dict[str, list[Element]]:
     return short | exact
 
 
-def _pairs(given: str) -> list[tuple[str, Any]]:
-    if given.lstrip().startswith("{"):
+def _echoed(given: str) -> str:
+    """The data of the last `std_msgs/String` that `ros2 topic echo` or `rostopic echo` printed; other text as it is."""
+    last = next((each for each in reversed(re.split(r"^---\s*$", given, flags=re.M)) if each.strip()), given).strip()
+    if last.startswith("data:"):
+        last = last.removeprefix("data:").strip()
+        if last.startswith("'"):
+            last = last[1:].removesuffix("'").replace("''", "'")
+        elif last.startswith('"'):
+            with suppress(ValueError):
+                last = str(json.loads(last, strict=False))
+    if last.startswith("{") and last.endswith("..."):
+        raise NamingError("the state was cut short", "`ros2 topic echo --full-length` prints it whole")
+    return last
+
+
+def _pairs(model: sct.SupervisoryControlModel, given: str) -> list[tuple[str, Any]]:
+    if given.startswith("{"):
         try:
             read = json_value(given)
         except JsonError as error:
             raise NamingError("the state can't be read", f"{error} (character {error.position + 1})") from None
+        if isinstance(read.get("components"), dict):
+            return list(_reported(model, read))
         inner = read.get("state", read)
         return list((inner if isinstance(inner, dict) else read).items())
     pairs = []
@@ -134,6 +156,23 @@ def _pairs(given: str) -> list[tuple[str, Any]]:
             raise NamingError(f"`{each.strip()}` is no part of a state", "write `Component=state,Component.variable=3`")
         pairs.append((name.strip(), chosen.strip()))
     return pairs
+
+
+def _reported(model: sct.SupervisoryControlModel, report: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
+    """What a node tells of its components; variables that only the node has say nothing of what can happen."""
+    robot = report.get("robot", model.name)
+    if robot != model.name:
+        raise NamingError(f"the state is one of the robot `{robot}`", f"the model is `{model.name}`")
+    components = {each.origin or each.name: each for each in model.plants if each.kind == sct.PlantKind.behaviour}
+    for name, told in report["components"].items():
+        if name not in components:
+            raise NamingError(f"there is no component `{name}`", _close(name, components, ""))
+        if not (isinstance(told, dict) and "state" in told and isinstance(told.get("variables"), dict)):
+            raise NamingError(f"the state does not tell that of `{name}`", "it needs `state` and `variables`")
+        plant = components[name]
+        yield plant.name, told["state"]
+        known = {each.name: _whole_name(each) for each in plant.variables}
+        yield from ((known[each], chosen) for each, chosen in told["variables"].items() if each in known)
 
 
 def _code(element: Element, given: Any, name: str) -> int:

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from tests.cli.conftest import Run
+from tests.runtime.fake import World
 
 EXPLAINED = Path(__file__).parent / "explained"
 TANK = EXPLAINED / "tank.rscd"
@@ -107,6 +108,62 @@ def test_a_state_as_simulate_prints_it(run: Run) -> None:
         told = json.loads(run("explain", TANK, "--event", "refill", "--state", state, "--json").stdout)
         assert told["state"] == json.loads(last)["state"]
         assert [each["event"] for each in told["trace"]] == ["message_level.u_response", "component_Gauge.c_tau1"]
+
+
+REPORT = {
+    "robot": "Tank",
+    "time": 1795174473.5,
+    "components": {
+        "Gauge": {"state": "full", "variables": {"level": 4, "wet": True, "seen by the node alone": None}},
+        "Valve": {"state": "open", "variables": {}},
+    },
+    "transitions": ["message_level.u_response", "component_Gauge.c_tau1"],
+}
+ECHOED = json.dumps(REPORT)
+
+
+@pytest.mark.parametrize(
+    "state",
+    [
+        ECHOED,
+        f"{ECHOED}\n---\n",
+        "data: '" + json.dumps(REPORT | {"it''s": "known"}) + "'\n---",
+        f"data: 'a first one'\n---\ndata: '{ECHOED}'\n---\n\n",
+        f"data: {json.dumps(ECHOED)}\n---",
+    ],
+    ids=["bare", "as a field", "quoted", "several", "as ROS 1 does"],
+)
+def test_a_state_as_a_node_tells_it(run: Run, state: str) -> None:
+    answer = run("explain", TANK, "--event", "refill", "--state", state, "--json")
+    assert answer.exit_code == 0, answer.output
+    told = json.loads(answer.stdout)["state"]
+    chosen = {"component_Gauge": "full", "Gauge.level": 4, "Gauge.wet": True, "component_Valve": "open"}
+    assert {name: told[name] for name in chosen} == chosen
+
+
+def test_what_a_node_publishes_is_understood(run: Run, tmp_path: Path) -> None:
+    world = World(TANK, tmp_path / "log").start()
+    world.wait(1.0)
+    states = [text for what, text in world.port.told if what == "state"]
+    assert states
+    answer = run("explain", TANK, "--event", "refill", "--state", states[-1], "--json")
+    assert json.loads(answer.stdout)["state"]["component_Gauge"] == "metering", answer.output
+
+
+@pytest.mark.parametrize(
+    ("state", "complaint"),
+    [
+        (json.dumps(REPORT | {"robot": "Tonk"}), "the state is one of the robot `Tonk`; the model is `Tank`"),
+        (ECHOED.replace("Valve", "Value"), "there is no component `Value`; did you mean `Valve`?"),
+        (json.dumps({"components": {"Valve": "open"}}), "the state does not tell that of `Valve`; it needs `state`"),
+        (ECHOED.replace('"level": 4', '"level": null'), "`Gauge.level` can't be `None`; it is an integer from 0 to 9"),
+        (f"data: '{ECHOED[:128]}...'\n---", "the state was cut short; `ros2 topic echo --full-length` prints it whole"),
+    ],
+)
+def test_what_no_node_of_it_tells(run: Run, state: str, complaint: str) -> None:
+    answer = run("explain", TANK, "--event", "refill", "--state", state)
+    assert (answer.exit_code, answer.stdout) == (2, "")
+    assert complaint in answer.stderr
 
 
 @pytest.mark.parametrize(
