@@ -83,6 +83,12 @@ class Roles:
         return tuple(map(tuple, found.values()))
 
     @cached_property
+    def batches(self) -> tuple[tuple[sct.Event, ...], ...]:
+        """The events of each message from the robot, two or more: they happen with nothing in between."""
+        kind = sct.PlantKind.message
+        return tuple(each for each in self.sources if len(each) > 1 and plant_of(each[0]).kind == kind)
+
+    @cached_property
     def shared_topics(self) -> tuple[tuple[sct.Event, ...], ...]:
         """Triggers of messages that go to one topic, two or more: at most one of them runs in a round."""
         topics: dict[str, list[sct.Event]] = {}

@@ -66,7 +66,7 @@ def command(
     Examples:
       robosc explain line_follower.rscd --event move
       robosc explain line_follower.rscd --event move --state EmergencyStop=stopped,LineDetector=following
-      robosc explain line_follower.rscd --event move --state "$(ros2 topic echo --once --full-length /line_follower/state)"
+      robosc explain line_follower.rscd --event move --state "$(ros2 topic echo --once --full-length /node/state)"
       robosc explain line_follower.rscd --why-never halt
       robosc explain broken.rscd --why-empty
 

@@ -126,7 +126,8 @@ def _elements(model: sct.SupervisoryControlModel) -> dict[str, list[Element]]:
 
 def _echoed(given: str) -> str:
     """The data of the last `std_msgs/String` that `ros2 topic echo` or `rostopic echo` printed; other text as it is."""
-    last = next((each for each in reversed(re.split(r"^---\s*$", given, flags=re.M)) if each.strip()), given).strip()
+    printed = [each.strip() for each in re.split(r"^---\s*$", given, flags=re.MULTILINE)]
+    last = next((each for each in reversed(printed) if each), "")
     if last.startswith("data:"):
         last = last.removeprefix("data:").strip()
         if last.startswith("'"):

@@ -7,13 +7,14 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from robosc.metamodel import sct
-from robosc.roles import event_name
+from robosc.roles import Roles, event_name
 from robosc.supervision.wording import condition, name
 from robosc.synthesis.decoding import value
 from robosc.synthesis.fixpoint import reachable
 from robosc.synthesis.paths import Layers, TraceStep, trace
 from robosc.synthesis.relation import event_relations
 from robosc.synthesis.settling import Settling, settling, silent_events
+from robosc.verification.loop import ControlLoop
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -40,6 +41,7 @@ class SupervisedSystem:
         if model.supervisor is None:
             raise ValueError(f"{model.name} has no supervisor: synthesize it first")
         self.model = model
+        self.roles = Roles(model)
         self.supervisor = model.supervisor
         self.encoding = encoding
         self.diagrams = encoding.diagrams
@@ -65,17 +67,14 @@ class SupervisedSystem:
         return reachable(self.diagrams, steps(self.moves), self.encoding.initial, self.diagrams.true)
 
     @cached_property
-    def resting(self) -> Diagram:
-        """The reachable states in which no silent event can happen."""
-        states = self.reachable
-        for each in self.silent:
-            states &= ~each.allowed
-        return states
-
-    @cached_property
     def settling(self) -> Settling:
         """Whether silent events come to rest, and when."""
         return settling(self.diagrams, self.silent, self.reachable, _EFFORT)
+
+    @cached_property
+    def loop(self) -> ControlLoop:
+        """What the control loop makes of it."""
+        return ControlLoop(self)
 
     @cached_property
     def size(self) -> str:

@@ -66,7 +66,7 @@ def test_a_table_and_a_count(run: Run, door: Path) -> None:
         ["finite response", "proved", "2 states, 0 silent events"],
         ["bounded response", "proved", "2 states, at most 0 silent events in a row"],
         ["confluence", "proved", "2 states, 2 of them at rest"],
-        ["non-blocking under control", "proved", "2 states"],
+        ["non-blocking in the control loop", "proved", "2 states"],
         ["c-translation", "skipped", ""],
     ]
     assert answer.stdout.endswith("\nc-translation: no C compiler is here\n\nDoor: 10 proved, 1 skipped\n")

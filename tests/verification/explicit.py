@@ -3,11 +3,11 @@
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import product
+from itertools import combinations, product
 
 from robosc.edges import edges_from
 from robosc.metamodel import sct
-from robosc.roles import event_name, plant_of
+from robosc.roles import Roles, event_name, plant_of
 from robosc.synthesis import TraceStep
 from robosc.synthesis.decoding import Value
 from tests.synthesis.oracle import Oracle, State, values_of
@@ -15,6 +15,8 @@ from tests.synthesis.oracle import Oracle, State, values_of
 _SILENT = (sct.EventKind.tau, sct.EventKind.reset)
 _INPUTS = (sct.EventKind.response, sct.EventKind.error, sct.EventKind.feedback, sct.EventKind.cancel)
 Move = tuple[sct.Event, State]
+#: A state; in a batch also its number, and how many of its events have had their turn.
+Configuration = tuple[State, tuple[int, int] | None]
 
 
 @dataclass(frozen=True)
@@ -56,10 +58,116 @@ class Explicit:
     def silent(self, state: State) -> list[Move]:
         return [each for each in self.moves(state) if each[0].kind in _SILENT]
 
-    def under_control(self, state: State) -> list[Move]:
-        """What the control loop does next: first of all it settles."""
-        free = (*_SILENT, sct.EventKind.data)
-        return [each for each in self.moves(state) if each[0].kind in free or not self.silent(state)]
+    # The control loop, in configurations: a state, and where in a batch it is
+
+    @cached_property
+    def batches(self) -> list[list[sct.Event]]:
+        """What happens with nothing in between: the events of a topic, the cancels."""
+        topics: dict[str, list[sct.Event]] = {}
+        for event in self.oracle.events:
+            plant = plant_of(event)
+            if event.kind == sct.EventKind.response and plant.kind == sct.PlantKind.message and plant.topic:
+                topics.setdefault(plant.topic.removeprefix("/"), []).append(event)
+        return [*topics.values(), [event for event in self.oracle.events if event.kind == sct.EventKind.cancel]]
+
+    def failed(self, event: sct.Event, state: State) -> bool:
+        """Whether the event is the reset of what has failed."""
+        edges = [edge for location in plant_of(event).locations for edge in location.edges]
+        failed = {each.target for each in edges if each.event.kind == sct.EventKind.error}
+        return event.kind == sct.EventKind.reset and state[self.oracle.places[plant_of(event)]] in failed
+
+    def rests(self, state: State) -> bool:
+        return all(self.failed(event, state) for event, _ in self.silent(state))
+
+    @cached_property
+    def overruns(self) -> bool:
+        """Whether silent events can happen more often than the loop lets them."""
+        return bool(self.restless()) or self.longest_run() > Roles(self.model).settling_bound
+
+    def loop_moves(self, here: Configuration) -> list[tuple[sct.Event | None, Configuration]]:
+        """What can happen next; a batch can end, without an event, at any place."""
+        state, place = here
+        if place is not None:
+            batch, done = place
+            onwards = self.batches[batch][done:]
+            later: list[tuple[sct.Event | None, Configuration]] = [
+                (event, (after, (batch, done + number + 1)))
+                for number, wanted in enumerate(onwards)
+                for event, after in self.moves(state)
+                if event is wanted
+            ]
+            return [*later, (None, (state, None))]
+        found: list[tuple[sct.Event | None, Configuration]] = []
+        for event, after in self.moves(state):
+            if event.kind in (*_SILENT, sct.EventKind.data):
+                found.append((event, (after, None)))
+            elif self.rests(state) or self.overruns:
+                batch = next(
+                    ((number, each.index(event) + 1) for number, each in enumerate(self.batches) if event in each), None
+                )
+                found.append((event, (after, batch)))
+        return found
+
+    @cached_property
+    def loop_states(self) -> set[State]:
+        start: Configuration = (self.oracle.initial, None)
+        known, front = {start}, [start]
+        for here in front:
+            for _, after in self.loop_moves(here):
+                if after not in known:
+                    known.add(after)
+                    front.append(after)
+        return {state for state, place in known if place is None}
+
+    def loop_blocked(self) -> set[State]:
+        """The states of the loop from which it comes to no marked one in which it rests; it waits only at rest."""
+        alive: set[Configuration] = {
+            (each, None) for each in self.loop_states if self.oracle.is_marked(each) and self.rests(each)
+        }
+        places = [None, *((batch, done) for batch, each in enumerate(self.batches) for done in range(1, len(each) + 1))]
+        left = {(state, place) for state in self.states for place in places} - alive
+
+        def leads(here: Configuration) -> bool:
+            waits = here[1] is not None or self.rests(here[0])
+            return any(
+                after in alive and (waits or event is None or event.kind in (*_SILENT, sct.EventKind.data))
+                for event, after in self.loop_moves(here)
+            )
+
+        while more := {here for here in left if leads(here)}:
+            alive |= more
+            left -= more
+        return {state for state in self.loop_states if (state, None) not in alive}
+
+    def is_run_of_the_loop(self, trace: Iterable[TraceStep]) -> bool:
+        """Whether the control loop can let these events happen."""
+        events = {event_name(each): each for each in self.oracle.events}
+        here: set[Configuration] = {(self.oracle.initial, None)}
+        for number, step in enumerate(trace := list(trace)):
+            after = self.after(trace[: number + 1])
+            here |= {(state, None) for state, _ in here}
+            here = {
+                following
+                for each in here
+                for event, following in self.loop_moves(each)
+                if event is events[step.event] and following[0] == after
+            }
+        return bool(here)
+
+    def torn(self) -> set[State]:
+        """The states of the loop that end in several, whatever resets of what has failed are held back meanwhile."""
+        resets = [each for each in self.oracle.events if each.kind == sct.EventKind.reset]
+        found = set()
+        for size in range(len(resets) + 1):
+            for held in combinations(resets, size):
+                found |= {state for state in self.loop_states if len(self.ends(state, held)) > 1}
+        return found
+
+    def ends(self, state: State, held: Iterable[sct.Event] = ()) -> set[State]:
+        def silent(here: State) -> list[Move]:
+            return [each for each in self.silent(here) if not (each[0] in held and self.failed(each[0], here))]
+
+        return {each for each in self.distances(silent, state) if not silent(each)}
 
     def distances(self, moves: Callable[[State], list[Move]], start: State) -> dict[State, int]:
         """All states that the moves lead to, with the least number of them."""
@@ -144,12 +252,6 @@ class Explicit:
             left = {state for state in left if any(after in left for _, after in self.silent(state))}
             length += 1
         return length
-
-    def ends(self, state: State) -> set[State]:
-        return {each for each in self.distances(self.silent, state) if not self.silent(each)}
-
-    def torn(self) -> set[State]:
-        return {state for state in self.states if len(self.ends(state)) > 1}
 
     def after(self, trace: Iterable[TraceStep], state: State | None = None) -> State:
         """The state to which a trace leads: what it leaves open makes no difference."""

@@ -10,7 +10,7 @@ from robosc.verification.properties.controllability import controllability
 from robosc.verification.properties.dead_events import no_dead_events
 from robosc.verification.properties.input_enabledness import input_enabledness
 from robosc.verification.properties.non_blocking import non_blocking
-from robosc.verification.properties.non_blocking_under_control import non_blocking_under_control
+from robosc.verification.properties.non_blocking_in_the_loop import non_blocking_in_the_loop
 from robosc.verification.properties.permissiveness import maximal_permissiveness
 from robosc.verification.properties.requirement import requirement_holds
 from robosc.verification.properties.response import bounded_response, finite_response
@@ -37,5 +37,5 @@ def properties(model: sct.SupervisoryControlModel) -> list[Property]:
         finite_response,
         bounded_response,
         confluence,
-        non_blocking_under_control,
+        non_blocking_in_the_loop,
     ]
