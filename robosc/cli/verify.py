@@ -104,4 +104,4 @@ def _show(model: sct.SupervisoryControlModel, verdicts: Sequence[Verdict]) -> No
         said = as_text.details(each, model)
         if said:
             say(f"\n{said}")
-    say(f"\n{model.name}: {as_text.summary(verdicts)}")
+    say(f"\n{as_text.TRUSTED}\n\n{model.name}: {as_text.summary(verdicts)}")

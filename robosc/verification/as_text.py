@@ -14,6 +14,12 @@ if TYPE_CHECKING:
     from robosc.synthesis import TraceStep
     from robosc.verification.verdict import Verdict
 
+#: What no verdict is about.
+TRUSTED = (
+    "Trusted, not examined: that plants and requirements are what the text says, the control loop around the events, "
+    "the C compiler, RoboSC itself; docs/verify.md says more."
+)
+
 
 def details(verdict: Verdict, model: sct.SupervisoryControlModel) -> str:
     """What is wrong, and the shortest way to it, a line an event; empty where there is nothing to add."""

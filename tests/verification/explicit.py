@@ -63,12 +63,12 @@ class Explicit:
     @cached_property
     def batches(self) -> list[list[sct.Event]]:
         """What happens with nothing in between: the events of a topic, the cancels."""
-        topics: dict[str, list[sct.Event]] = {}
+        sources: dict[object, list[sct.Event]] = {}
         for event in self.oracle.events:
             plant = plant_of(event)
-            if event.kind == sct.EventKind.response and plant.kind == sct.PlantKind.message and plant.topic:
-                topics.setdefault(plant.topic.removeprefix("/"), []).append(event)
-        return [*topics.values(), [event for event in self.oracle.events if event.kind == sct.EventKind.cancel]]
+            if not event.controllable and plant.kind == sct.PlantKind.message:
+                sources.setdefault(plant.topic.removeprefix("/") if plant.topic else plant, []).append(event)
+        return [*sources.values(), [event for event in self.oracle.events if event.kind == sct.EventKind.cancel]]
 
     def failed(self, event: sct.Event, state: State) -> bool:
         """Whether the event is the reset of what has failed."""

@@ -119,12 +119,21 @@ def test_a_requirement_that_the_supervisor_forgot() -> None:
     requirement = needs("c_trigger", "level < 7", text="requirement drain needs Tank.level < 7")
     made = model([tank()], [requirement], guards={"c_trigger": "tank.level <= 7"})
     name = "requirement drain needs Tank.level < 7"
-    assert verdict(made, name).evidence == "happens in 8 states"
+    assert verdict(made, name).evidence == "happens in 8 states, asks for `Tank.level < 7`"
     assert refuted(made, name) == (
         "request to `Tank` can happen where `Tank.level = 7`",
         ["tank.u_response(i_response = 7)", "tank.c_trigger"],
         [],
         [],
+    )
+
+
+def test_what_a_requirement_became_is_told() -> None:
+    """The words are the author's, also where they were made into something else."""
+    requirement = disables("c_trigger", "level < 7 or tank.any", text="requirement drain needs Tank.level < 7")
+    made = model([tank()], [requirement], guards={"c_trigger": "false"})
+    assert verdict(made, "requirement drain needs Tank.level < 7").evidence == (
+        "happens in 0 states, asks for `!(Tank.level < 7 or Tank.any)`"
     )
 
 

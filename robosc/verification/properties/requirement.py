@@ -5,6 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.diagnostics import Span
+from robosc.expressions import RobotPrinter, copied
+from robosc.metamodel import expression as ex
+from robosc.metamodel import sct
 from robosc.roles import event_name
 from robosc.supervision.wording import words
 from robosc.synthesis.encoding import referenced
@@ -12,7 +15,6 @@ from robosc.verification.system import counted, happening
 from robosc.verification.verdict import Outcome, Verdict
 
 if TYPE_CHECKING:
-    from robosc.metamodel import sct
     from robosc.verification.system import SupervisedSystem
 
 
@@ -23,13 +25,23 @@ def requirement_name(requirement: sct.Requirement) -> str:
     return f"{said} (line {span.line})" if span else said
 
 
+def _asked(requirement: sct.Requirement) -> str:
+    """What has to hold where the event happens, as the model has it."""
+    condition = copied(requirement.condition)
+    wanted = requirement.kind == sct.RequirementKind.needs
+    return RobotPrinter()(condition if wanted else ex.Negation(operand=condition))
+
+
 def requirement_holds(system: SupervisedSystem, requirement: sct.Requirement) -> Verdict:
-    """The supervisor lets the event happen in no reachable state in which the requirement forbids it."""
+    """The supervisor lets the event happen in no reachable state in which the requirement forbids it.
+
+    The evidence shows what was proved: the condition of the model, which was made of the author's words.
+    """
     relation = next(each for each in system.relations if each.event is requirement.event)
     happens = system.reachable & system.allowed[relation]
     broken = happens & ~relation.asked[requirement]
     states = counted(system.encoding.count(happens), "state")
-    evidence, said = f"happens in {states}", requirement_name(requirement)
+    evidence, said = f"happens in {states}, asks for `{_asked(requirement)}`", requirement_name(requirement)
     if not broken.satisfiable():
         return Verdict(said, Outcome.PROVED, evidence)
     path = system.path_to(broken)
