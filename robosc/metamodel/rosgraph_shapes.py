@@ -15,8 +15,6 @@ if TYPE_CHECKING:
 Fault = tuple[Any, str]
 #: What a field of ROS is in a model.
 _BASIC = (ex.BooleanType, ex.IntegerType, ex.DoubleType, ex.StringType)
-#: No message has so many elements; who reads one further on would never find it.
-_LONGEST = 2**20
 
 
 class _Shape:
@@ -75,9 +73,6 @@ def _access_faults(access: rosgraph.WireAccess) -> Iterator[Fault]:
         yield access, "only what a conversion takes may be without a type"
     elif access.type is not None and not isinstance(access.type, _BASIC):
         yield access, f"{type(access.type).__name__} is no type of a field"
-    for step in access.steps:
-        if isinstance(step, rosgraph.IndexStep) and step.index >= _LONGEST:
-            yield step, f"no array has an element {step.index}"
 
 
 def _received_faults(graph: rosgraph.RosGraph) -> Iterator[Fault]:

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
     from robosc.runtime.json_text import Json
 
+#: Elements of an array that a walk makes at most.
+LONGEST = 10_000
 #: Names of fields and positions in arrays, from the outside inwards.
 Path = tuple[str, ...]
 Leaf = bool | int | float | str
@@ -87,7 +89,10 @@ def steps(access: rosgraph.WireAccess) -> Path:
 
 
 def message(fields: Mapping[Path, Field], values: Mapping[Path, Leaf]) -> Any:
-    """Data with these values, defaults elsewhere; an array is as long as the last element with a value wants it."""
+    """Data with these values, defaults elsewhere; an array is as long as the last element with a value wants it.
+
+    Elements from `LONGEST` on are left out: what reads them can't.
+    """
     if () in fields:
         return values.get((), fields[()].default)
     heads = list(dict.fromkeys(path[0] for path in fields))
@@ -99,7 +104,7 @@ def message(fields: Mapping[Path, Field], values: Mapping[Path, Leaf]) -> Any:
     element: dict[Path, Field] = {}
     for each in heads:
         element |= _below(each, fields)
-    length = 1 + max((int(path[0]) for path in values), default=-1)
+    length = 1 + max((int(path[0]) for path in values if int(path[0]) < LONGEST), default=-1)
     if () in element:
         return [values.get((str(index),), element[()].default) for index in range(length)]
     return [message(element, _below(str(index), values)) for index in range(length)]

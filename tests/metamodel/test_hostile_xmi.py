@@ -78,7 +78,6 @@ CHANGES = {
         r"\1\1",
         "'ranges' is read or written as an array here, but as an object elsewhere",
     ),
-    "step to nowhere": (GRAPH, r'index="\d+"', 'index="2147483647"', "no array has an element 2147483647"),
     "field in a number": (
         "Warehouse.rosgraph.xmi",
         r"(<path>pose</path>)\s*<path>x</path>",

@@ -23,7 +23,7 @@ from robosc.resources import locate
 from robosc.roles import event_name
 from robosc.runtime.node_data import NodeData
 from robosc.traces import trace_player
-from robosc.traces.shapes import message
+from robosc.traces.shapes import Field, message
 from robosc.traces.trace_player import Log, Player, TraceError, read_trace
 from robosc.traces.trace_test import trace_test
 from robosc.traces.walk import Walk
@@ -281,3 +281,12 @@ def test_the_player_runs_where_ros_1_does() -> None:
         if isinstance(each, (ast.Import, ast.ImportFrom))
     }
     assert not any(name.startswith("robosc") for name in names)
+
+
+def test_a_walk_makes_no_array_without_end() -> None:
+    fields = {
+        ("ranges", "2147483647"): Field(ex.DoubleType(), "float32"),
+        ("ranges", "1"): Field(ex.DoubleType(), None),
+    }
+    made = message(fields, {("ranges", "2147483647"): 1.5, ("ranges", "1"): 0.5})
+    assert made.ranges == [0.0, 0.5]

@@ -73,7 +73,7 @@ def test_killed_and_restarted(guarded: Scout) -> None:
     # What it was told before is forgotten.
     first = guarded.states(dead)[0]["components"]
     assert first["Navigator"]["state"] == "home"
-    assert first["Operator"]["variables"] == {"wants_light": False, "wants_travel": False}
+    assert not any(first["Operator"]["variables"].values())
     guarded.ready()
     server.do("answer_at_once", fields={"success": True, "message": "again"})
     guarded.send("/light", data=True)
