@@ -8,9 +8,8 @@ from functools import cached_property
 from itertools import combinations
 from typing import TYPE_CHECKING
 
-from robosc.edges import edges_of
 from robosc.metamodel import sct
-from robosc.roles import Roles, plant_of
+from robosc.roles import Roles, plant_of, provide_numbers
 from robosc.synthesis.decoding import Value, pick, value
 from robosc.synthesis.explanation import never_marked, unavoidable
 from robosc.synthesis.paths import Layers, Path, TraceStep, deciding, trace
@@ -239,8 +238,8 @@ class Observer:
             if plant is None:
                 continue
             gap = self._permissions[event].allowed
-            for each in plant.events:
-                if each in self._permissions and _provides_something(plant, each):
+            for each, number in provide_numbers(plant).items():
+                if each in self._permissions and number:
                     gap &= ~self._permissions[each].relation.enabled
             if gap.satisfiable():
                 yield ProvideGap(event, plant, self._example(gap))
@@ -381,8 +380,3 @@ def forbidding(relation: EventRelation, states: Diagram) -> tuple[sct.Requiremen
         if not rest.satisfiable():
             del together[each]
     return tuple(together)
-
-
-def _provides_something(plant: sct.Plant, event: sct.Event) -> bool:
-    """Whether a data event chooses data: the initial location stands for none."""
-    return not any(edge.target.initial for edge in edges_of(plant) if edge.event is event)

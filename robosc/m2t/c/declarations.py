@@ -93,6 +93,8 @@ class Declarations:
         what = plant.origin or plant.name
         kind, on = plant.kind.name, f" ({plant.topic})" if plant.topic else ""
         arrived = "arrived" if plant.kind == sct.PlantKind.message else "is done"
+        if event.kind == sct.EventKind.data:
+            return f"{what} is to be sent {self._data(event)}."
         meanings = {
             sct.EventKind.trigger: {
                 "message": f"{what} is sent{on}.",
@@ -105,7 +107,6 @@ class Declarations:
             sct.EventKind.feedback: f"{what} is under way{on}.",
             sct.EventKind.reset: f"{what} is ready to be used again.",
             sct.EventKind.tau: f"{what} changes by itself{self._steps(event)}.",
-            sct.EventKind.data: f"{what} is to be sent {self._data(event)}.",
         }
         return meanings[event.kind]
 
@@ -118,7 +119,7 @@ class Declarations:
         if not number:
             return "without data"
         edges = self._context.table.edges[event].get(plant_of(event), {})
-        guard = next((edge.guard for edge in edges.values()), None)
+        guard = next((edges[location].guard for location in edges), None)
         return f"with the data of `provide` {number}" + (f", if {RobotPrinter()(guard)}" if guard else "")
 
     def _steps(self, event: sct.Event) -> str:

@@ -86,6 +86,8 @@ class EventTable:
     def stays(self, event: sct.Event, plant: sct.Plant) -> Node:
         """Where the event would leave a plant, which takes part in it, in its location."""
         edges = self.edges[event].get(plant, {})
+        if isinstance(edges, Everywhere) and len(edges) > 1:
+            return sct.LocationReference(location=edges.edge.target)
         loops = [location for location, edge in edges.items() if edge.target is location]
         return within(plant, loops, plant.locations)
 
