@@ -100,7 +100,7 @@ def operators(number: int) -> Files:
 
 
 def namespaces(number: int) -> Files:
-    """Prefixes that an XMI file declares, on one element inside the other in turns."""
+    """Prefixes that an XMI file declares on one element."""
     declared = "".join(f' xmlns:a{i}="urn:a{i}"' for i in range(number))
     return {
         "model.xmi": '<?xml version="1.0" encoding="UTF-8"?>\n'

@@ -43,8 +43,9 @@ HEAD = """\
 
 What a model costs that is long in one respect: seconds of the processor from its text to generated CIF, C, ROS 1, ROS 2
 and XMI, or to its findings where it is wrong on purpose, without what is loaded once; and the memory of the whole
-process at its peak. *k* is the exponent of *N^k* that fits best, and shall be below {most}.
-`python benchmarks/walks.py` measured it on {machine} and wrote this page; tests count the calls of the same walks.
+process at its peak. *k* is the exponent of *N^k* that fits best, and shall be below {most}; *end* is that of the two
+longest alone.
+`python benchmarks/walks.py` measured it on {machine}, and wrote this page; tests count the calls of the same walks.
 
 One text is longer: in CIF each location of an automaton has its own edges, so that *N* `provide` statements for one
 communication become *N²* edges there. 400 of them take 32 MB of text. They are measured without CIF.
@@ -130,8 +131,8 @@ def page(results: dict[str, Any]) -> str:
     sizes = sorted({each["n"] for points in results["families"].values() for each in points})
     lines = [HEAD.format(machine=results["machine"], most=MOST)]
     lines += [
-        f"| | {' | '.join(f'N = {size:,}' for size in sizes)} | MB | k |",
-        f"| --- |{' ---: |' * (len(sizes) + 2)}",
+        f"| | {' | '.join(f'N = {size:,}' for size in sizes)} | MB | k | end |",
+        f"| --- |{' ---: |' * (len(sizes) + 3)}",
     ]
     for family in FAMILIES:
         points = {each["n"]: each for each in results["families"].get(family, ())}
@@ -140,7 +141,9 @@ def page(results: dict[str, Any]) -> str:
         title = (FAMILIES[family].__doc__ or family).partition("\n")[0].rstrip(".")
         cells = [_seconds(points.get(size)) for size in sizes]
         memory = max(each["memory"] for each in points.values())
-        lines.append(f"| {title} | {' | '.join(cells)} | {memory:.0f} | {exponent([*points.values()]):.2f} |")
+        measured = [points[size] for size in sizes if size in points]
+        steep = [f"{exponent(each):.2f}" for each in (measured, [each for each in measured if each["finished"]][-2:])]
+        lines.append(f"| {title} | {' | '.join(cells)} | {memory:.0f} | {' | '.join(steep)} |")
     return "\n".join([*lines, ""])
 
 

@@ -1,18 +1,23 @@
 """No walk over a model takes a time that grows with the square of its length: counted in calls, never in seconds."""
 
+import json
 import sys
 import tracemalloc
 from math import log
+from pathlib import Path
 
 import pytest
 
 import robosc
 from benchmarks.walk_families import FAMILIES, write
+from benchmarks.walks import exponent as slope
+from benchmarks.walks import page
 from robosc.checks import check
 from robosc.diagnostics import ModelError
 from robosc.language import read
 from robosc.metamodel import sct
 
+ROOT = Path(__file__).parents[2]
 SIZES = (30, 120)
 #: What grows with n·log n, and what is small beside what is done once, may lie a little above 1.
 MOST = 1.3
@@ -96,3 +101,9 @@ def test_generating(family, tmp_path):
 def test_data_plants_are_as_long_as_the_text(tmp_path):
     model = robosc.to_sct(robosc.load(write("provides", 50, tmp_path)))
     assert sum(1 for each in model.eAllContents() if isinstance(each, sct.Edge)) < 60
+
+
+def test_the_page_in_the_documentation_is_that_of_the_results():
+    results = json.loads((ROOT / "benchmarks" / "walks.json").read_text())
+    assert (ROOT / "docs" / "walks.md").read_text() == page(results)
+    assert all(slope(points) < MOST for points in results["families"].values())
