@@ -193,7 +193,7 @@ def test_field_of_a_basic_value(tmp_path: Path) -> None:
 @pytest.mark.parametrize(("ros", "edition"), [("ros1", 1), ("ros2", 0)])
 def test_minimal_packages_define_the_same_for_both_ros(ros: str, edition: int) -> None:
     definitions = sorted(path for path in (MINIMAL / ros).rglob("*.*") if path.suffix in {".msg", ".srv", ".action"})
-    assert len(definitions) == 8
+    assert len(definitions) == 10
     interfaces = Interfaces([MINIMAL])
     kinds = {part: folder for part in Part for folder in ("msg", "srv", "action") if part.kind.startswith(folder[0])}
     for path in definitions:
