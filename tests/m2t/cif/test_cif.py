@@ -157,7 +157,11 @@ def test_every_model_keeps_its_meaning(given: sct.SupervisoryControlModel) -> No
     # Synthesis takes no `*`, and a `-` only between the two sides of what is assigned.
     plain = re.sub('".*"', "", text)
     assert "*" not in plain
-    assert all(re.fullmatch(r"[^()]*? - [^-]*", each) for each in re.findall(":= ([^,;]*-[^,;]*)", plain))
+    for value in re.findall(":= ([^,;]*-[^,;]*)", plain):
+        left, *rest = value.split(" - ")
+        assert (len(rest), "-" in rest[0]) == (1, False)
+        assert left.count("(") == left.count(")")
+        assert len(re.findall(r"\bif\b", left)) == len(re.findall(r"\bend\b", left))
     assert "-" not in re.sub(":= [^,;]*", "", plain)
 
 
