@@ -43,6 +43,7 @@ def play(simulation, until, models=None, kind=Controller, quiet=False):
             node.work()
             if not quiet:
                 told = tell(simulation, told)
+        node.flush()
         return [json.loads(line) for line in log.read_text(encoding="utf-8").split("\n")[:-1]]
 
 
@@ -97,6 +98,10 @@ class Node:
         while self._agenda.work() == 0.0:
             pass
 
+    def flush(self):
+        """Waits until all that has happened is in the log."""
+        self._controller.flush_log()
+
 
 class SupervisedNode:
     """A controller that reaches the world, and is reached by it, through its supervisory layer only."""
@@ -134,6 +139,10 @@ class SupervisedNode:
         """Does all that is due now."""
         self._agenda.work()
         self._controller.work()
+
+    def flush(self):
+        """Waits until all that has happened is in the log."""
+        self._layer.flush_log()
 
 
 class WorldPort:

@@ -150,6 +150,10 @@ class Controller:
         """Has the event log written there; before the start."""
         self._log = EventLog("", writer)
 
+    def flush_log(self) -> None:
+        """Waits until all events so far are in the log."""
+        self._log.flush()
+
     def start(self) -> None:
         """Tells what it is and begins to act: the first tick comes after one period."""
         self._reports.define(definition_text(self._graph))

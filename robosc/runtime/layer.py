@@ -56,6 +56,10 @@ class Layer:
         self._explained = {each.event: [each.explanation] for each in graph.model.supervisor.guards if each.explanation}
         self.cancels: dict[sct.Event, Callable[[], None]] = {}
 
+    def flush_log(self) -> None:
+        """Waits until all events so far are in the log."""
+        self._log.flush()
+
     def start(self) -> None:
         """Tells what it is, and reports its state from now on."""
         self._reports.define(definition_text(self._graph))

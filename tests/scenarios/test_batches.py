@@ -26,7 +26,9 @@ class HalfSeeing(Controller):
 
     def receive(self, subscription: rosgraph.Subscription, message: Any) -> None:
         for reception in subscription.receptions:
-            self._batch(reception.event, subscription.topic, reception.inputs, message)
+            self._loop.begin()
+            self._hear(reception, subscription.topic, message)
+            self._loop.end()
 
 
 def on_half(log: list[dict[str, Any]]) -> list[str]:
@@ -64,6 +66,7 @@ def test_a_corner_that_comes_up_together_with_a_wall_ahead(kind: type[Controller
         node.work()
     simulation.world.steps = 20
     node.work()
+    node.flush()
     events = [json.loads(line)["event"] for line in log.read_text().splitlines()]
     assert [each for each in events if "rotate" in each and each.startswith("message_")] == [
         f"message_rotate_{turn}.c_trigger"
