@@ -150,8 +150,8 @@ def _measured(program: Sequence[str], text: str, limit: int) -> dict[str, Any]:
         if process.returncode > 0:
             raise RuntimeError(said)
         lines = output.read_text().splitlines()
-        # What a library says stands before.
-        found = json.loads(lines[-1]) if lines else {}
+        # What a library says stands before; a command that prints no numbers may print warnings.
+        found = json.loads(lines[-1]) if lines and lines[-1].startswith("{") else {}
     return (
         {"finished": process.returncode == 0}
         | found
