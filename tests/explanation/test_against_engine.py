@@ -285,7 +285,7 @@ def check_loosenings(model, loosenings, helps) -> None:
 
 def changes_something(model, event):
     return any(
-        edge.updates or edge.target is not location
+        edge.target is not location or any(len(values_of(update.variable.type)) > 1 for update in edge.updates)
         for plant in model.plants
         for location in plant.locations
         for edge in edges_from(location)
