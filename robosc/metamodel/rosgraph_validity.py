@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from robosc.metamodel import rosgraph, sct
 from robosc.metamodel.expression_types import ExpressionTypes, declared_type
+from robosc.metamodel.reflection import tree
 from robosc.metamodel.rosgraph_shapes import shape_faults
 
 if TYPE_CHECKING:
@@ -40,6 +41,8 @@ def _typed_faults(element: Any, types: ExpressionTypes) -> Iterator[Fault]:
             yield from types.unless(element.value, declared_type(element.type))
         case rosgraph.InputAssignment():
             yield from types.unless(element.value, declared_type(element.input.type))
+            if any(isinstance(each, rosgraph.IndexStep) for _, each in tree(element.value)):
+                yield element, "an input is no element of an array, which need not be there"
         case rosgraph.NodeAssignment():
             yield from types.unless(element.value, declared_type(element.variable.type))
         case rosgraph.ConversionRule():

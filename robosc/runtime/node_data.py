@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from robosc.evaluation import Value, as_double, evaluate, saturate
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
-from robosc.received import locations_reading
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -69,22 +68,11 @@ class NodeData:
 
         Raises PastEndError where one of them can't read what it needs: then the event must not happen.
         """
-        return Received(self._inputs(event, inputs, data), self._assigned(event, data))
+        return Received(self._inputs(inputs, data), self._assigned(event, data))
 
-    def _inputs(self, event: sct.Event, inputs: Sequence[rosgraph.InputAssignment], data: Message) -> dict[str, Any]:
-        values: dict[str, Any] = {}
-        for each in inputs:
-            try:
-                value = self.value(each.value, data)
-            except PastEndError:
-                if self._needs(event, each):
-                    raise
-            else:
-                values[each.input.name] = value.name if isinstance(value, ex.EnumerationLiteral) else value
-        return values
-
-    def _needs(self, event: sct.Event, assignment: rosgraph.InputAssignment) -> bool:
-        return any(map(self.is_in, locations_reading(event, assignment.input)))
+    def _inputs(self, inputs: Sequence[rosgraph.InputAssignment], data: Message) -> dict[str, Any]:
+        values = ((each.input.name, self.value(each.value, data)) for each in inputs)
+        return {name: each.name if isinstance(each, ex.EnumerationLiteral) else each for name, each in values}
 
     def _assigned(self, event: sct.Event, data: Message) -> dict[rosgraph.NodeVariable, Value]:
         return {
@@ -98,12 +86,9 @@ class NodeData:
             if any(map(self.is_in, reaction.locations)):
                 yield from reaction.assignments
 
-    def read_now(self, event: sct.Event, inputs: Sequence[rosgraph.InputAssignment]) -> list[ex.Expression]:
-        """The values that the transitions read which the event takes in the present state."""
-        return [
-            *(each.value for each in inputs if self._needs(event, each)),
-            *(each.value for each in self._assignments(event)),
-        ]
+    def read_now(self, event: sct.Event) -> list[ex.Expression]:
+        """The values that the event gives to variables in the present state."""
+        return [each.value for each in self._assignments(event)]
 
     def values_read(self, event: sct.Event) -> list[ex.Expression]:
         """All values that the event may give to variables."""

@@ -11,7 +11,7 @@ from robosc.evaluation import as_double
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
 from robosc.metamodel.reflection import tree
-from robosc.received import reads_elements, receptions
+from robosc.received import receptions
 from robosc.roles import Roles, event_name
 from robosc.runtime.node_data import NodeData
 from robosc.simulation.unread import Unread, missing
@@ -82,8 +82,7 @@ class EventData:
         reception = self._receptions.get(event)
         if self._node is None or reception is None or "value" not in data:
             return None
-        read = self._node.read_now(reception.event, [each for each in reception.inputs if reads_elements(each.value)])
-        fault = missing(read, data["value"])
+        fault = missing(self._node.read_now(reception.event), data["value"])
         return None if fault is None else Unread(str(fault), self._errors.get(event))
 
     def shaped(self, event: str, values: Mapping[str, Value]) -> dict[str, Any]:

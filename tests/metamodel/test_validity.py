@@ -297,8 +297,9 @@ def graph() -> rosgraph.RosGraph:
     )
     [enumeration] = of.enumerations
     text = rosgraph.Interface(package="std_msgs", type="String", kind=rosgraph.InterfaceKind.message)
-    wire = rosgraph.WireAccess(
-        steps=[rosgraph.FieldStep(name="data"), rosgraph.IndexStep(index=0)], type=ex.BooleanType()
+    wire = rosgraph.WireAccess(steps=[rosgraph.FieldStep(name="data")], type=ex.BooleanType())
+    element = rosgraph.WireAccess(
+        steps=[rosgraph.FieldStep(name="words"), rosgraph.IndexStep(index=0)], type=ex.StringType()
     )
     variable = rosgraph.NodeVariable(
         name="v", component="C", type=ex.StringType(), initial=ex.StringLiteral(value="anything")
@@ -357,7 +358,7 @@ def graph() -> rosgraph.RosGraph:
             rosgraph.Reaction(
                 event=p.events[1],
                 locations=[p.locations[0]],
-                assignments=[rosgraph.NodeAssignment(variable=variable, value=ex.StringLiteral(value="x"))],
+                assignments=[rosgraph.NodeAssignment(variable=variable, value=element)],
             )
         ],
     )
@@ -385,7 +386,12 @@ GRAPHS: list[tuple[str, Any, str]] = [
         "x;",
         "'name' is to be an identifier, which 'x;' is not",
     ),
-    ("subscriptions[0].receptions[0].inputs[0].value.steps[1].index", -1, "an index counts from 0"),
+    (
+        "subscriptions[0].receptions[0].inputs[0].value.steps",
+        [rosgraph.FieldStep(name="flags"), rosgraph.IndexStep(index=0)],
+        "an input is no element of an array, which need not be there",
+    ),
+    ("reactions[0].assignments[0].value.steps[1].index", -1, "an index counts from 0"),
     (
         "publishers[0].sendings[0].alternatives[0].fields[0].type",
         ex.BooleanType(),
@@ -410,6 +416,7 @@ def test_rosgraph_references() -> None:
     given.reactions[0].locations.append(q.locations[0])
     given.publishers[0].sendings[0].alternatives[0].location = p.locations[0]
     given.subscriptions[0].receptions[0].event = valid().plants[0].events[1]
+    given.reactions[0].assignments.clear()
     given.publishers[0].sendings[0].alternatives[0].fields[0].path.append("a.b")
     assert sorted(messages(given)) == [
         "'one' is no location of a data plant",

@@ -16,7 +16,7 @@ from robosc.m2t.cpp.shutdown import message_named
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
 from robosc.metamodel.expression_types import is_double
-from robosc.received import locations_reading, reads_elements
+from robosc.received import reads_elements
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -285,13 +285,8 @@ class Node:
         values = [each.value for each in reception.inputs]
         for reaction in self._reactions(reception.event):
             values += [each.value for each in reaction.assignments]
-        inputs = [self._input(each) for each in reception.inputs if not reads_elements(each.value)]
-        reading = [
-            Reaction(self._are_in(where), [self._input(each)])
-            for each in reception.inputs
-            if reads_elements(each.value) and (where := locations_reading(reception.event, each.input))
-        ]
-        return self._happening(reception.event, inputs, reading, reports.received(values, self._names))
+        inputs = [self._input(each) for each in reception.inputs]
+        return self._happening(reception.event, inputs, reports.received(values, self._names))
 
     def _input(self, assignment: rosgraph.InputAssignment) -> Assignment:
         kind = assignment.input.type
@@ -307,7 +302,6 @@ class Node:
         self,
         event: sct.Event,
         inputs: Sequence[Assignment] = (),
-        reading: Sequence[Reaction] = (),
         data: reports.EventData | None = None,
     ) -> Happening:
         reactions = self._reactions(event)
@@ -318,7 +312,7 @@ class Node:
             for each in assignments
             for part in parts(each.value)
         )
-        reads = bool(reading) or any(reads_elements(each.value) for each in assignments)
+        reads = any(reads_elements(each.value) for each in assignments)
         copy = ("next" if assignments else "") if reads else "old" if keeps_old else ""
         return Happening(
             self._names.c.enumerator(event),
@@ -326,7 +320,7 @@ class Node:
             list(inputs),
             reads,
             copy,
-            [*reading, *self._merged(reactions, copy)],
+            self._merged(reactions, copy),
             data,
         )
 
