@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -24,6 +25,8 @@ if TYPE_CHECKING:
 
 _DEPTH = 10
 _LOOK = 0.05
+#: Seconds after its time for acceptance is over in which a goal may still be accepted; then it counts as lost.
+_LOST = 30.0
 
 
 class Ros2Layer(Ros2Node):
@@ -190,6 +193,8 @@ class _Running:
         self.identifier = identifier
         self.answer = answer
         self.sent = self.accepted = self.cancelled = False
+        #: Of the request for its result.
+        self.asked: Any = None
         self.waiting: list[_Answer] = []
 
 
@@ -255,11 +260,13 @@ class _ActionProxy:
 
     def _on_cancel(self, request: Any, answer: _Answer) -> None:
         """The controller's own requests always pass."""
-        if not self._cancels.service_is_ready():
+
+        def reject() -> None:
             answer.response.return_code = answer.response.ERROR_REJECTED
             answer.give()
-            return
-        self._cancels.call_async(request).add_done_callback(lambda future: answer.give(future.result()))
+
+        if not self._cancels.service_is_ready() or not self._ask_to_cancel(request, answer.give, reject):
+            reject()
 
     # From the robot
 
@@ -274,11 +281,11 @@ class _ActionProxy:
             goal.answer.give(response)
             request = self._types.GetResultService.Request()
             request.goal_id.uuid = list(goal.identifier)
-            self._results.call_async(request).add_done_callback(
-                lambda future: self._on_result(goal, future.result()) if future.result() is not None else None
-            )
-            if goal.cancelled:
+            goal.asked = self._ask(self._results, request, lambda response: self._on_result(goal, response))
+            if goal.cancelled or not goal.asked:
                 self._send_cancel(goal.identifier)
+            if not goal.asked:
+                self._fail("its result can't be asked for")
 
     def _on_feedback(self, message: Any) -> None:
         goal = self._goal
@@ -321,8 +328,8 @@ class _ActionProxy:
             return
         now = self._port.agenda.clock()
         if not goal.sent and self._goals.service_is_ready():
-            goal.sent = True
-            self._goals.call_async(request).add_done_callback(lambda future: self._on_accepted(goal, future.result()))
+            accepted = functools.partial(self._on_accepted, goal)
+            goal.sent = bool(self._ask(self._goals, request, accepted, self._timeout + _LOST))
         if goal.accepted and self._results.service_is_ready():
             self._deadline = now + self._timeout
         if now >= self._deadline:
@@ -346,6 +353,8 @@ class _ActionProxy:
 
     def _finish(self, goal: _Running, response: Any) -> None:
         self._goal = None
+        if goal.asked:
+            self._results.remove_pending_request(goal.asked)
         self._ended = (goal.identifier, response)
         for each in self._statuses.status_list:
             if _bytes(each.goal_info.goal_id) == goal.identifier:
@@ -355,15 +364,51 @@ class _ActionProxy:
         for answer in goal.waiting:
             answer.give(response)
 
+    def _ask(
+        self,
+        client: Any,
+        request: Any,
+        answered: Callable[[Any], None],
+        seconds: float | None = None,
+        late: Callable[[], None] = lambda: None,
+    ) -> Any:
+        """Sends a request; the future of its answer, or None where it can't be sent.
+
+        Calls `answered`, or after so many seconds without an answer `late`, after which an answer is dropped.
+        """
+        try:
+            future = client.call_async(request)
+        except Exception:  # whatever the middleware raises
+            return None
+        future.add_done_callback(lambda future: answered(future.result()))
+
+        def give_up() -> None:
+            if not future.done():
+                client.remove_pending_request(future)
+                late()
+
+        if seconds is not None:
+            self._port.agenda.after(seconds, give_up)
+        return future
+
     def _send_cancel(self, identifier: bytes) -> None:
         request = self._types.CancelGoalService.Request()
         request.goal_info.goal_id.uuid = list(identifier)
-        self._cancels.call_async(request).add_done_callback(lambda future: self._on_cancelling(future.result()))
+        within = f"within {round(self._timeout * 1000)} ms"
+        late = f"the server does not answer the request to cancel the goal {within}"
+        if not self._ask_to_cancel(request, self._on_cancelling, lambda: self._refused(late)):
+            self._refused("the request to cancel the goal can't be sent")
+
+    def _ask_to_cancel(self, request: Any, answered: Callable[[Any], None], late: Callable[[], None]) -> bool:
+        return bool(self._ask(self._cancels, request, answered, self._timeout, late))
 
     def _on_cancelling(self, response: Any) -> None:
         nothing = response.return_code == response.ERROR_NONE and not response.goals_canceling
         if nothing or response.return_code == response.ERROR_REJECTED:
-            self._port.warn(f"{self._action.identifier}: the server refuses to cancel the goal")
+            self._refused("the server refuses to cancel the goal")
+
+    def _refused(self, why: str) -> None:
+        self._port.warn(f"{self._action.identifier}: {why}")
 
 
 def _bytes(identifier: Any) -> bytes:

@@ -200,7 +200,20 @@ def test_a_goal_that_is_accepted_too_late_is_cancelled(trial: Trial) -> None:
 def test_a_cancel_that_the_robot_refuses_is_told(trial: Trial) -> None:
     assert trial.robot("a cancel that the robot refuses") == [["go_to", 11.0], ["cancel", True]]
     assert ["go_to", "SUCCEEDED"] in trial.controller("a cancel that the robot refuses")
-    assert "/go_to: the server refuses to cancel the goal" in trial.output
+    assert trial.output.count("/go_to: the server refuses to cancel the goal") == 1
+
+
+def test_nobody_waits_for_a_robot_that_does_not_answer_a_cancel(trial: Trial) -> None:
+    if trial.ros == "ros2":
+        step = "cancels that the robot does not answer"
+        assert trial.robot(step) == [["go_to", 12.0], ["cancel", True], ["cancel", True]]
+        assert sorted(trial.controller(step)) == [
+            ["cancel", "REJECTED"],
+            ["go_to", "SUCCEEDED"],
+            ["resume", True],
+            ["stop", True],
+        ]
+        assert "/go_to: the server does not answer the request to cancel the goal within 2000 ms" in trial.output
 
 
 def test_a_late_answer_is_none(trial: Trial) -> None:

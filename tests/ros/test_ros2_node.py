@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 HERE = Path(__file__).parent
 #: Transitions of managed nodes, as lifecycle_msgs numbers them.
 CONFIGURE, CLEAN_UP, ACTIVATE, DEACTIVATE = 1, 2, 3, 4
+#: In place of rclcpp's own: its part of a transition (activate, deactivate) ends in an error.
+FAILING = "unsigned char _ZN16rclcpp_lifecycle13LifecycleNode{}on_{}ERKNS_5StateE(void) {{ return 99; }}"
 #: How often components come and go; a multi-threaded container without their guard does not outlive ten times.
 ROUNDS = os.environ.get("ROBOSC_ROUNDS", "20")
 HALT = ("outside", "message_halt.c_trigger")
@@ -51,10 +53,12 @@ class Graph:
         assert done.returncode == 0, done.stderr + self.processes.logs()
         return json.loads(done.stdout)
 
-    def start(self, package: str, name: str, *parameters: str) -> tuple[subprocess.Popen[bytes], Path]:
+    def start(
+        self, package: str, name: str, *parameters: str, preloaded: Path | str = ""
+    ) -> tuple[subprocess.Popen[bytes], Path]:
         """A node by itself, and its event log."""
         log = self.folder / f"{name}.jsonl"
-        command = self.workspace.node(package, f"event_log:={log}", *parameters)
+        command = ["env", f"LD_PRELOAD={preloaded}", *self.workspace.node(package, f"event_log:={log}", *parameters)]
         self.nodes.append(self.processes.start(name, [*command, "-r", f"__node:={name}"]))
         return self.nodes[-1], log
 
@@ -157,6 +161,27 @@ def test_a_managed_node_acts_while_it_is_active(graph: Graph) -> None:
     graph.until_commanded("/cmd_vel")
     assert graph.processes.stop(node) == 0
     assert last(log) == HALT
+
+
+@pytest.mark.parametrize("transition", ["activate", "deactivate"])
+def test_a_managed_node_that_fails_is_still_and_can_be_configured_again(graph: Graph, transition: str) -> None:
+    library = graph.folder / f"{transition}.so"
+    code = FAILING.format(len(f"on_{transition}"), transition)
+    subprocess.run(["gcc", "-shared", "-fPIC", "-x", "c", "-", "-o", library], input=code, text=True, check=True)
+    node, log = graph.start("managed_porter", "failing", preloaded=library)
+    change = lambda *transitions: [graph.manage("change", "/failing", each) for each in transitions]  # noqa: E731
+    graph.world.do("advertise", topic="/order", kind="std_msgs/Float64")
+    if transition == "activate":
+        assert change(CONFIGURE, ACTIVATE) == [True, False]
+        assert "outside" not in log.read_text(), "it never acted"
+    else:
+        assert change(CONFIGURE, ACTIVATE) == [True, True]
+        graph.until_commanded("/cmd_vel")
+        assert change(DEACTIVATE) == [False]
+        assert last(log) == HALT
+    graph.processes.wait_until(lambda: graph.world.do("listeners", topic="/order") == 0, "nobody listens")
+    assert change(CONFIGURE) == [True]
+    assert graph.processes.stop(node) == 0
 
 
 def test_a_managed_node_that_is_not_active_ends_without_a_word(graph: Graph) -> None:

@@ -25,7 +25,7 @@ class Robot:
         self.answering = threading.Event()
         self.answering.set()
         self.accepts = True
-        self.deciding = threading.Event()  # whether it accepts a goal
+        self.deciding = threading.Event()  # whether it accepts a goal, or in ROS 2 a request to cancel it
         self.deciding.set()
         self.deaf = False  # whether it goes on with a goal that it shall cancel
         self.ending = None  # how the goal at hand ends; None: not yet
@@ -133,6 +133,7 @@ class Ros2Robot(Robot):
 
     def on_cancel(self, goal):  # noqa: ARG002
         self.note("cancel", True)
+        self.deciding.wait(20)
         return self.refuse if self.deaf else self.cancel
 
     def execute(self, goal):
@@ -213,7 +214,11 @@ class Trial:
 
     def run(self):
         self.wait(self.ros.heard, "everyone is there", 60)
-        self.ask("server")
+        for _ in range(60):
+            self.ask("server")
+            self.ros.receive(0.5)
+            if self.told:  # what it told while nobody listened was lost
+                break
         self.heard("server", True)
         self.ros.receive(1.0)
         self.ros.listen("label", "std_msgs/String", lambda message: self.labels.append(message.data), latched=True)
@@ -380,10 +385,24 @@ class Trial:
         self.was_blocked("Drive.speed")
         self.resume()
         self.heard("resume", True)
-        self.ros.receive(2.5)
+        if isinstance(self.robot, Ros1Robot):
+            self.ros.receive(2.5)  # in ROS 1 requests to cancel have no answer
         self.robot.end("SUCCEEDED")
         self.ended()
         self.step("a cancel that the robot refuses")
+        if isinstance(self.robot, Ros2Robot):
+            self.start(12.0)
+            self.robot.deciding.clear()
+            self.stop()
+            self.happened("action_go_to.c_cancel")
+            self.ask("cancel")
+            self.heard("cancel", "REJECTED")
+            self.resume()
+            self.heard("resume", True)
+            self.robot.deciding.set()
+            self.robot.end("SUCCEEDED")
+            self.ended()
+            self.step("cancels that the robot does not answer")
 
     def leave_with(self, place):
         """The robot's action server goes, and then the controller sends a goal."""

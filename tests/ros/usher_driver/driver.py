@@ -125,7 +125,7 @@ class Ros2:
             goal.pose.pose.position.x = value
             self.action.send_goal_async(goal, self.on_feedback).add_done_callback(self.on_answer)
         elif what == "cancel":
-            self.goal.cancel_goal_async()
+            self.goal.cancel_goal_async().add_done_callback(self.on_cancelling)
         elif what == "server":
             threading.Thread(target=lambda: self.tell("server", self.action.wait_for_server())).start()
 
@@ -140,6 +140,10 @@ class Ros2:
     def on_result(self, answer):
         names = {4: "SUCCEEDED", 5: "CANCELED", 6: "ABORTED"}
         self.tell("go_to", names[answer.result().status])
+
+    def on_cancelling(self, answer):
+        if answer.result().return_code == answer.result().ERROR_REJECTED:
+            self.tell("cancel", "REJECTED")
 
     def on_feedback(self, message):
         self.tell("feedback", message.feedback.distance_remaining)

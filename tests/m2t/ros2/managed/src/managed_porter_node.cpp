@@ -96,7 +96,7 @@ class Controller : public rclcpp_lifecycle::LifecycleNode {
 
   CallbackReturn on_activate(const rclcpp_lifecycle::State& state) override {
     const CallbackReturn done = LifecycleNode::on_activate(state);
-    activate();
+    if (done == CallbackReturn::SUCCESS) activate();
     return done;
   }
 

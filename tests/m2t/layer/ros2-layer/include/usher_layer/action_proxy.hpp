@@ -250,8 +250,9 @@ class ActionProxy {
     const Running goal = *goal_;
     goal_.reset();
     result_client_->prune_pending_requests();
-    // One that is accepted late is cancelled; after this time it is taken for lost.
-    goal_client_->prune_requests_older_than(std::chrono::system_clock::now() - std::chrono::seconds(30));
+    // One that is accepted late is cancelled; so long after its time for acceptance is over it is taken for lost.
+    const auto patience = timeout_.to_chrono<std::chrono::milliseconds>() + std::chrono::seconds(30);
+    goal_client_->prune_requests_older_than(std::chrono::system_clock::now() - patience);
     ended_ = Ended{goal.id, response};
     for (auto& each : statuses_.status_list) {
       if (each.goal_info.goal_id.uuid == goal.id) each.status = response.status;
