@@ -29,7 +29,7 @@ from benchmarks.performance_page import KINDS, page, percentiles  # noqa: E402
 from benchmarks.timed_packages import timed_packages  # noqa: E402
 from tests.ros.installations import find_ros1, find_ros2  # noqa: E402
 from tests.ros.reactions import reactions  # noqa: E402
-from tests.ros.running import Runner, find_rclpy, ros1_runner, ros2_runner  # noqa: E402
+from tests.ros.running import Runner, find_rclpy, ros1_modules, ros2_modules  # noqa: E402
 from tests.ros.workspaces import Workspace, build  # noqa: E402
 
 if TYPE_CHECKING:
@@ -91,12 +91,13 @@ def _prepared(version: int, kind: str, folder: Path) -> Workspace | Runner | str
     place = folder / f"{kind}-ros{version}"
     if kind == "run":
         if version == 2:
-            return ros2_runner(found.ros, place)
+            return Runner(found.ros, found.ros.python, Path(ros2_modules(found.ros, place)))
         place.mkdir(parents=True, exist_ok=True)
-        return ros1_runner(found.ros, Path(tempfile.mkdtemp(dir=place)))
+        return Runner(found.ros, sys.executable, Path(ros1_modules(found.ros, Path(tempfile.mkdtemp(dir=place)))))
     _say(f"building the nodes for ROS {version} ...")
     packages = timed_packages(version, place / "packages")
-    return build(found.ros, place, [], [*packages, *sorted((INTERFACES / f"ros{version}").iterdir())])
+    said = build(found.ros, place, [], [*packages, *sorted((INTERFACES / f"ros{version}").iterdir())])
+    return Workspace(found.ros, place, said)
 
 
 def _stops(nodes: Workspace | Runner, folder: Path, options: argparse.Namespace) -> dict[str, Any]:

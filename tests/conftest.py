@@ -1,11 +1,18 @@
-"""What all tests share: golden files, kept beside their inputs and accepted anew with `pytest --accept`."""
+"""What all tests share: golden files, kept beside their inputs and accepted anew with `pytest --accept`; one order.
+
+The tests of a file run in one process, unless `pytest_collection_modifyitems` of its folder has given them a group.
+"""
 
 import signal
 from collections.abc import Callable
 from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
 
 import pytest
 from hypothesis import settings
+
+ROS = Path(__file__).parent / "ros"
 
 # Time is measured in benchmarks; a busy machine fails no test.
 settings.register_profile("robosc", deadline=None)
@@ -16,6 +23,39 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--accept", action="store_true", help="write what the tests produce as the new golden files")
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_configure_node(node: Any) -> None:
+    """Tells a process of pytest-xdist which folder it shares with the others."""
+    node.workerinput["shared_folder"] = str(node.config.stash[_SHARED])
+
+
+_SHARED = pytest.StashKey[Path]()
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    given = getattr(config, "workerinput", {}).get("shared_folder")
+    if given is None:
+        temporary = TemporaryDirectory(prefix="robosc-tests-", ignore_cleanup_errors=True)
+        config.add_cleanup(temporary.cleanup)
+        given = temporary.name
+    config.stash[_SHARED] = Path(given)
+
+
+@pytest.fixture(scope="session")
+def shared_folder(pytestconfig: pytest.Config) -> Path:
+    """A folder that all processes of this run of the tests have in common: see `tests.sharing`."""
+    return pytestconfig.stash[_SHARED]
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Tests over ROS come first: they wait, and others fill the time."""
+    for item in items:
+        if item.get_closest_marker("xdist_group") is None:
+            item.add_marker(pytest.mark.xdist_group(item.path.name))
+    items.sort(key=lambda item: ROS not in item.path.parents)
 
 
 @pytest.fixture

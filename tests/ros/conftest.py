@@ -3,18 +3,27 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
+from contextlib import ExitStack
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from tests.ros.installations import find_ros1
 from tests.ros.running import Runner, run_ros1, run_ros2, runner
-from tests.ros.workspaces import Workspace, begin_ros1_workspace, middleware, ros1_workspace, ros2_workspace
+from tests.ros.workspaces import Workspace, middleware, ros1_build, ros1_workspace, ros2_workspace
 
-__all__ = ["ros1_workspace", "ros2_workspace", "run_ros1", "run_ros2", "runner"]
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+    from contextlib import AbstractContextManager
+
+__all__ = ["ros1_build", "ros1_workspace", "ros2_workspace", "run_ros1", "run_ros2", "runner"]
 
 HERE = Path(__file__).parent
+#: Fixtures that run nodes for several tests, and the parameters that say of which kind they are.
+RUNS = ("drive", "courier", "trial", "run", "under_way", "with_guard", "simulated", "graph")
+KINDS = ("nodes", "controller", "kind", "name")
 SIMULATOR = HERE.parents[1] / "examples" / "simulator"
 
 
@@ -60,11 +69,81 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
         metafunc.parametrize("nodes", kinds, indirect=True, scope="session")
 
 
-def pytest_collection_finish(session: pytest.Session) -> None:
-    here = [item for item in session.items if HERE in item.path.parents]
-    compiled = any("[ros1" in item.name or "ros1_workspace" in getattr(item, "fixturenames", ()) for item in here)
-    if compiled and not session.config.option.collectonly:
-        begin_ros1_workspace(session.config)
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Tests of one run of a node go to one process, those of another run to the next that is free.
+
+    Compiled nodes of ROS 1 come last: they are being built meanwhile.
+    """
+    groups: dict[str, int] = {}
+    for item in items:
+        if HERE in item.path.parents:
+            groups.setdefault(group(item), len(groups))
+            item.add_marker(pytest.mark.xdist_group(group(item)))
+    items.sort(key=lambda item: (_needs_ros1_build(item), groups.get(group(item), 0)))
+
+
+def group(item: pytest.Item) -> str:
+    """The run of nodes that a test looks at, or else the test itself."""
+    names = getattr(item, "fixturenames", ())
+    run = next((name for name in RUNS if name in names), None)
+    if run is None:
+        return item.nodeid
+    callspec = getattr(item, "callspec", None)
+    parameters = callspec.params if callspec else {}
+    return " ".join([run, *(str(parameters[name]) for name in (*RUNS, *KINDS) if name in parameters)])
+
+
+def _needs_ros1_build(item: pytest.Item) -> bool:
+    names = getattr(item, "fixturenames", ())
+    return HERE in item.path.parents and ("[ros1" in item.name or "ros1_workspace" in names)
+
+
+@dataclass
+class Kept:
+    """What the tests of one group share: names to what was made, and how it is given up."""
+
+    ends: ExitStack = field(default_factory=ExitStack)
+    made: dict[str, Any] = field(default_factory=dict)
+
+    def end(self) -> None:
+        """Gives all of it up."""
+        self.made.clear()
+        self.ends.close()
+
+
+_KEPT = Kept()
+
+
+@pytest.fixture
+def kept() -> Callable[[str, Callable[[], AbstractContextManager[Any]]], Any]:
+    """`kept(name, make)`: what the context of `make` yields, the same for all tests of a group; left after the last."""
+
+    def one(name: str, make: Callable[[], AbstractContextManager[Any]]) -> Any:
+        if name not in _KEPT.made:
+            try:
+                _KEPT.made[name] = _KEPT.ends.enter_context(make())
+            except Exception as error:  # not to be tried, and waited for, again
+                _KEPT.made[name] = error
+        if isinstance(_KEPT.made[name], Exception):
+            raise _KEPT.made[name]
+        return _KEPT.made[name]
+
+    return one
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_teardown(item: pytest.Item, nextitem: pytest.Item | None) -> Iterator[None]:
+    yield
+    if nextitem is None or group(nextitem) != group(item):
+        _KEPT.end()
+
+
+@pytest.fixture(scope="session", autouse=True)
+def ros1_build_begins(request: pytest.FixtureRequest) -> None:
+    """Has `ros1_workspace` built from the first test on, if it is needed at all."""
+    if any(map(_needs_ros1_build, request.session.items)) and find_ros1().ros is not None:
+        request.getfixturevalue("ros1_build")
 
 
 @pytest.fixture(scope="session")

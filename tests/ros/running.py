@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.ros.installations import Found, Ros, find_ros1
+from tests.sharing import made_once
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -82,34 +83,35 @@ def find_rclpy() -> Found:
     return found
 
 
-def ros1_runner(ros: Ros, folder: Path) -> Runner:
-    """`robosc run --ros1`, with the interfaces of `interfaces/ros1`, made in a folder."""
+def ros1_modules(ros: Ros, folder: Path) -> str:
+    """The Python modules of `interfaces/ros1`, made in a folder: where they are."""
     for package in sorted((HERE / "interfaces" / "ros1").iterdir()):
         _generate_ros1(ros, package, folder)
-    return Runner(ros, sys.executable, folder / "modules")
+    return str(folder / "modules")
 
 
-def ros2_runner(ros: Ros, folder: Path) -> Runner:
-    """`robosc run --ros2`, with the interfaces of `interfaces/ros2`, made in a folder if they are not there."""
+def ros2_modules(ros: Ros, folder: Path) -> str:
+    """The Python modules of `interfaces/ros2`, made in a folder if they are not there: where they are."""
     modules = folder / "modules"
     if not modules.exists():
         packages = sorted((HERE / "interfaces" / "ros2").iterdir())
         _done(ros, [ros.python, "-m", "robosc.runtime.ros2_interfaces", modules, *packages])
-    return Runner(ros, ros.python, modules)
+    return str(modules)
 
 
 @pytest.fixture(scope="session")
-def run_ros1(tmp_path_factory: pytest.TempPathFactory) -> Runner:
+def run_ros1(shared_folder: Path) -> Runner:
     """`robosc run --ros1`, with the interfaces of `interfaces/ros1`."""
-    return ros1_runner(_found_or_skipped("ros1", find_ros1()), tmp_path_factory.mktemp("interfaces_ros1"))
+    ros, folder = _found_or_skipped("ros1", find_ros1()), shared_folder / "interfaces-ros1"
+    return Runner(ros, sys.executable, Path(made_once(shared_folder, "run-ros1", lambda: ros1_modules(ros, folder))))
 
 
 @pytest.fixture(scope="session")
-def run_ros2(tmp_path_factory: pytest.TempPathFactory) -> Runner:
+def run_ros2(shared_folder: Path) -> Runner:
     """`robosc run --ros2`, with the interfaces of `interfaces/ros2`."""
-    kept = os.environ.get("ROBOSC_ROS2_INTERFACES")
-    folder = Path(kept) if kept else tmp_path_factory.mktemp("interfaces_ros2")
-    return ros2_runner(_found_or_skipped("ros2-run", find_rclpy()), folder)
+    ros = _found_or_skipped("ros2-run", find_rclpy())
+    folder = Path(os.environ.get("ROBOSC_ROS2_INTERFACES") or shared_folder / "interfaces-ros2")
+    return Runner(ros, ros.python, Path(made_once(shared_folder, "run-ros2", lambda: ros2_modules(ros, folder))))
 
 
 @pytest.fixture(scope="session", params=["ros1", "ros2"])

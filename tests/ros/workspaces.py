@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 import os
-import random
 import subprocess
 import sys
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 import pytest
 
 from tests.ros.installations import Ros, find_ros1, find_ros2, free_port
 from tests.ros.processes import Processes
+from tests.sharing import made_once, own_domain
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -130,44 +129,37 @@ class Workspace:
         }
 
 
-_ROS1 = pytest.StashKey[Future[Workspace]]()
-
-
-def begin_ros1_workspace(config: pytest.Config) -> None:
-    """Has `ros1_workspace` built while the tests before its own run: they leave a core idle, and it takes minutes."""
-    ros = find_ros1().ros
-    if ros is None:
-        return
-    kept = os.environ.get("ROBOSC_ROS1_WORKSPACE")
-    if kept:
-        folder = Path(kept)
-    else:
-        temporary = TemporaryDirectory(prefix="ros1-", ignore_cleanup_errors=True)
-        config.add_cleanup(temporary.cleanup)
-        folder = Path(temporary.name)
+@pytest.fixture(scope="session")
+def ros1_build(shared_folder: Path) -> Iterator[Future[Workspace]]:
+    """`ros1_workspace`, built while the tests before its own run: they leave a core idle, and it takes minutes."""
     others = [*sorted((HERE / "interfaces" / "ros1").iterdir()), DRIVER, TWO_IN_ONE]
-    config.stash[_ROS1] = ThreadPoolExecutor(1).submit(build, ros, folder, ROS1_PACKAGES, others)
+    with ThreadPoolExecutor(1) as executor:
+        yield executor.submit(_workspace, shared_folder, found_or_skipped(1), ROS1_PACKAGES, others)
 
 
 @pytest.fixture(scope="session")
-def ros1_workspace(pytestconfig: pytest.Config) -> Workspace:
+def ros1_workspace(request: pytest.FixtureRequest) -> Workspace:
     """The packages of `ROS1_PACKAGES` and `interfaces/ros1`.
 
     `ROBOSC_ROS1_WORKSPACE` names a folder that is kept: what has not changed is not built again.
     """
-    found_or_skipped(1)
-    if _ROS1 not in pytestconfig.stash:
-        begin_ros1_workspace(pytestconfig)
-    return pytestconfig.stash[_ROS1].result()
+    future: Future[Workspace] = request.getfixturevalue("ros1_build")
+    return future.result()
 
 
 @pytest.fixture(scope="session")
-def ros2_workspace(tmp_path_factory: pytest.TempPathFactory) -> Workspace:
+def ros2_workspace(shared_folder: Path) -> Workspace:
     """The packages of `ROS2_PACKAGES` and `interfaces/ros2`; `ROBOSC_ROS2_WORKSPACE` likewise."""
-    ros = found_or_skipped(2)
-    kept = os.environ.get("ROBOSC_ROS2_WORKSPACE")
-    folder = Path(kept) if kept else tmp_path_factory.mktemp("ros2")
-    return build(ros, folder, ROS2_PACKAGES, sorted((HERE / "interfaces" / "ros2").iterdir()))
+    return _workspace(
+        shared_folder, found_or_skipped(2), ROS2_PACKAGES, sorted((HERE / "interfaces" / "ros2").iterdir())
+    )
+
+
+def _workspace(shared: Path, ros: Ros, packages: Sequence[Package], others: Sequence[Path]) -> Workspace:
+    """A workspace that is built once in each run of the tests."""
+    name = f"ros{ros.version}"
+    folder = Path(os.environ.get(f"ROBOSC_{name.upper()}_WORKSPACE") or shared / f"{name}-workspace")
+    return Workspace(ros, folder, made_once(shared, name, lambda: build(ros, folder, packages, others)))
 
 
 def found_or_skipped(version: int) -> Ros:
@@ -181,8 +173,8 @@ def found_or_skipped(version: int) -> Ros:
     return found.ros
 
 
-def build(ros: Ros, folder: Path, packages: Sequence[Package], others: Sequence[Path] = ()) -> Workspace:
-    """Generates packages into a workspace, puts others beside them, and builds all."""
+def build(ros: Ros, folder: Path, packages: Sequence[Package], others: Sequence[Path]) -> str:
+    """Generates packages into a workspace, puts others beside them, and builds all; what the build said."""
     source = folder / "src"
     source.mkdir(parents=True, exist_ok=True)
     for package in packages:
@@ -202,7 +194,7 @@ def build(ros: Ros, folder: Path, packages: Sequence[Package], others: Sequence[
         _link(source / package.name, made)
     for other in others:
         _link(source / other.name, other)
-    return Workspace(ros, folder, ros.built(folder))
+    return ros.built(folder)
 
 
 @contextmanager
@@ -214,8 +206,7 @@ def middleware(workspace: Workspace, folder: Path, *, simulated: bool = False) -
     folder.mkdir()
     environment = workspace.environment() | {"ROS_LOG_DIR": str(folder / "log")}
     if workspace.ros.version == 2:
-        domain = random.randrange(1, 100)  # noqa: S311  # so that runs side by side don't meet
-        with Processes(environment | {"ROS_DOMAIN_ID": str(domain)}, folder) as processes:
+        with own_domain() as domain, Processes(environment | {"ROS_DOMAIN_ID": str(domain)}, folder) as processes:
             yield processes
         return
     port = free_port()

@@ -13,7 +13,10 @@ from tests.ros import running, workspaces
 from tests.ros.faults.partners import Peer, Scout
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
+    from contextlib import AbstractContextManager
+
+    Keep = Callable[[str, Callable[[], AbstractContextManager[Scout]]], Scout]
 
 HERE = Path(__file__).parent
 MODEL = HERE / "scout.rscd"
@@ -62,18 +65,18 @@ def controller(request: pytest.FixtureRequest) -> Controller:
 
 
 @contextmanager
-def scouting(controller: Controller, folder: Path, *parameters: str, simulated: bool = False) -> Iterator[Scout]:
-    """A node under way, among its peers."""
+def scouting(controller: Controller, folder: Path, *parameters: str, clock: float | None = None) -> Iterator[Scout]:
+    """A node under way, among its peers; on simulated time where there is a clock, which shows these seconds."""
     ros = controller.place.ros
     peers: list[Peer] = []
-    with workspaces.middleware(controller.place, folder, simulated=simulated) as processes:
+    with workspaces.middleware(controller.place, folder, simulated=clock is not None) as processes:
 
         def meet(name: str) -> Peer:
             peers.append(Peer(processes, ros.python, ros.version, name))
             return peers[-1]
 
         events = folder / "events.jsonl"
-        yield Scout(
+        scout = Scout(
             ros.version,
             processes,
             lambda name: processes.start(name, controller.command(f"event_log:={events}", *parameters)),
@@ -81,16 +84,18 @@ def scouting(controller: Controller, folder: Path, *parameters: str, simulated: 
             folder,
             events,
         )
+        if clock is not None:
+            scout.world.do("clock", seconds=clock)
+        yield scout.ready()
         for each in peers:
             # Nobody waits for their farewell.
             each.process.kill()
 
 
-@pytest.fixture(scope="session")
-def under_way(controller: Controller, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Scout]:
+@pytest.fixture
+def under_way(controller: Controller, kept: Keep, tmp_path_factory: pytest.TempPathFactory) -> Scout:
     """One node for all faults that it outlives: it reports a silent sensor, and drives on."""
-    with scouting(controller, tmp_path_factory.mktemp("faults") / "run") as scout:
-        yield scout.ready()
+    return kept("under way", lambda: scouting(controller, tmp_path_factory.mktemp("faults") / "run"))
 
 
 @pytest.fixture
@@ -106,12 +111,11 @@ def scout(under_way: Scout, request: pytest.FixtureRequest) -> Iterator[Scout]:
         under_way.nothing(1.0)
 
 
-@pytest.fixture(scope="session")
-def with_guard(controller: Controller, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Scout]:
+@pytest.fixture
+def with_guard(controller: Controller, kept: Keep, tmp_path_factory: pytest.TempPathFactory) -> Scout:
     """A node that stops when its sensor is silent, and for tests that end it; it waits long for a goal's acceptance."""
     parameters = ["watchdog_stops:=true", "action_timeout_ms:=15000"]
-    with scouting(controller, tmp_path_factory.mktemp("guarded") / "run", *parameters) as scout:
-        yield scout.ready()
+    return kept("with guard", lambda: scouting(controller, tmp_path_factory.mktemp("guarded") / "run", *parameters))
 
 
 @pytest.fixture

@@ -39,7 +39,7 @@ PACE = 0.25
 #: The way is clear; the second ray gives the pace.
 CLEAR = {"ranges": [1.0, PACE]}
 #: Seconds for what should happen at once, on a machine that is busy.
-PATIENCE = 15.0
+PATIENCE = 60.0
 #: Seconds for which ROS 2 takes a server that was killed to be there.
 LEASE = 21.0
 

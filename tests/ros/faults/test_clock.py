@@ -10,23 +10,25 @@ from robosc.definition import TRANSITIONS_KEPT
 from tests.ros.faults.conftest import scouting
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from contextlib import AbstractContextManager
 
-    from tests.ros.faults.conftest import Controller
+    from tests.ros.faults.conftest import Controller, Keep
     from tests.ros.faults.partners import Moment, Scout
 
 MOVE = "message_move.c_trigger"
 START = 1000.0
 
 
-@pytest.fixture(scope="session")
-def simulated(controller: Controller, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Scout]:
+@pytest.fixture
+def simulated(controller: Controller, kept: Keep, tmp_path_factory: pytest.TempPathFactory) -> Scout:
     """A node on simulated time; no topic has a watchdog."""
-    folder = tmp_path_factory.mktemp("clock") / "run"
     names = {1: ["watchdog_ms/scan:=0"], 2: ["watchdog_ms.scan:=0", "use_sim_time:=true"]}
-    with scouting(controller, folder, *names[controller.place.ros.version], simulated=True) as scout:
-        scout.world.do("clock", seconds=START)
-        yield scout.ready()
+    parameters = names[controller.place.ros.version]
+
+    def node() -> AbstractContextManager[Scout]:
+        return scouting(controller, tmp_path_factory.mktemp("clock") / "run", *parameters, clock=START)
+
+    return kept("simulated", node)
 
 
 def ticks(scout: Scout, since: Moment) -> int:

@@ -3,24 +3,23 @@
 from __future__ import annotations
 
 import re
+from contextlib import nullcontext
 from typing import TYPE_CHECKING
 
 import pytest
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable
 
     from tests.ros.faults.partners import Moment, Peer, Scout
 
 START = None
 
 
-@pytest.fixture(scope="session")
-def stranger(under_way: Scout) -> Iterator[Peer]:
+@pytest.fixture
+def stranger(under_way: Scout, kept: Callable[..., Peer]) -> Peer:
     """Somebody else's node."""
-    peer = under_way.meet("stranger")
-    yield peer
-    peer.process.kill()
+    return kept("stranger", lambda: nullcontext(under_way.meet("stranger")))
 
 
 def once(scout: Scout, since: Moment, text: str) -> None:
