@@ -22,7 +22,7 @@ __all__ = ["ros1_build", "ros1_workspace", "ros2_workspace", "run_ros1", "run_ro
 
 HERE = Path(__file__).parent
 #: Fixtures that run nodes for several tests, and the parameters that say of which kind they are.
-RUNS = ("drive", "courier", "trial", "run", "under_way", "with_guard", "simulated", "graph")
+RUNS = ("drive", "courier", "trial", "run", "under_way", "with_patience", "with_guard", "simulated", "graph")
 KINDS = ("nodes", "controller", "kind", "name")
 SIMULATOR = HERE.parents[1] / "examples" / "simulator"
 

@@ -101,14 +101,34 @@ def under_way(controller: Controller, kept: Keep, tmp_path_factory: pytest.TempP
 @pytest.fixture
 def scout(under_way: Scout, request: pytest.FixtureRequest) -> Iterator[Scout]:
     """The node, at rest, driving."""
-    under_way.rest()
+    with resting(under_way, request):
+        yield under_way
+
+
+@pytest.fixture
+def with_patience(controller: Controller, kept: Keep, tmp_path_factory: pytest.TempPathFactory) -> Scout:
+    """A node that waits long for a goal's acceptance, which takes its time on a busy machine."""
+    parameter = "action_timeout_ms:=60000"
+    return kept("with patience", lambda: scouting(controller, tmp_path_factory.mktemp("patient") / "run", parameter))
+
+
+@pytest.fixture
+def patient(with_patience: Scout, request: pytest.FixtureRequest) -> Iterator[Scout]:
+    """That node, at rest, driving."""
+    with resting(with_patience, request):
+        yield with_patience
+
+
+@contextmanager
+def resting(scout: Scout, request: pytest.FixtureRequest) -> Iterator[None]:
+    """A node, at rest; what a test that fails has left on the server is nothing for the next."""
+    scout.rest()
     failed = request.session.testsfailed
-    yield under_way
+    yield
     if request.session.testsfailed > failed:
-        # What this test has left on the server is nothing for the next.
-        under_way.kill_server()
-        under_way.serve()
-        under_way.nothing(1.0)
+        scout.kill_server()
+        scout.serve()
+        scout.nothing(1.0)
 
 
 @pytest.fixture

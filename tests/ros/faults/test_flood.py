@@ -7,6 +7,8 @@ import os
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
+import pytest
+
 if TYPE_CHECKING:
     from tests.ros.faults.partners import Scout
 
@@ -14,6 +16,11 @@ RATE = 2000
 SECONDS = int(os.environ.get("ROBOSC_FLOOD_SECONDS", "10"))
 #: On a busy machine a node may be late with what it must not lose.
 PATIENCE = SECONDS + 60
+
+
+@pytest.fixture
+def scout(patient: Scout) -> Scout:
+    return patient
 
 
 def test_flood(scout: Scout) -> None:
