@@ -34,8 +34,6 @@ from robosc.language import read  # noqa: E402
 
 SIZES = (100, 400, 1600, 5000)
 TARGETS = ("cif", "supervisor", "ros1", "ros2", "xmi")
-#: In CIF each location has its edges, so that this text grows with the square of the statements.
-WITHOUT = {"provides": ("cif",)}
 MOST = 1.3
 
 HEAD = """\
@@ -46,9 +44,6 @@ and XMI, or to its findings where it is wrong on purpose, without what is loaded
 process at its peak. *k* is the exponent of *N^k* that fits best, and shall be below {most}; *end* is that of the two
 longest alone.
 `python benchmarks/walks.py` measured it on {machine}, and wrote this page; tests count the calls of the same walks.
-
-One text is longer: in CIF each location of an automaton has its own edges, so that *N* `provide` statements for one
-communication become *N²* edges there. 400 of them take 32 MB of text. They are measured without CIF.
 """
 
 
@@ -92,15 +87,15 @@ def _measured(family: str, number: int, limit: int) -> dict[str, Any]:
 
 
 def _one(family: str, number: int, folder: Path) -> dict[str, float]:
-    _through(family, write(family, 10, folder))
+    _through(write(family, 10, folder))
     path = write(family, number, folder)
     began = process_time()
-    _through(family, path)
+    _through(path)
     seconds = process_time() - began
     return {"seconds": seconds, "memory": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024}
 
 
-def _through(family: str, path: Path) -> None:
+def _through(path: Path) -> None:
     if path.suffix == ".xmi":
         check(robosc.load(path))
         return
@@ -111,8 +106,7 @@ def _through(family: str, path: Path) -> None:
     models = robosc.Models(robosc.to_sct(robot), robosc.to_rosgraph(robot), robot)
     robosc.synthesize(models.sct)
     for target in TARGETS:
-        if target not in WITHOUT.get(family, ()):
-            robosc.generate(target, models)
+        robosc.generate(target, models)
 
 
 def exponent(points: list[dict[str, Any]]) -> float:

@@ -140,9 +140,11 @@ def _data_plant(draw: st.DrawFn, name: str, scope: _Scope):
         edge("c_none", to="none", when=" and ".join(f"not ({each})" for each in conditions)),
         *(edge(f"c_d{index}", to=f"d{index}", when=each) for index, each in enumerate(conditions, 1)),
     ]
+    shared = draw(st.booleans())
     return plant(
         name,
-        dict.fromkeys(locations, edges),
+        dict.fromkeys(locations, () if shared else edges),
+        everywhere=edges if shared else (),
         controllable=[each.event for each in edges],
         marked=locations,
         kind="data",

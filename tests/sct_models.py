@@ -56,6 +56,7 @@ class _Edge:
 class _Plant:
     element: sct.Plant
     locations: Mapping[str, Sequence[_Edge]]
+    everywhere: Sequence[_Edge]
     carries: Mapping[str, Sequence[str]]
     variables: Mapping[str, str]
     inputs: Mapping[str, str]
@@ -87,8 +88,11 @@ def plant(
     kind: str = "behaviour",
     topic: str | None = None,
     origin: str | None = None,
+    everywhere: Sequence[_Edge] = (),
 ) -> _Plant:
     """A plant and the events it declares, each given by name, or as a mapping to the inputs that carry its data.
+
+    Each location has its edges and those from `everywhere`, which say where they lead.
 
     The first location is initial and alone marked unless said otherwise. An event's kind follows from its name
     (`c_trigger`, `u_response`, `c_tau1`); in a data plant it is data; else trigger or response.
@@ -115,6 +119,7 @@ def plant(
             ],
         ),
         locations,
+        everywhere,
         {
             event: inputs_of
             for events in (controllable, uncontrollable)
@@ -221,18 +226,19 @@ class _Scope:
     def fill(self, given: _Plant) -> None:
         owner = given.element
         for location in owner.locations:
-            for each in given.locations[location.name]:
-                location.edges.append(
-                    sct.Edge(
-                        event=self.event(each.event, owner),
-                        guard=None if each.when is None else self.expression(each.when, owner),
-                        target=self.find(each.to or location.name, owner),
-                        updates=[
-                            sct.Update(variable=self.find(name, owner), value=self.expression(value, owner))
-                            for name, value in each.do.items()
-                        ],
-                    )
-                )
+            location.edges.extend(self.edge(each, owner, location.name) for each in given.locations[location.name])
+        owner.edges.extend(self.edge(each, owner, "") for each in given.everywhere)
+
+    def edge(self, given: _Edge, owner: sct.Plant, here: str) -> sct.Edge:
+        return sct.Edge(
+            event=self.event(given.event, owner),
+            guard=None if given.when is None else self.expression(given.when, owner),
+            target=self.find(given.to or here, owner),
+            updates=[
+                sct.Update(variable=self.find(name, owner), value=self.expression(value, owner))
+                for name, value in given.do.items()
+            ],
+        )
 
     def supervisor(self, guards: Mapping[str, Any]) -> sct.Supervisor:
         parts = {

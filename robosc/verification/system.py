@@ -34,10 +34,11 @@ class SupervisedSystem:
     """What a model with a supervisor does, as the controller runs it.
 
     An event happens where its plants enable it and both parts of its guard hold: what the supervisor says is taken from
-    these expressions, and the requirements are not asked. Raises ValueError where the model has no supervisor.
+    these expressions, and the requirements are not asked. Without `guards` they are the plants alone. Raises ValueError
+    where the model has no supervisor.
     """
 
-    def __init__(self, model: sct.SupervisoryControlModel, encoding: Encoding) -> None:
+    def __init__(self, model: sct.SupervisoryControlModel, encoding: Encoding, *, guards: bool = True) -> None:
         if model.supervisor is None:
             raise ValueError(f"{model.name} has no supervisor: synthesize it first")
         self.model = model
@@ -46,13 +47,13 @@ class SupervisedSystem:
         self.encoding = encoding
         self.diagrams = encoding.diagrams
         self.relations = event_relations(model, encoding)
-        self.guards = {each.event: each for each in model.supervisor.guards}
+        self.guards = {each.event: each for each in model.supervisor.guards if guards}
         #: Where an event can happen, be the state reachable or not.
         self.allowed = {each: each.enabled & self.guard(each.event) for each in self.relations}
         supervised = [(each, allowed, each.step_where(allowed)) for each, allowed in self.allowed.items()]
         #: The events that change something.
         self.moves = [(each, step) for each, _, step in supervised if step is not None]
-        self.silent = silent_events(supervised, model.supervisor.guards)
+        self.silent = silent_events(supervised, self.guards.values())
 
     def guard(self, event: sct.Event) -> Diagram:
         """Where the supervisor lets an event happen; everywhere, if it has no guard for it."""

@@ -83,8 +83,8 @@ def generating(path):
     robot = robosc.load(path)
     models = robosc.Models(robosc.to_sct(robot), robosc.to_rosgraph(robot), robot)
     robosc.synthesize(models.sct)
-    robosc.generate("supervisor", models)
-    return models
+    for target in ("supervisor", "cif"):
+        robosc.generate(target, models)
 
 
 @pytest.mark.parametrize("family", ["provides", "operators"])

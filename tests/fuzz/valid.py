@@ -12,7 +12,7 @@ from robosc.config import Configuration
 from robosc.diagnostics import has_errors
 from robosc.engine import Settings
 from robosc.m2t import cif, xmi
-from robosc.m2t.cif.names import CifNames
+from robosc.m2t.cif.names import CifNames, is_numbered
 from robosc.metamodel import xmi as saved
 from robosc.models import Models
 from robosc.synthesis import synthesize
@@ -103,8 +103,9 @@ def _read(text: str, model: sct.SupervisoryControlModel) -> sct.SupervisoryContr
 
 def _named(model: sct.SupervisoryControlModel) -> list[NamedElement]:
     owners = [*model.enumerations, *model.plants]
-    members = ("literals", "events", "inputs", "variables", "locations")
-    return owners + [each for owner in owners for member in members for each in getattr(owner, member, ())]
+    members = ("literals", "events", "inputs", "variables")
+    named = owners + [each for owner in owners for member in members for each in getattr(owner, member, ())]
+    return named + [each for plant in model.plants if not is_numbered(plant) for each in plant.locations]
 
 
 def _counts(synthesis: Synthesis) -> tuple[int, int]:

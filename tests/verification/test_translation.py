@@ -20,7 +20,7 @@ from tests.examples.conftest import SCENARIOS, models_of
 from tests.m2t.supervisor import corners
 from tests.m2t.supervisor.test_supervisor import dock
 from tests.random_sct import sct_models
-from tests.sct_models import edge, model, needs, plant
+from tests.sct_models import disables, edge, model, needs, plant
 
 
 def supervised(made: sct.SupervisoryControlModel) -> sct.SupervisoryControlModel:
@@ -77,8 +77,8 @@ def c_of(made: sct.SupervisoryControlModel) -> dict[str, str]:
     return supervisor.generate(Models(made), Configuration())
 
 
-def cif_of(made: sct.SupervisoryControlModel) -> str:
-    return cif.generate(Models(made), Configuration())[f"{made.name}.supervised.cif"]
+def cif_of(made: sct.SupervisoryControlModel) -> dict[str, str]:
+    return cif.generate(Models(made), Configuration())
 
 
 def changed(text: str, pattern: str, replacement: str) -> str:
@@ -95,9 +95,11 @@ def with_changed_c(pattern: str, replacement: str, effort: Effort | None = None)
     return validate_c(made, {**files, "pump_supervisor.c": source}, effort)
 
 
-def with_changed_cif(pattern: str, replacement: str) -> Verdict:
+def with_changed_cif(pattern: str, replacement: str, kind: str = "supervised.cif") -> Verdict:
     made = pump()
-    return validate_cif(made, changed(cif_of(made), pattern, replacement))
+    files = cif_of(made)
+    name = f"{made.name}.{kind}"
+    return validate_cif(made, {**files, name: changed(files[name], pattern, replacement)})
 
 
 @pytest.mark.parametrize("name", SCENARIOS)
@@ -450,6 +452,143 @@ def test_cif_that_is_another_system_is_refuted(pattern: str, replacement: str, w
     verdict = with_changed_cif(pattern, replacement)
     assert verdict.outcome is Outcome.REFUTED
     assert re.match(rf"the generated CIF is wrong: (line \d+, column \d+: )?{re.escape(wrong)}", verdict.explanation)
+
+
+def chosen() -> sct.SupervisoryControlModel:
+    """Data chosen by a state, under a supervisor."""
+    given = model(
+        [
+            plant("message_go", {"ready": [edge("c_trigger")]}, kind="message", controllable=["c_trigger"]),
+            plant(
+                "data_go",
+                {"none": (), "d1": (), "d2": ()},
+                everywhere=[
+                    edge("c_d1", "d1", when="door.open"),
+                    edge("c_d2", "d2", when="door.shut and not door.locked"),
+                    edge("c_none", "none", when="not door.open and not door.shut"),
+                ],
+                controllable=["c_d1", "c_d2", "c_none"],
+                kind="data",
+                marked=["none", "d1", "d2"],
+                origin="Door.go",
+            ),
+            plant(
+                "door",
+                {
+                    "shut": [edge("moved", "open"), edge("turned", do={"locked": "not locked"})],
+                    "open": [edge("moved", "shut"), edge("turned")],
+                    "torn": [edge("moved")],
+                },
+                uncontrollable=["moved", "turned"],
+                variables={"locked": "bool"},
+                origin="Door",
+            ),
+        ],
+        [needs("message_go.c_trigger", "door.shut"), disables("message_go.c_trigger", "door.locked")],
+        name="Chosen",
+    )
+    return supervised(given)
+
+
+IN_MODEL_FILE = "can happen in the generated CIF without supervisor and not in the model"
+MISSING_THERE = "can happen in the model and not in the generated CIF without supervisor"
+BOTH, MODEL_FILE = ("cif", "supervised.cif"), ("cif",)
+#: What is changed, in which file, the shortest way to it, and what is said, where the file is no part of that.
+CHOSEN_MUTANTS = {
+    "a requirement is weaker": (
+        MODEL_FILE,
+        r"^requirement (\S+) needs door.shut;$",
+        r"requirement \1 needs door.shut or door.open;",
+        ["door.moved"],
+        f"by the requirements `message_go.c_trigger` {IN_MODEL_FILE} where `Door.open and !Door.locked`",
+    ),
+    "a requirement is dropped": (
+        MODEL_FILE,
+        r"^requirement .* disables .*;$",
+        "",
+        ["door.turned"],
+        f"by the requirements `message_go.c_trigger` {IN_MODEL_FILE} where `Door.shut and Door.locked`",
+    ),
+    "a requirement is turned round": (
+        MODEL_FILE,
+        r"^requirement (\S+) needs (.*);$",
+        r"requirement \2 disables \1;",
+        [],
+        f"by the requirements `message_go.c_trigger` {MISSING_THERE} where `Door.shut and !Door.locked`",
+    ),
+    "a requirement is the plant's": (
+        MODEL_FILE,
+        r"^requirement (\S+) needs door.shut;$",
+        r"plant invariant \1 needs door.shut;",
+        [],
+        "the generated CIF without supervisor is wrong: it says what a supervisor does",
+    ),
+    "a requirement asks of another event": (
+        MODEL_FILE,
+        r"^requirement \S+ needs door.shut;$",
+        "requirement door.turned needs door.shut;",
+        ["door.moved"],
+        f"by the requirements `message_go.c_trigger` {IN_MODEL_FILE} where `Door.open and !Door.locked`",
+    ),
+    "a target is swapped": (
+        MODEL_FILE,
+        r"^    edge moved goto shut;$",
+        "    edge moved;",
+        ["door.moved"],
+        (
+            "after `door.moved`, the generated CIF without supervisor has `Door.open` and the model `Door.shut`"
+            " where `Door.open`"
+        ),
+    ),
+    "a choice has another number": (
+        BOTH,
+        r"do choice := 1;",
+        "do choice := 2;",
+        ["door.moved"],
+        ("after `data_go.c_d1`, FILE has `Door.go.d2` and the model `Door.go.d1`"),
+    ),
+    "a choice is guarded otherwise": (
+        BOTH,
+        r"edge c_d2 when door.shut and not door.locked",
+        "edge c_d2 when door.shut",
+        ["door.turned"],
+        "`data_go.c_d2` can happen in FILE and not in the model",
+    ),
+    "another choice at the start": (BOTH, r"choice = 0;", "choice = 1;", [], "at the start FILE has"),
+    "more choices": (
+        BOTH,
+        r"int\[0\.\.2\] choice",
+        "int[0..3] choice",
+        [],
+        "FILE is wrong: the values of 'choice' of 'data_go' are not the numbers of 3 locations",
+    ),
+    "a choice is not marked": (
+        BOTH,
+        r"(choice = 0;\n\n  location:\n    initial;) marked;",
+        r"\1",
+        [],
+        "FILE is wrong: 'none' of 'data_go' is not marked in it",
+    ),
+}
+
+
+@pytest.mark.parametrize(
+    ("kind", "pattern", "replacement", "trace", "explanation"),
+    [(kind, *each) for kinds, *each in CHOSEN_MUTANTS.values() for kind in kinds],
+    ids=[f"{name}-{kind}" for name, (kinds, *_) in CHOSEN_MUTANTS.items() for kind in kinds],
+)
+def test_either_file_of_cif_is_compared(
+    kind: str, pattern: str, replacement: str, trace: list[str], explanation: str
+) -> None:
+    made = chosen()
+    files, name = cif_of(made), f"Chosen.{kind}"
+    verdict = validate_cif(made, files)
+    assert (verdict.outcome, verdict.evidence) == (Outcome.PROVED, "6 events in both files, each in every state")
+    verdict = validate_cif(made, {**files, name: changed(files[name], pattern, replacement)})
+    file = "the generated CIF" if kind == "supervised.cif" else "the generated CIF without supervisor"
+    assert verdict.outcome is Outcome.REFUTED
+    assert verdict.explanation.startswith(explanation.replace("FILE", file))
+    assert [str(each) for each in verdict.trace] == trace
 
 
 LOOP_MUTANTS = {

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, ClassVar
 
-from robosc.expressions import ExpressionPrinter
+from robosc.expressions import PRECEDENCE, ExpressionPrinter
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 
@@ -53,7 +53,7 @@ class CifPrinter(ExpressionPrinter):
             case ex.EnumerationLiteralReference():
                 return self._names.used(expression.literal, self._plant)
             case sct.LocationReference():
-                return self._names.used(expression.location, self._plant)
+                return self._location(expression.location)
             case sct.VariableReference():
                 return self._names.used(expression.variable, self._plant)
             case sct.InputReference():
@@ -61,6 +61,20 @@ class CifPrinter(ExpressionPrinter):
             case ex.Conditional():
                 return self._choice(expression)
         return super().atom(expression)
+
+    def precedence(self, expression: ex.Expression) -> int:
+        """As everywhere, but that the location of some plants is a number, which is compared."""
+        if isinstance(expression, sct.LocationReference) and self._names.number(expression.location.eContainer()):
+            return PRECEDENCE[ex.Equation]
+        return super().precedence(expression)
+
+    def _location(self, location: sct.Location) -> str:
+        plant: sct.Plant = location.eContainer()
+        number = self._names.number(plant)
+        if number is None:
+            return self._names.used(location, self._plant)
+        owner = "" if plant is self._plant else f"{self._names.declared(plant)}."
+        return f"{owner}{number} = {plant.locations.index(location)}"
 
     def _choice(self, expression: ex.Conditional) -> str:
         word, text = "if", ""

@@ -5,11 +5,26 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from robosc.m2t.cif.keywords import KEYWORDS
+from robosc.metamodel import sct
 from robosc.naming import Names
 
 if TYPE_CHECKING:
     from robosc.metamodel import expression as ex
-    from robosc.metamodel import sct
+
+
+def is_numbered(plant: sct.Plant) -> bool:
+    """Whether a variable holds the number of the plant's location, its only location having all edges.
+
+    So it is where data is chosen: every location has the same edges, and written for each of them they would be as many
+    as the square of the choices.
+    """
+    return (
+        plant.kind == sct.PlantKind.data
+        and len(plant.locations) > 1
+        and bool(plant.edges)
+        and not any(each.edges for each in plant.locations)
+        and len({each.marked for each in plant.locations}) == 1
+    )
 
 
 class CifNames:
@@ -21,6 +36,7 @@ class CifNames:
 
     def __init__(self, model: sct.SupervisoryControlModel) -> None:
         self._names: dict[Any, str] = {}
+        self._numbers: dict[sct.Plant, str] = {}
         outer = Names()
         for element in self._outer(model):
             self._names[element] = outer.fresh(element.name)
@@ -29,8 +45,12 @@ class CifNames:
         taken = {*self._names.values(), self.supervisor}
         for plant in model.plants:
             inner = Names(taken)
-            for member in (*plant.events, *plant.inputs, *plant.variables, *plant.locations):
+            for member in (*plant.events, *plant.inputs, *plant.variables):
                 self._names[member] = inner.fresh(member.name)
+            if is_numbered(plant):
+                self._numbers[plant] = inner.fresh("choice")
+            else:
+                self._names.update({each: inner.fresh(each.name) for each in plant.locations})
 
     @staticmethod
     def _outer(model: sct.SupervisoryControlModel) -> list[ex.NamedElement]:
@@ -41,6 +61,10 @@ class CifNames:
         """The name where the element is declared, and within the same plant."""
         name = self._names[element]
         return f"${name}" if name in KEYWORDS else name
+
+    def number(self, plant: sct.Plant) -> str | None:
+        """The variable with the number of the plant's location, None where it has locations in CIF, too."""
+        return self._numbers.get(plant)
 
     def used(self, element: ex.NamedElement, plant: sct.Plant | None) -> str:
         """The name as it is read from inside a plant, or from outside of all."""

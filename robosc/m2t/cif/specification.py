@@ -13,14 +13,14 @@ from robosc.edges import edges_from, edges_of
 from robosc.m2t.cif.arithmetic import assigned, condition, held
 from robosc.m2t.cif.expressions import CifPrinter
 from robosc.m2t.cif.linear import bounds, shift
-from robosc.m2t.cif.names import CifNames
+from robosc.m2t.cif.names import CifNames, is_numbered
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 from robosc.metamodel.reflection import tree
 from robosc.roles import provide_numbers
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
 
 _NOTHING_ADDED = "Synthesis added nothing to the requirements."
@@ -124,8 +124,8 @@ class Writer:
         self._outside = CifPrinter(self._names, None)
         self._impossible = impossible(model)
         self._meanings = {**_transitions(model), **_choices(model)}
-        #: The texts of guards, some of which are those of every location.
-        self._guards: dict[sct.Edge, str] = {}
+        #: Of all locations, the number in their plant.
+        self._numbers = {each: number for plant in model.plants for number, each in enumerate(plant.locations)}
         self._referred = {each.location for _, each in tree(model) if isinstance(each, sct.LocationReference)}
 
     def specification(self) -> Specification:
@@ -175,8 +175,14 @@ class Writer:
                 )
             ],
             inputs=[self._variable(each, "") for each in plant.inputs],
-            variables=[self._variable(each, printer(held(each))) for each in plant.variables],
-            locations=[self._location(each, plant, printer) for each in plant.locations],
+            variables=[
+                *(self._variable(each, printer(held(each))) for each in plant.variables),
+                *self._number(plant),
+            ],
+            locations=[
+                self._location(each, plant, printer)
+                for each in (plant.locations[:1] if is_numbered(plant) else plant.locations)
+            ],
         )
 
     def _counted(self) -> list[str]:
@@ -214,11 +220,19 @@ class Writer:
                 docs = [quoted(f"{name} + {up}, with {name} in {low}..{high}")]
         return Variable(kind, name, initial, docs)
 
+    def _number(self, plant: sct.Plant) -> Iterator[Variable]:
+        name = self._names.number(plant)
+        if name is not None:
+            initial = next(str(number) for number, each in enumerate(plant.locations) if each.initial)
+            docs = [quoted("The number of the provide statement that is chosen, 0 for none.")]
+            yield Variable(f"int[0..{len(plant.locations) - 1}]", name, initial, docs)
+
     def _location(self, location: sct.Location, plant: sct.Plant, printer: CifPrinter) -> Location:
         alone = plant.kind == sct.PlantKind.message and len(plant.locations) == 1
+        nameless = is_numbered(plant) or (alone and location not in self._referred)
         return Location(
-            name="" if alone and location not in self._referred else self._names.declared(location),
-            initial=location.initial,
+            name="" if nameless else self._names.declared(location),
+            initial=location.initial or is_numbered(plant),
             marked=location.marked,
             edges=[
                 self._edge(each, location, plant, printer)
@@ -227,21 +241,19 @@ class Writer:
             ],
         )
 
-    def _guard(self, edge: sct.Edge, printer: CifPrinter) -> str:
-        if edge not in self._guards:
-            assert edge.guard is not None
-            self._guards[edge] = printer(condition(edge.guard))
-        return self._guards[edge]
-
     def _edge(self, edge: sct.Edge, location: sct.Location, plant: sct.Plant, printer: CifPrinter) -> Edge:
+        number = self._names.number(plant)
+        updates = [
+            f"{self._names.declared(each.variable)} := {printer(assigned(each.variable, each.value))}"
+            for each in edge.updates
+        ]
+        if number is not None:
+            updates.append(f"{number} := {self._numbers[edge.target]}")
         return Edge(
             event=self._names.used(edge.event, plant),
-            guard="" if edge.guard is None else self._guard(edge, printer),
-            updates=[
-                f"{self._names.declared(each.variable)} := {printer(assigned(each.variable, each.value))}"
-                for each in edge.updates
-            ],
-            target="" if edge.target is location else self._names.declared(edge.target),
+            guard="" if edge.guard is None else printer(condition(edge.guard)),
+            updates=updates,
+            target="" if edge.target is location or number is not None else self._names.declared(edge.target),
         )
 
 

@@ -27,7 +27,7 @@ __all__ = ["Effort", "validate", "validate_c", "validate_cif"]
 
 
 def validate(models: Models, configuration: Configuration) -> list[Verdict]:
-    """The verdicts on the C and on the supervised CIF that are generated from a model with its supervisor.
+    """The verdicts on the C and on the CIF that are generated from a model with its supervisor.
 
     Raises ValueError where the model has no supervisor, MemoryError where decision diagrams take more than 4 GB.
     """
@@ -37,7 +37,7 @@ def validate(models: Models, configuration: Configuration) -> list[Verdict]:
         return validate_c(model, supervisor.generate(models, configuration))
 
     def generated_cif() -> Verdict:
-        return validate_cif(model, cif.generate(models, configuration)[f"{model.name}.supervised.cif"])
+        return validate_cif(model, cif.generate(models, configuration))
 
     return [
         _timed(C, [each.message for each in supervisor.preconditions(models, configuration)], generated_c),

@@ -1,4 +1,4 @@
-"""Compares the supervised CIF, read back, with the supervised model: each event, in all states, symbolically."""
+"""Compares both files of CIF, read back, with the model: each event, in all states, symbolically."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from robosc.verification.translation.twins import Twins
 from robosc.verification.verdict import Outcome, Verdict
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
     from robosc.synthesis.bdd import Diagram
     from robosc.synthesis.encoding import Element
@@ -35,27 +35,39 @@ if TYPE_CHECKING:
 
 PROPERTY = "cif-translation"
 TEXT = "the generated CIF"
+UNSUPERVISED = f"{TEXT} without supervisor"
 
 
-def validate_cif(model: sct.SupervisoryControlModel, text: str) -> Verdict:
-    """Whether the text of `<robot>.supervised.cif` means what the model says with its supervisor.
+def validate_cif(model: sct.SupervisoryControlModel, files: Mapping[str, str]) -> Verdict:
+    """Whether `<robot>.cif` means the model's plants and requirements, and `<robot>.supervised.cif` its supervisor.
 
     States correspond by `Twins`; then initial and marked states must be the same, and every event must do the same in
-    every state, reachable or not. Raises MemoryError where the decision diagrams take more than 4 GB.
+    every state, reachable or not. `files` are the texts by their names. Raises MemoryError where the decision diagrams
+    take more than 4 GB.
     """
+    verdicts = (
+        _validate(model, files[f"{model.name}.cif"], supervised=False),
+        _validate(model, files[f"{model.name}.supervised.cif"], supervised=True),
+    )
+    return next((each for each in verdicts if each.outcome is not Outcome.PROVED), verdicts[-1])
+
+
+def _validate(model: sct.SupervisoryControlModel, text: str, *, supervised: bool) -> Verdict:
+    what = TEXT if supervised else UNSUPERVISED
     try:
         specification = read(text)
-        comparison = _Comparison(model, specification, Twins(model, specification.model))
+        comparison = _Comparison(model, specification, Twins(model, specification.model), supervised=supervised)
         return with_enough_memory(comparison.run, MEMORY)
     except (CifError, AmbiguityError, ModelError) as fault:
-        return refuted(PROPERTY, f"{TEXT} is wrong: {fault}")
+        return refuted(PROPERTY, f"{what} is wrong: {fault}")
 
 
 @dataclass(frozen=True)
 class _Difference:
     """In which states, with which inputs, the model and its CIF have other bits.
 
-    They are of an element after the event where it can happen in both, or, without an element, of whether it can.
+    They are of an element after the event where it can happen in both, or, without an element, of whether it can: by
+    the plants, or where it is `asked`, by the requirements.
     """
 
     event: sct.Event
@@ -63,22 +75,37 @@ class _Difference:
     ours: tuple[Diagram, ...]
     theirs: tuple[Diagram, ...]
     where: Diagram
+    asked: bool = False
 
 
 class _Comparison:
-    """A model and its CIF over the same decision diagrams: a value has the code that its twin has."""
+    """A model and its CIF over the same decision diagrams: a value has the code that its twin has.
 
-    def __init__(self, model: sct.SupervisoryControlModel, specification: Specification, twins: Twins) -> None:
+    Under a supervisor what is asked is part of what can happen; without it, it is a question of its own.
+    """
+
+    def __init__(
+        self, model: sct.SupervisoryControlModel, specification: Specification, twins: Twins, *, supervised: bool
+    ) -> None:
+        """Raises CifError where there is a supervisor and none is due."""
+        if not supervised and (specification.supervisor is not None or specification.invariants):
+            raise CifError("it says what a supervisor does")
         self._model = model
         self._twins = twins
-        self._invariants: dict[sct.Event, list[sct.Requirement]] = {}
-        for each in (*specification.invariants, *specification.model.requirements):
-            self._invariants.setdefault(each.event, []).append(each)
+        self._supervised = supervised
+        self._text = TEXT if supervised else UNSUPERVISED
+        self._asked = _by_event(model.requirements)
+        self._invariants = _by_event([*specification.invariants, *specification.model.requirements])
         self._layout = Layout(model)
         self._inputs = [each for each in self._layout.domains.values() if isinstance(each.element, sct.Input)]
         self._their_layout = copy(self._layout)
-        domains = self._layout.domains.items()
-        self._their_layout.domains = {twins[each]: replace(domain, element=twins[each]) for each, domain in domains}
+        self._their_layout.domains = {}
+        for each, domain in self._layout.domains.items():
+            twin = twins.holding(each)
+            self._their_layout.domains[twin] = replace(domain, element=twin)
+            if twin is not twins[each]:  # the location of such a plant is no part of its state
+                single = replace(domain, element=twins[each], size=1, levels=(), halfway_levels=(), next_levels=())
+                self._their_layout.domains[twins[each]] = single
         self._edges = participants(specification.model.plants)
         supervisor = specification.supervisor
         self._alphabet = frozenset(specification.alphabet)
@@ -91,15 +118,15 @@ class _Comparison:
             for diagrams in [Diagrams(self._layout.levels, capacity)]
             for layout in (self._layout, self._their_layout)
         )
-        system = SupervisedSystem(self._model, encoding)
-        initial: dict[Element, int] = {
-            each: self._initial(each, theirs) for plant in self._model.plants for each in plant.variables
-        }
+        system = SupervisedSystem(self._model, encoding, guards=self._supervised)
+        held = ((each.element, self._twins.holding(each.element)) for each in self._layout.state)
+        initial = {each: self._initial(twin, theirs) for each, twin in held if isinstance(twin, sct.DiscreteVariable)}
         if any(code != encoding.initial_codes[each] for each, code in initial.items()):
-            return refuted(PROPERTY, f"at the start {different(initial, encoding.initial_codes, TEXT)}")
+            return refuted(PROPERTY, f"at the start {different(initial, encoding.initial_codes, self._text)}")
         found = list(self._differences(system, theirs))
         if not found:
-            return Verdict(PROPERTY, Outcome.PROVED, f"{counted(len(system.relations), 'event')}, each in every state")
+            evidence = f"{counted(len(system.relations), 'event')} in both files, each in every state"
+            return Verdict(PROPERTY, Outcome.PROVED, evidence)
         reached = [each for each in found if (each.where & system.reachable).satisfiable()]
         if not reached:
             codes = pick(found[0].where, self._layout.domains.values())
@@ -109,9 +136,9 @@ class _Comparison:
         codes = path.states[-1] | pick(reached[0].where & encoding.state(path.states[-1]), self._inputs)
         return refuted(PROPERTY, self._said(system, reached[0], codes), system.trace(path))
 
-    def _initial(self, variable: sct.DiscreteVariable, theirs: Encoding) -> int:
+    @staticmethod
+    def _initial(twin: sct.DiscreteVariable, theirs: Encoding) -> int:
         """The code of a variable's initial value in CIF."""
-        twin = self._twins[variable]
         value = arithmetic.value_of(theirs.vector(twin.initial))
         if value is None:
             raise CifError(f"the initial value of '{twin.name}' is no constant")
@@ -123,11 +150,16 @@ class _Comparison:
         for each in self._layout.domains:
             valid &= encoding.in_domain(each)
         for event, transition in of_system(system).items():
+            if not self._supervised:
+                ours = _allowed(self._asked.get(event, []), encoding)
+                asked = _allowed(self._invariants.get(self._twins.event(event), []), theirs)
+                if ((ours ^ asked) & valid).satisfiable():
+                    yield _Difference(event, None, (ours,), (asked,), (ours ^ asked) & valid, asked=True)
             twin = self._their_transition(event, theirs)
             compared: list[_Bits] = [(None, (transition.enabled,), (twin.enabled,), encoding.diagrams.true)]
             both = transition.enabled & twin.enabled
             for element in dict.fromkeys([*transition.after, *(self._twins.original(each) for each in twin.after)]):
-                bits = transition.bits(element, encoding), twin.bits(self._twins[element], theirs)
+                bits = transition.bits(element, encoding), twin.bits(self._twins.holding(element), theirs)
                 compared.append((element, *bits, both))
             for element, our_bits, their_bits, within in compared:
                 differ = encoding.diagrams.false
@@ -149,13 +181,11 @@ class _Comparison:
             for edge in (edge for edges in self._loops.get(twin, []) for edge in edges):
                 allowed |= theirs.holds(edge.guard)
             enabled &= allowed
-        for each in self._invariants.get(twin, []):
-            holds = theirs.holds(each.condition)
-            enabled &= ~holds if each.kind == sct.RequirementKind.disables else holds
+        if self._supervised:
+            enabled &= _allowed(self._invariants.get(twin, []), theirs)
         return Transition(enabled, transition.after)
 
-    @staticmethod
-    def _said(system: SupervisedSystem, difference: _Difference, codes: Mapping[Element, int]) -> str:
+    def _said(self, system: SupervisedSystem, difference: _Difference, codes: Mapping[Element, int]) -> str:
         """The difference where state and inputs have these codes."""
         event, element = difference.event, difference.element
         here = system.diagrams.true
@@ -167,7 +197,24 @@ class _Comparison:
         )
         step = happening(event, codes)
         if element is None:
-            what = on_one_side(step, TEXT, translated=bool(theirs))
+            what = on_one_side(step, self._text, translated=bool(theirs))
         else:
-            what = f"after {step}, {different({element: theirs}, {element: ours}, TEXT)}"
-        return what + where(system, event, codes)
+            what = f"after {step}, {different({element: theirs}, {element: ours}, self._text)}"
+        asked = self._asked.get(event, []) if difference.asked else []
+        return ("by the requirements " if difference.asked else "") + what + where(system, event, codes, asked)
+
+
+def _by_event(requirements: Iterable[sct.Requirement]) -> dict[sct.Event | None, list[sct.Requirement]]:
+    found: dict[sct.Event | None, list[sct.Requirement]] = {}
+    for each in requirements:
+        found.setdefault(each.event, []).append(each)
+    return found
+
+
+def _allowed(requirements: Iterable[sct.Requirement], encoding: Encoding) -> Diagram:
+    """Where all requirements of an event let it happen."""
+    allowed = encoding.diagrams.true
+    for each in requirements:
+        holds = encoding.holds(each.condition)
+        allowed &= ~holds if each.kind == sct.RequirementKind.disables else holds
+    return allowed

@@ -12,7 +12,7 @@ from robosc.synthesis.paths import TraceStep
 from robosc.verification.verdict import Outcome, Verdict
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
     from robosc.metamodel import sct
     from robosc.synthesis.decoding import Value
@@ -40,11 +40,15 @@ def different(theirs: Mapping[Element, int], ours: Mapping[Element, int], transl
     return f"{translation} has `{values[0]}` and the model `{values[1]}`"
 
 
-def where(system: SupervisedSystem, event: sct.Event, state: Mapping[Element, int]) -> str:
-    """As much of a state as the event has to do with."""
+def where(
+    system: SupervisedSystem, event: sct.Event, state: Mapping[Element, int], asked: Iterable[sct.Requirement] = ()
+) -> str:
+    """As much of a state as the event has to do with, and what is asked of it."""
     touched = set(next(each.touched for each in system.relations if each.event is event))
     if event in system.guards:
         touched.update(referenced(system.guards[event].requirement), referenced(system.guards[event].synthesis))
+    for each in asked:
+        touched.update(referenced(each.condition))
     elements = [each for plant in system.model.plants for each in (plant, *plant.variables) if each in touched]
     said = system.where(state, elements)
     return f" where `{said}`" if said else ""

@@ -35,8 +35,35 @@ def rebuild(text: str) -> sct.SupervisoryControlModel:
                 for each in edges
             ]
         )
+    _give_locations(model)
     _shift_back(model, _shifts(model, text))
     return model
+
+
+def _give_locations(model: sct.SupervisoryControlModel) -> None:
+    """Gives data plants that have the numbers of locations in a variable locations, and edges that leave all."""
+    numbers = {}
+    for plant in model.plants:
+        if plant.name.startswith("data_") and [each.name for each in plant.locations] == [""]:
+            number = plant.variables[-1]
+            assert number.name.startswith("choice")
+            (only,) = plant.locations
+            names = ["none", *(f"d{each}" for each in range(1, number.type.maximum + 1))]
+            plant.locations.extend(sct.Location(name=each, marked=only.marked) for each in names)
+            plant.locations.remove(only)
+            plant.locations[number.initial.value].initial = True
+            for edge in list(only.edges):
+                chosen = edge.updates[-1]
+                assert chosen.variable is number
+                edge.updates.remove(chosen)
+                edge.target = plant.locations[chosen.value.value]
+                plant.edges.append(edge)
+            plant.variables.remove(number)
+            numbers[number] = plant
+    for _, each in list(tree(model)):
+        if isinstance(each, ex.Equation) and getattr(each.left, "variable", None) in numbers:
+            location = numbers[each.left.variable].locations[each.right.value]
+            setattr(each.eContainer(), each.eContainmentFeature().name, sct.LocationReference(location=location))
 
 
 def _name_kinds(plant: sct.Plant) -> None:

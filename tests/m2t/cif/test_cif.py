@@ -19,6 +19,7 @@ from robosc.metamodel import sct
 from robosc.metamodel.reflection import tree
 from robosc.models import Models
 from robosc.synthesis import synthesize
+from robosc.verification.cif_reading import read as read_cif
 from tests.m2t.cif.differences import differences
 from tests.m2t.cif.rebuilding import rebuild
 from tests.random_sct import sct_models
@@ -352,6 +353,57 @@ def test_an_event_that_can_never_happen_is_left_out() -> None:
         assert "  location none:\n    initial; marked;\n    edge c_d1 when true goto d1;\n  location d1:\n" in text
         assert differences(given, rebuild(text)) == []
     assert "c_none" in generated(provided("p.b", "not p.b"))["robot.cif"]
+
+
+def chosen(number: int) -> sct.SupervisoryControlModel:
+    """A data plant with so many choices, each by a value of its own."""
+    names = [f"d{each}" for each in range(1, number + 1)]
+    edges = [edge(f"c_{name}", name, when=f"p.n == {at}") for at, name in enumerate(names, 1)]
+    edges.append(edge("c_none", "none", when=" and ".join(f"not (p.n == {at})" for at in range(1, number + 1))))
+    locations = ["none", *names]
+    given = model(
+        [
+            plant("message_x", {"ready": [edge("c_trigger")]}, kind="message", controllable=["c_trigger"]),
+            plant(
+                "data_x",
+                dict.fromkeys(locations, ()),
+                everywhere=edges,
+                controllable=[each.event for each in edges],
+                kind="data",
+                marked=locations,
+            ),
+            plant(
+                "p",
+                {"l": [edge("e", when=f"n < {number}", do={"n": "n + 1"})]},
+                controllable=["e"],
+                variables={"n": f"0..{number}"},
+            ),
+        ],
+        [needs("message_x.c_trigger", "not data_x.d1")],
+    )
+    given.supervisor = synthesize(given).supervisor
+    return given
+
+
+def test_a_variable_holds_the_number_of_the_choice() -> None:
+    given = chosen(3)
+    for text in generated(given).values():
+        assert (
+            '  @doc("The number of the provide statement that is chosen, 0 for none.")\n'
+            "  disc int[0..3] choice = 0;\n\n  location:\n    initial; marked;\n"
+            "    edge c_d1 when p.n = 1 do choice := 1;\n"
+        ) in text
+        assert " message_x.c_trigger needs not (data_x.choice = 1);" in text
+        assert differences(given, rebuild(text)) == []
+    # It counts as the locations would.
+    read_back, synthesis = synthesize(read_cif(generated(given)["robot.cif"]).model), synthesize(given)
+    counts = synthesis.uncontrolled_states, synthesis.controlled_states
+    assert (read_back.uncontrolled_states, read_back.controlled_states) == counts
+
+
+def test_choices_are_written_once() -> None:
+    few, many = (sum(map(len, generated(chosen(number)).values())) for number in (10, 80))
+    assert many < 9 * few
 
 
 @pytest.mark.parametrize("how", ["asked for", "elsewhere"])
