@@ -48,10 +48,15 @@ def parse_file(text: Text) -> Parsed:
     tokens = Tokens(text.content)
     tree = None if too_complex(tokens) else parse(text.content, "Base")
     if tree is None or isinstance(tree, Failure):
-        return _Recovery(text, tokens).parse()
+        return recovered(text, tokens)
     builder = Builder(text)
     base = builder.build(tree)
     return Parsed(base, builder.references, builder.findings)
+
+
+def recovered(text: Text, tokens: Tokens) -> Parsed:
+    """What can be read of a text that the grammar does not allow, and why it doesn't; `tokens` are the text's."""
+    return _Recovery(text, tokens).parse()
 
 
 class _Recovery:

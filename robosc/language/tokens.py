@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_right
-from dataclasses import dataclass
 from enum import Enum, auto
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -43,8 +42,11 @@ class Kind(Enum):
     END = auto()
 
 
-@dataclass(frozen=True)
-class Token:
+#: Looking one up in the enumeration costs more than finding a token.
+_KINDS = Kind.__members__
+
+
+class Token(NamedTuple):
     """A word, number, string or symbol, with its offsets.
 
     `is_name`: it is no keyword, whatever it looks like; `is_first`: it is the first in its line.
@@ -93,7 +95,7 @@ def _tokens(text: str) -> Iterator[Token]:
     for found in _TOKEN.finditer(text):
         if found.lastgroup is None:
             continue
-        kind, word = Kind[found.lastgroup], found.group()
+        kind, word = _KINDS[found.lastgroup], found.group()
         is_name = kind is Kind.WORD and (word.startswith("^") or previous.is_keyword(*BEFORE_NAMES))
         is_first = "\n" in text[previous.end : found.start()]
         previous = Token(kind, word, found.start(), found.end(), is_name, is_first)

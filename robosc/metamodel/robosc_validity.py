@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from robosc.metamodel import robosc
-from robosc.typing import ObjectType, access_types, declared_type, provided_data_type, value_type
+from robosc.typing import UNKNOWN, ObjectType, access_types, declared_type, provided_data_type, value_type
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -99,7 +99,7 @@ def _property_faults(element: robosc.ObjectPropertyValue) -> Iterator[Fault]:
 
 
 def _member_faults(element: Any, of: Any) -> Iterator[Fault]:
-    if isinstance(of, ObjectType) and element.property not in of.definition.properties:
+    if of is not UNKNOWN and not (isinstance(of, ObjectType) and element.property in of.definition.properties):
         yield element, f"'{element.property.name}' is no property of {of}"
 
 

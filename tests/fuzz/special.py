@@ -41,10 +41,11 @@ KINDS: dict[str, Callable[[Path], Any]] = {
     "huge": lambda path: _sparse(path, 2**40),
     "bytes": lambda path: path.write_bytes(bytes(range(256)) * 64),
     "brackets": lambda path: path.write_bytes(b"[" * 300_000),
+    "many brackets": lambda path: path.write_bytes(b"[" * 2_000_000),
     "digits": lambda path: path.write_bytes(b"[" + b"9" * 300_000 + b"]"),
 }
 #: Files after all, and what leads to none: a command that is to write there may.
-_REPLACEABLE = {"huge", "bytes", "brackets", "digits", "nothing"}
+_REPLACEABLE = {"huge", "bytes", "brackets", "many brackets", "digits", "nothing"}
 
 
 def _sparse(path: Path, size: int) -> None:

@@ -56,6 +56,12 @@ CHANGES = {
         'property="//@definitions.5/@properties.0"',
         "'x' is no property of object Scan",
     ),
+    "property of an array": (
+        ROBOT,
+        r'(<segments xsi:type="robosc:PropertySegment" [^>]*/>)',
+        r"\1\1",
+        "'ranges' is no property of array",
+    ),
     "component of another library": (
         ROBOT,
         r'(<library [^>]*href=")EmergencyStopLibrary',

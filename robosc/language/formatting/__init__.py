@@ -8,7 +8,7 @@ from robosc.language.building import Builder
 from robosc.language.formatting.documents import render
 from robosc.language.formatting.layout import layout
 from robosc.language.grammar import Failure, parse
-from robosc.language.recovery import parse_file
+from robosc.language.recovery import recovered
 from robosc.language.tokens import Tokens, too_complex
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ def format_text(text: Text) -> tuple[str | None, list[Diagnostic]]:
     words = Tokens(text.content)
     tree = None if too_complex(words) else parse(text.content, "Base")
     if tree is None or isinstance(tree, Failure):
-        return None, parse_file(text).findings
+        return None, recovered(text, words).findings
     builder = Builder(text)
     builder.build(tree)
     if builder.findings:
