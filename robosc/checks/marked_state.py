@@ -13,7 +13,8 @@ def marked_state(base: rsc.Base) -> Iterator[Finding]:
     for component, behaviour in behaviours(base):
         every = states(behaviour.automaton)
         initial = [each for each in every if each.initial][:1]  # A second one is the matter of `initial-state`.
-        after = {each: list(_successors(each, behaviour.automaton)) for each in every}
+        common = common_transitions(behaviour.automaton)
+        after = {each: list(_successors([*each.transitions, *common], behaviour.automaton)) for each in every}
         before: dict[rsc.State, list[rsc.State]] = {each: [] for each in every}
         for source, targets in after.items():
             for target in targets:
@@ -35,8 +36,8 @@ def marked_state(base: rsc.Base) -> Iterator[Finding]:
                 )
 
 
-def _successors(state: rsc.State, automaton: rsc.Automaton) -> Iterator[rsc.State]:
-    for transition in [*state.transitions, *common_transitions(automaton)]:
+def _successors(transitions: Iterable[rsc.Transition], automaton: rsc.Automaton) -> Iterator[rsc.State]:
+    for transition in transitions:
         if transition.target and transition.target.eContainer() is automaton:
             yield transition.target
 

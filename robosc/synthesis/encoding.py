@@ -139,6 +139,8 @@ class Encoding:
         self.layout = layout
         self.diagrams = diagrams
         self._codes: dict[tuple[Element, int], Diagram] = {}
+        #: Of locations and literals, among those beside them.
+        self._places: dict[ex.NamedElement, int] = {}
         self._between: dict[tuple[Element, int, int], Diagram] = {}
         self._holds: dict[ex.Expression, Diagram] = {}
 
@@ -340,12 +342,15 @@ class Encoding:
 
     def location_code(self, location: sct.Location) -> int:
         """The code of a location among those of its plant."""
-        plant: sct.Plant = location.eContainer()
-        return next(code for code, each in enumerate(plant.locations) if each is location)
+        return self._place(location, location.eContainer().locations)
 
     def _code_of(self, literal: ex.EnumerationLiteral) -> int:
-        enumeration: ex.Enumeration = literal.eContainer()
-        return next(code for code, each in enumerate(enumeration.literals) if each is literal)
+        return self._place(literal, literal.eContainer().literals)
+
+    def _place(self, element: ex.NamedElement, siblings: Iterable[ex.NamedElement]) -> int:
+        if element not in self._places:
+            self._places.update({each: place for place, each in enumerate(siblings)})
+        return self._places[element]
 
 
 def _elements(plant: sct.Plant) -> Iterator[Element]:

@@ -122,7 +122,6 @@ class Effects:
                 (locations, [self._assignment(each, printer) for each in updates])
                 for locations, updates in unit.alternatives
             ],
-            unit.plant,
             unit.possible,
             printer,
         )
@@ -144,7 +143,7 @@ class Effects:
             )
             for target, locations in targets.items()
         ]
-        return _chain(steps, plant, list(edges), printer)
+        return _chain(steps, list(edges), printer)
 
     def _assignment(self, update: sct.Update, printer: CPrinter) -> str:
         return f"state->{self.names.member(update.variable)} = {self._stored(update, printer)};"
@@ -172,7 +171,6 @@ def _trivial(update: sct.Update) -> bool:
 
 def _chain(
     steps: Sequence[tuple[Sequence[sct.Location] | None, list[str]]],
-    plant: sct.Plant,
     possible: Sequence[sct.Location],
     printer: CPrinter,
 ) -> list[str]:
@@ -184,7 +182,7 @@ def _chain(
     total = len(acting) == len(steps)
     for position, (locations, statements) in enumerate(acting):
         assert locations is not None
-        condition = f"if ({printer(All([within(plant, locations, possible)]))}) {{"
+        condition = f"if ({printer(All([within(locations, possible)]))}) {{"
         if position:
             condition = "} else {" if total and position == len(acting) - 1 else f"}} else {condition}"
         lines += [condition, *(_INDENT + each for each in statements)]

@@ -89,15 +89,18 @@ class EventTable:
         if isinstance(edges, Everywhere) and len(edges) > 1:
             return sct.LocationReference(location=edges.edge.target)
         loops = [location for location, edge in edges.items() if edge.target is location]
-        return within(plant, loops, plant.locations)
+        return within(loops, plant.locations)
 
 
-def within(plant: sct.Plant, locations: Collection[sct.Location], possible: Sequence[sct.Location]) -> Node:
-    """That a plant is in one of the locations given that it is in a possible one, said the shorter way."""
-    others = [each for each in possible if each not in locations]
-    if len(locations) <= len(others):
-        return Some([sct.LocationReference(location=each) for each in plant.locations if each in locations])
-    return All([Not(sct.LocationReference(location=each)) for each in others])
+def within(locations: Collection[sct.Location], possible: Sequence[sct.Location]) -> Node:
+    """That a plant is in one of the locations, given that it is in a possible one, said the shorter way.
+
+    All of these are possible, and each once.
+    """
+    if 2 * len(locations) <= len(possible):
+        return Some([sct.LocationReference(location=each) for each in locations])
+    chosen = set(locations)
+    return All([Not(sct.LocationReference(location=each)) for each in possible if each not in chosen])
 
 
 def _possible(plant: sct.Plant, edges: Edges, printer: CPrinter) -> Node:
@@ -107,7 +110,7 @@ def _possible(plant: sct.Plant, edges: Edges, printer: CPrinter) -> Node:
     for location, edge in edges.items():
         guard = All(_given(edge.guard))
         by_guard.setdefault(printer(guard), ([guard], []))[1].append(location)
-    return Some([All([within(plant, locations, plant.locations), *guard]) for guard, locations in by_guard.values()])
+    return Some([All([within(locations, plant.locations), *guard]) for guard, locations in by_guard.values()])
 
 
 def _file(requirement: sct.Requirement) -> str:

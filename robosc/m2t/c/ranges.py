@@ -235,12 +235,10 @@ def _evaluate(node: Node, at: Mapping[Cell, int], of: Callable[[Node], Interval]
             return Interval(at[cell], at[cell]) if cell in at else interval_of(cell.type)
         case sct.LocationReference():
             plant = _plant(node.location)
+            if plant not in at:
+                return _truth(len(plant.locations) > 1, can_be_true=True)
             position = plant.locations.index(node.location)
-            return (
-                _truth(at[plant] != position, at[plant] == position)
-                if plant in at
-                else _truth(len(plant.locations) > 1, can_be_true=True)
-            )
+            return _truth(at[plant] != position, at[plant] == position)
         case ex.Negation() | Not():
             value = of(node.operand)
             return Interval(1 - value.high, 1 - value.low)

@@ -61,22 +61,28 @@ def fold(code: str, width: int = 120) -> str:
     return "".join(_folded(line, width) for line in code.splitlines(keepends=True))
 
 
-def _folded(line: str, width: int, continued: str = "") -> str:
+def _folded(line: str, width: int) -> str:
+    made: list[str] = []
+    continued = line[: len(line) - len(line.lstrip())] + "    "
+    while (at := _break(line, width)) is not None:
+        made += [line[:at], "\n"]
+        line = continued + line[at:].lstrip()
+    return "".join([*made, line])
+
+
+def _break(line: str, width: int) -> int | None:
     code = line.lstrip()
-    margin = line[: len(line) - len(code)]
     if len(line.rstrip()) <= width or code.startswith(("//", "#")):
-        return line
+        return None
     depth = 0
     places: list[tuple[int, int]] = []
-    for token in _TOKEN.finditer(line, len(margin)):
+    for token in _TOKEN.finditer(line, len(line) - len(code)):
+        if token.start() > width:
+            break
         depth += (token[0] in _OPENING) - (token[0] in _CLOSING) if token[0] else 0
-        if not token[0].strip() and token.start() <= width:
+        if not token[0].strip():
             places.append((-depth, token.start()))
-    if not places:
-        return line
-    at = max(places)[1]
-    continued = continued or margin + "    "
-    return line[:at] + "\n" + _folded(continued + line[at:].lstrip(), width, continued)
+    return max(places)[1] if places else None
 
 
 def shift(text: str, indent: int) -> str:
