@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, replace
 from functools import cache, reduce
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -11,6 +12,7 @@ import textx
 from robosc.expressions import copied
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
+from robosc.recursion import deep_recursion
 from robosc.resources import locate
 from robosc.verification import cif_types as types
 
@@ -22,6 +24,10 @@ if TYPE_CHECKING:
 
 class CifError(ValueError):
     """A text that is not such a specification; says where and what is wrong."""
+
+
+class DepthError(CifError):
+    """A text that is nested too deep to be read."""
 
 
 @dataclass(frozen=True)
@@ -39,6 +45,14 @@ class Specification:
     alphabet: Sequence[sct.Event]
 
 
+#: How deep parentheses, `if` and `not` may be nested: what reads them calls itself so often for each, and takes
+#: of the C stack, too.
+DEEPEST = 2000
+_CALLS = 60
+#: What nests, and what stands between; texts and comments, in which nothing does, are one of the latter.
+_NESTING = re.compile(r'"(?:[^"\\]|\\.)*"|//.*|/\*(?:.|\n)*?\*/|[();]|\$?[A-Za-z_][\w.$]*|\d+')
+
+
 @cache
 def _grammar() -> Any:
     return textx.metamodel_from_file(str(locate("grammar/cif.tx")), autokwd=True)
@@ -50,10 +64,35 @@ def read(text: str) -> Specification:
     if strange is not None:
         line, column = text.count("\n", 0, strange) + 1, strange - text.rfind("\n", 0, strange)
         raise CifError(f"line {line}, column {column}: {text[strange]!a} is no ASCII")
+    _refuse_too_deep(text)
     try:
-        return _Reading(_grammar().model_from_str(text)).specification()
+        with deep_recursion(_CALLS * DEEPEST):
+            return _Reading(_grammar().model_from_str(text)).specification()
     except textx.TextXSyntaxError as fault:
         raise CifError(f"line {fault.line}, column {fault.col}: {fault.message}") from None
+
+
+def _refuse_too_deep(text: str) -> None:
+    around: list[int] = []
+    depth = operators = 0
+    for token in _NESTING.finditer(text):
+        word = token[0]
+        if word == "not":
+            operators += 1
+        elif word in ("(", "if"):
+            around.append(operators + 1)
+            depth += around[-1]
+            operators = 0
+        elif word == ";":
+            around.clear()
+            depth = operators = 0
+        else:
+            operators = 0
+            if word in (")", "end") and around:
+                depth -= around.pop()
+        if depth + operators > DEEPEST:
+            line, column = text.count("\n", 0, token.start()) + 1, token.start() - text.rfind("\n", 0, token.start())
+            raise DepthError(f"line {line}, column {column}: this is nested more than {DEEPEST} levels deep")
 
 
 @dataclass(frozen=True)

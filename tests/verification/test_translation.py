@@ -454,6 +454,23 @@ def test_cif_that_is_another_system_is_refuted(pattern: str, replacement: str, w
     assert re.match(rf"the generated CIF is wrong: (line \d+, column \d+: )?{re.escape(wrong)}", verdict.explanation)
 
 
+@pytest.mark.parametrize(("opening", "closing"), [("(", ")"), ("not ", ""), ("if true: ", " else true end")])
+def test_cif_nested_too_deep_is_not_read(opening: str, closing: str) -> None:
+    def nested(levels: int) -> Verdict:
+        condition = f"{opening * levels}true{closing * levels}"
+        return with_changed_cif(
+            r"^    edge component_Pump.c_tau2;", f"    edge component_Pump.c_tau2 when {condition};"
+        )
+
+    assert nested(50).outcome is Outcome.PROVED
+    verdict = nested(10_000)
+    assert verdict.outcome is Outcome.SKIPPED
+    expected = (
+        rf"the generated CIF can't be read: line \d+, column {37 + 2000 * len(opening)}: this is nested more than"
+    )
+    assert re.match(expected, verdict.explanation)
+
+
 def chosen() -> sct.SupervisoryControlModel:
     """Data chosen by a state, under a supervisor."""
     given = model(

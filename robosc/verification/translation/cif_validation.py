@@ -12,7 +12,7 @@ from robosc.synthesis import MEMORY, arithmetic
 from robosc.synthesis.bdd import Diagrams, with_enough_memory
 from robosc.synthesis.decoding import pick
 from robosc.synthesis.encoding import Encoding, Layout, smallest
-from robosc.verification.cif_reading import CifError, Specification, read
+from robosc.verification.cif_reading import CifError, DepthError, Specification, read
 from robosc.verification.system import SupervisedSystem, counted
 from robosc.verification.translation.differences import different, happening, on_one_side, refuted, where
 from robosc.verification.translation.transitions import (
@@ -58,6 +58,8 @@ def _validate(model: sct.SupervisoryControlModel, text: str, *, supervised: bool
         specification = read(text)
         comparison = _Comparison(model, specification, Twins(model, specification.model), supervised=supervised)
         return with_enough_memory(comparison.run, MEMORY)
+    except DepthError as fault:
+        return Verdict(PROPERTY, Outcome.SKIPPED, "", f"{what} can't be read: {fault}")
     except (CifError, AmbiguityError, ModelError) as fault:
         return refuted(PROPERTY, f"{what} is wrong: {fault}")
 
