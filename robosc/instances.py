@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections import Counter, deque
+from collections import Counter
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, TypeAlias
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, TypeAlias
 from robosc.metamodel import robosc
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,18 +140,32 @@ class Instances:
         return provided
 
 
-def libraries(base: robosc.Base) -> list[robosc.Library]:
-    """Every library that a base's imports reach, each once, in the order in which they are met, without the base."""
-    found: dict[robosc.Base, None] = {base: None}
-    queue = deque([base])
-    while queue:
-        for component in queue.popleft().definitions:
-            if isinstance(component, robosc.Component) and isinstance(component.type, robosc.ImportedComponent):
-                library = component.type.library
-                if library is not None and library not in found:
-                    found[library] = None
-                    queue.append(library)
-    return [each for each in found if isinstance(each, robosc.Library) and each is not base]
+def imported(base: robosc.Base) -> list[tuple[robosc.Component, robosc.Library]]:
+    """Each imported component with its library, in the order of the text; unresolved libraries are left out."""
+    return [
+        (component, component.type.library)
+        for component in base.definitions
+        if isinstance(component, robosc.Component)
+        and isinstance(component.type, robosc.ImportedComponent)
+        and component.type.library
+    ]
+
+
+def libraries(
+    base: robosc.Base, imports: Callable[[robosc.Base], list[tuple[robosc.Component, robosc.Library]]] = imported
+) -> list[robosc.Library]:
+    """Every library that a base's imports reach, each once, the near ones first, without the base itself.
+
+    `imports` says what a base imports, for callers that know it already.
+    """
+    found: dict[robosc.Library, None] = {}
+    queue: list[robosc.Base] = [base]
+    for current in queue:
+        for _, library in imports(current):
+            if library not in found and library is not base:
+                found[library] = None
+                queue.append(library)
+    return list(found)
 
 
 def _instantiate(component: robosc.Component, base: robosc.Base, resolved: Resolved) -> Instance | None:

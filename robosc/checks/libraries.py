@@ -7,7 +7,7 @@ from contextvars import ContextVar
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from robosc.instances import Instances
+from robosc.instances import Instances, imported, libraries
 from robosc.metamodel import robosc as rsc
 
 if TYPE_CHECKING:
@@ -76,17 +76,7 @@ def fact(find: Callable[[_Base], _Fact], base: _Base) -> _Fact:
 
 def imports(base: rsc.Base) -> list[tuple[rsc.Component, rsc.Library]]:
     """Each imported component with its library, in the order of the text; unresolved libraries are left out."""
-    return fact(_imports, base)
-
-
-def _imports(base: rsc.Base) -> list[tuple[rsc.Component, rsc.Library]]:
-    return [
-        (component, component.type.library)
-        for component in base.definitions
-        if isinstance(component, rsc.Component)
-        and isinstance(component.type, rsc.ImportedComponent)
-        and component.type.library
-    ]
+    return fact(imported, base)
 
 
 def anything(_: rsc.Base) -> bool:
@@ -111,24 +101,13 @@ def reachable(base: rsc.Base, holds: Holds = anything) -> list[rsc.Library]:
             current = direct[0]
             passed.add(current)
             continue
-        for library in reversed(_visited(current)):
+        for library in reversed(libraries(current, imports)):
             found = Cell(library, found) if fact(holds, library) else found
         known[current, holds] = found
     found = known[current, holds]
     for importing, library in reversed(chain):
         found = known[importing, holds] = Cell(library, found) if fact(holds, library) else found
     return [each for each in dict.fromkeys(_each(found)) if each is not base]
-
-
-def _visited(base: rsc.Base) -> list[rsc.Library]:
-    found: dict[rsc.Library, None] = {}
-    queue: list[rsc.Base] = [base]
-    for current in queue:
-        for _, library in imports(current):
-            if library not in found and library is not base:
-                found[library] = None
-                queue.append(library)
-    return list(found)
 
 
 def _each(cell: Cell | None) -> Iterable[rsc.Library]:
