@@ -71,16 +71,15 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Tests of one run of a node go to one process, those of another run to the next that is free.
-
-    Compiled nodes of ROS 1 come last: they are being built meanwhile.
-    """
+    """Tests of one run of a node go to one process, those of another run to the next that is free."""
     groups: dict[str, int] = {}
     for item in items:
         if HERE in item.path.parents:
             groups.setdefault(group(item), len(groups))
             item.add_marker(pytest.mark.xdist_group(group(item)))
-    items.sort(key=lambda item: (_needs_ros1_build(item), groups.get(group(item), 0)))
+            if "[ros1" in item.name or "ros1_workspace" in getattr(item, "fixturenames", ()):
+                item.add_marker(pytest.mark.build)
+    items.sort(key=lambda item: groups.get(group(item), 0))
 
 
 def group(item: pytest.Item) -> str:
@@ -92,11 +91,6 @@ def group(item: pytest.Item) -> str:
     callspec = getattr(item, "callspec", None)
     parameters = callspec.params if callspec else {}
     return " ".join([run, *(str(parameters[name]) for name in (*RUNS, *KINDS) if name in parameters)])
-
-
-def _needs_ros1_build(item: pytest.Item) -> bool:
-    names = getattr(item, "fixturenames", ())
-    return HERE in item.path.parents and ("[ros1" in item.name or "ros1_workspace" in names)
 
 
 @dataclass
@@ -142,7 +136,7 @@ def pytest_runtest_teardown(item: pytest.Item, nextitem: pytest.Item | None) -> 
 @pytest.fixture(scope="session", autouse=True)
 def ros1_build_begins(request: pytest.FixtureRequest) -> None:
     """Has `ros1_workspace` built from the first test on, if it is needed at all."""
-    if any(map(_needs_ros1_build, request.session.items)) and find_ros1().ros is not None:
+    if any(item.get_closest_marker("build") for item in request.session.items) and find_ros1().ros is not None:
         request.getfixturevalue("ros1_build")
 
 
