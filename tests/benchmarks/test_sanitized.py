@@ -22,6 +22,11 @@ SUMMARY: ThreadSanitizer: data race /usr/include/c++/12/bits/stl_vector.h:367 in
 #: Generated code is what called it.
 THEIRS = OURS.replace("    #1", "    #1 rclcpp::Node::~Node() /src/rclcpp/node.cpp:7 (librclcpp.so+0x4)\n    #1")
 LOCKS = THEIRS.replace("data race", "lock-order-inversion (potential deadlock)")
+#: All locks are taken within roscpp; generated code is only where it was called from.
+ROSCPP = LOCKS.replace("#0 rclcpp", "#0 ros::Connection::drop() <null> (libroscpp.so.4d+0x5)\n    #1 rclcpp").replace(
+    "#1 rclcpp::Node::~Node() /src/rclcpp/node.cpp:7 (librclcpp.so+0x4)",
+    "#1 ros::Connection::read() <null> (libroscpp.so.4d+0x4)",
+)
 UNDEFINED = "/ws/x.c:3:4: runtime error: signed integer overflow\n    #0 0x1 in f /ws/x.c:3\n"
 
 
@@ -30,6 +35,7 @@ def test_a_report_belongs_to_who_does_it() -> None:
     assert sorted_reports([OURS, OURS]) == ({race: 2}, {})
     assert sorted_reports([THEIRS]) == ({}, {race: 1})
     assert sorted_reports([LOCKS]) == ({race.replace("data race", "lock-order-inversion (potential deadlock)"): 1}, {})
+    assert sorted_reports([ROSCPP]) == ({}, {race.replace("data race", "lock-order-inversion (potential deadlock)"): 1})
     assert sorted_reports([UNDEFINED, ""]) == ({"runtime error: signed integer overflow": 1}, {})
 
 

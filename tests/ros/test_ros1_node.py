@@ -139,9 +139,9 @@ def started(graph: Graph, name: str) -> subprocess.Popen[bytes]:
     return node
 
 
-@pytest.mark.parametrize("end", ["SIGINT", "SIGTERM", "SIGHUP", "rosnode", "takeover"])
+@pytest.mark.parametrize("end", ["SIGINT", "SIGTERM", "SIGHUP", "SIGTERM SIGINT", "rosnode", "takeover"])
 def test_last_messages_go_out_however_the_node_ends(graph: Graph, end: str) -> None:
-    name = f"ends_by_{end.lower()}"
+    name = f"ends_by_{end.lower().replace(' ', '_')}"
     node = started(graph, name)
     heard = len(graph.world.said)
     if end == "rosnode":
@@ -149,7 +149,8 @@ def test_last_messages_go_out_however_the_node_ends(graph: Graph, end: str) -> N
     elif end == "takeover":
         graph.processes.start("successor", [graph.executable, f"__name:={name}", "_period_ms:=3600000"])
     else:
-        os.kill(node.pid, getattr(signal, end))
+        for number in end.split():
+            os.kill(node.pid, getattr(signal, number))
     assert graph.world.wait("heard", heard)["data"]["linear"]["x"] == 0.0
     assert node.wait(10) == 0
     last = (graph.folder / f"{name}.jsonl").read_text().splitlines()[-1]

@@ -4,6 +4,7 @@
 
 #include <csignal>
 #include <ctime>
+#include <mutex>
 #include <unistd.h>
 
 #include <ros/xmlrpc_manager.h>
@@ -29,7 +30,8 @@ class Interruption {
   static void take_requests() {
     ros::XMLRPCManager::instance()->bind("shutdown", [](XmlRpc::XmlRpcValue&, XmlRpc::XmlRpcValue& result) {
       result = ros::xmlrpc::responseInt(1, "", 0);
-      kill(getpid(), SIGTERM);
+      const std::lock_guard<std::mutex> lock(mutex_);
+      if (!ending_) kill(getpid(), SIGTERM);
     });
   }
 
@@ -49,10 +51,19 @@ class Interruption {
     sigwait(&signals_, &signal);
   }
 
-  /// From now on signals end the process at once, as usual.
-  void let_go() { pthread_sigmask(SIG_UNBLOCK, &signals_, nullptr); }
+  /// From now on signals end the process at once, as usual; not those that meanwhile asked for the same once more.
+  void let_go() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    ending_ = true;
+    const timespec now = {};
+    while (sigtimedwait(&signals_, nullptr, &now) > 0) {
+    }
+    pthread_sigmask(SIG_UNBLOCK, &signals_, nullptr);
+  }
 
  private:
+  inline static std::mutex mutex_;
+  inline static bool ending_ = false;  ///< Requests have nothing left to ask for.
   sigset_t signals_;
 };
 
