@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).parent.parent
 MODEL = ROOT / "examples" / "line_follower"
 TARGETS = "cif,supervisor,ros1,ros2,xmi"

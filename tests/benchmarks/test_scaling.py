@@ -13,6 +13,8 @@ from benchmarks.scaling import disagreements
 from benchmarks.scaling_page import TARGETS, growth, page, plots
 from robosc.synthesis import Phase
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).parent.parent.parent
 
 

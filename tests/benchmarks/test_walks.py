@@ -17,6 +17,8 @@ from robosc.diagnostics import ModelError
 from robosc.language import read
 from robosc.metamodel import sct
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).parents[2]
 SIZES = (30, 120)
 #: What grows with n·log n, and what is small beside what is done once, may lie a little above 1.

@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 from functools import partial
 from itertools import islice, product
 
+import pytest
 from hypothesis import event, given, settings
 from hypothesis import strategies as st
 
@@ -26,6 +27,8 @@ from tests.synthesis.oracle import Oracle, values_of
 from tests.synthesis.test_against_oracle import RANDOM_MODELS
 from tests.synthesis.test_explanation import Replay, is_blocked, is_never_marked
 from tests.synthesis.test_observations import Definitions
+
+pytestmark = pytest.mark.slow
 
 SOME_MODELS = settings(RANDOM_MODELS, max_examples=25)
 

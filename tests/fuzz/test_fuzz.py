@@ -17,6 +17,8 @@ from tests.fuzz.valid import checked, compared, compiled
 if TYPE_CHECKING:
     from pathlib import Path
 
+pytestmark = pytest.mark.slow
+
 #: Quick to compile, and nothing undefined passes.
 FLAGS = ("-O0", "-fsanitize=undefined", "-fno-sanitize-recover=all")
 MUTANTS, SAVED, CALLS, VALID = 250, 150, 25, 12

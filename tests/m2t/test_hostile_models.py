@@ -18,6 +18,8 @@ from robosc.metamodel import expression as ex
 from robosc.metamodel.reflection import tree
 from robosc.models import Models
 
+pytestmark = pytest.mark.slow
+
 MARK = "PWNED"
 HOSTILE = [
     f'"; {MARK}(); "',

@@ -77,7 +77,8 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         if HERE in item.path.parents:
             groups.setdefault(group(item), len(groups))
             item.add_marker(pytest.mark.xdist_group(group(item)))
-            if "[ros1" in item.name or "ros1_workspace" in getattr(item, "fixturenames", ()):
+            item.add_marker(pytest.mark.ros)
+            if "ros1_workspace" in getattr(item, "fixturenames", ()) or "ros1" in parameters(item).values():
                 item.add_marker(pytest.mark.build)
     items.sort(key=lambda item: groups.get(group(item), 0))
 
@@ -88,9 +89,14 @@ def group(item: pytest.Item) -> str:
     run = next((name for name in RUNS if name in names), None)
     if run is None:
         return item.nodeid
+    given = parameters(item)
+    return " ".join([run, *(str(given[name]) for name in (*RUNS, *KINDS) if name in given)])
+
+
+def parameters(item: pytest.Item) -> dict[str, Any]:
+    """The values of a test's parameters by name."""
     callspec = getattr(item, "callspec", None)
-    parameters = callspec.params if callspec else {}
-    return " ".join([run, *(str(parameters[name]) for name in (*RUNS, *KINDS) if name in parameters)])
+    return dict(callspec.params) if callspec else {}
 
 
 @dataclass

@@ -76,7 +76,8 @@ def find_ros1() -> Found:
         found.missing.append("no definitions of std_msgs (Debian: ros-std-msgs)")
     found.missing += [f"no {each}" for each in ("catkin_make", "cmake", "g++") if not _has(each, environment)]
     if not found.missing:
-        build = ["catkin_make", f"-DPYTHON_EXECUTABLE={python}"]
+        # Without the number of jobs it takes one alone while the machine is busy.
+        build = ["catkin_make", f"-j{os.cpu_count() or 1}", f"-DPYTHON_EXECUTABLE={python}"]
         found.ros = Ros(1, environment, python, build)
     return found
 

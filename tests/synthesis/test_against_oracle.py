@@ -2,6 +2,7 @@
 
 from unittest.mock import patch
 
+import pytest
 from hypothesis import HealthCheck, event, given, settings
 
 from robosc.expressions import SctPrinter
@@ -10,6 +11,8 @@ from robosc.roles import event_name
 from robosc.synthesis import Synthesis, encoding, synthesize
 from tests.random_sct import sct_models
 from tests.synthesis.oracle import Oracle
+
+pytestmark = pytest.mark.slow
 
 RANDOM_MODELS = settings(
     max_examples=70, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]

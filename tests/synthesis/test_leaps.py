@@ -11,6 +11,8 @@ from tests.random_sct import sct_models
 from tests.sct_models import edge, model, needs, plant
 from tests.synthesis.test_against_oracle import RANDOM_MODELS, check
 
+pytestmark = pytest.mark.slow
+
 INTEGER = "-2147483648..2147483647 = 0"
 LARGEST = 2**31 - 1
 

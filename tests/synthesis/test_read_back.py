@@ -1,5 +1,6 @@
 """Synthesis, exploration state by state and the generated CIF, read back, agree on how many states there are."""
 
+import pytest
 from hypothesis import event, given
 
 from robosc.config import Configuration
@@ -13,6 +14,8 @@ from tests.m2t.cif.rebuilding import rebuild
 from tests.random_sct import sct_models
 from tests.synthesis.oracle import Oracle
 from tests.synthesis.test_against_oracle import RANDOM_MODELS
+
+pytestmark = pytest.mark.slow
 
 
 @given(sct_models())

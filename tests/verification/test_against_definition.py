@@ -1,5 +1,6 @@
 """The properties over decision diagrams against the properties by their definition, on random supervised models."""
 
+import pytest
 from hypothesis import HealthCheck, assume, event, given, settings
 from hypothesis import strategies as st
 
@@ -11,6 +12,8 @@ from tests.random_sct import sct_models
 from tests.sct_models import edge, model, plant
 from tests.synthesis.oracle import State
 from tests.verification.explicit import Explicit
+
+pytestmark = pytest.mark.slow
 
 
 @st.composite

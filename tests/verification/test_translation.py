@@ -22,6 +22,8 @@ from tests.m2t.supervisor.test_supervisor import dock
 from tests.random_sct import sct_models
 from tests.sct_models import disables, edge, model, needs, plant
 
+pytestmark = pytest.mark.slow
+
 
 def supervised(made: sct.SupervisoryControlModel) -> sct.SupervisoryControlModel:
     made.supervisor = synthesize(made).supervisor

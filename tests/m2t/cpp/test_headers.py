@@ -17,6 +17,8 @@ from robosc.visible import HIDDEN
 if TYPE_CHECKING:
     from robosc.config import Configuration
 
+pytestmark = pytest.mark.build
+
 WARNINGS = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror"]
 
 

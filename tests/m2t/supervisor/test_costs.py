@@ -14,6 +14,8 @@ from benchmarks.families import FAMILIES
 from robosc.m2t.c.behaviour import SMALL
 from robosc.metamodel import sct
 
+pytestmark = pytest.mark.build
+
 DISPATCH = 60
 #: The deepest stack of any engine, however many events it has.
 STACK = {"x86-64": 360, "Cortex-M3": 240}

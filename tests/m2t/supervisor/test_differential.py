@@ -4,6 +4,7 @@ import os
 import tempfile
 from pathlib import Path
 
+import pytest
 from hypothesis import HealthCheck, Phase, assume, given, settings
 from hypothesis import strategies as st
 
@@ -16,6 +17,8 @@ from tests.engine.robots import robots
 from tests.m2t.supervisor.driver import build, run
 from tests.m2t.supervisor.walk import Walk
 from tests.random_sct import sct_models
+
+pytestmark = pytest.mark.build
 
 MODELS = int(os.environ.get("ROBOSC_MODELS", "8"))
 _few = settings(

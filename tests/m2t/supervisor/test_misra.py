@@ -12,6 +12,8 @@ from tests.m2t.supervisor import corners
 from tests.m2t.supervisor.driver import write
 from tests.m2t.supervisor.test_supervisor import dock, supervised
 
+pytestmark = pytest.mark.build
+
 ROOT = Path(__file__).parents[3]
 EXAMPLES = [path for path in sorted((ROOT / "examples").glob("*/*.rscd")) if path.stem == path.parent.name]
 #: What no example needs: wide ranges, enumerations, names that nothing bounds.

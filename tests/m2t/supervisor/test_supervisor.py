@@ -21,6 +21,8 @@ from tests.m2t.supervisor.driver import STRICT, build, run, write
 from tests.m2t.supervisor.walk import Walk
 from tests.sct_models import edge, model, plant
 
+pytestmark = pytest.mark.build
+
 HERE = Path(__file__).parent
 EXAMPLE = HERE.parents[2] / "examples" / "line_follower" / "line_follower.rscd"
 AS_CPP = ("-std=c++17", *STRICT[1:], "-x", "c++")

@@ -11,6 +11,8 @@ from examples.simulator.navigation import Navigation
 from examples.simulator.planning import Grid
 from examples.simulator.world import STEP, World
 
+pytestmark = pytest.mark.slow
+
 ROOM = box(0.0, 0.0, 3.0, 2.0)
 
 
