@@ -43,7 +43,7 @@ OPTIONS = {
     "TSAN_OPTIONS": "exitcode=0:second_deadlock_stack=1:history_size=4",
 }
 #: What takes its own locks in both orders within single calls, so that none who calls it could choose another order.
-JUDGED = re.compile(r"lib(?:roscpp|log4cxx)\.so")
+JUDGED = re.compile(r"lib(?:roscpp|rosconsole|log4cxx)\.so")
 #: The page without its numbers.
 ABOUT = """# Sanitizers
 
@@ -55,7 +55,7 @@ not looked for. A test may fail here where what sanitizers cost breaks a bound: 
 since the address sanitizer keeps what was freed for a while. The thread sanitizer does not see the counters of shared
 pointers that such a library counts down: it reports `operator delete` of what the last of them frees, also where that
 is right. Orders of locks that are all roscpp's own, which it takes one way where it connects and the other where a
-connection breaks, count as the library's, whoever called it; so do those of log4cxx, which logs and ends.
+connection breaks, count as the library's, whoever called it; so do those of its logging.
 
 | | last run | packages | tests passed | failed | reports on generated code | on libraries alone |
 |---|---|---|---|---|---|---|"""
