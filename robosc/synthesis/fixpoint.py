@@ -18,18 +18,13 @@ from typing import TYPE_CHECKING
 
 from robosc.recursion import deep_recursion
 from robosc.synthesis.bdd import Diagram, Diagrams, split
-from robosc.synthesis.leaps import Leaps, hopeless
+from robosc.synthesis.leaps import Leaps
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from robosc.synthesis.encoding import Encoding
     from robosc.synthesis.relation import Step
-
-
-#: After how many turns without an end wide integers are taken in leaps, and after how many not even that helps.
-_PATIENCE = 32
-_HOPELESS = 1 << 16
 
 
 @dataclass(frozen=True)
@@ -89,12 +84,9 @@ class _Saturation:
                 states |= self._fire(step, states) & within
             if states == closed:
                 break
-            if turn >= _PATIENCE and turn.bit_count() == 1:
+            if self._leaps.due(turn):
                 below = [step for _, steps in self._groups[group + 1 :] for step in steps]
-                if turn >= _HOPELESS and self._leaps.possible:
-                    raise hopeless([*here, *below])
-                # The more often it was in vain, the farther it leaps.
-                for leap in self._leaps.over(here, below, (turn // _PATIENCE).bit_length(), within):
+                for leap in self._leaps.over(here, below, turn, within):
                     states |= self._fire(leap, states)
         return states
 

@@ -26,6 +26,9 @@ if TYPE_CHECKING:
 
 #: The nodes above which a relation is given up: then single steps are faster.
 _LARGE = 20_000
+#: After how many turns without an end wide integers are taken in leaps, and after how many not even that helps.
+_PATIENCE = 32
+_HOPELESS = 1 << 16
 
 
 class Leaps:
@@ -36,19 +39,20 @@ class Leaps:
         self._wide: Mapping[Element, Sequence[Element]] = steps[0].encoding.layout.wide if steps else {}
         self._known: dict[tuple[tuple[Step, ...], Diagram], Step | None] = {}
 
-    @property
-    def possible(self) -> bool:
-        """Whether there are wide integers at all."""
-        return bool(self._wide)
+    def due(self, turn: int) -> bool:
+        """Whether after so many turns of a search without an end leaps are to be tried."""
+        return bool(self._wide) and turn >= _PATIENCE and turn.bit_count() == 1
 
-    def over(self, here: Sequence[Step], others: Sequence[Step], hops: int, within: Diagram) -> Iterator[Step]:
+    def over(self, here: Sequence[Step], others: Sequence[Step], turn: int, within: Diagram) -> Iterator[Step]:
         """For each wide integer in reach a leap of the steps that move it, and move what these depend on.
 
-        They are taken from `here`, and from `others` as far away as `hops` allow. Each state on the way is `within` the
-        bound. Several wide integers move together only in further leaps, of which each makes use of the one before.
+        They are taken from `here`, and from `others`, the farther away the more turns were in vain. Each state on the
+        way is `within` the bound. Several wide integers move together only in further leaps, of which each makes use of
+        the one before. Raises ModelError where so many turns were in vain that leaps don't help, either.
         """
-        if not self.possible:
-            return
+        if turn >= _HOPELESS:
+            raise hopeless([*here, *others])
+        hops = (turn // _PATIENCE).bit_length()
         near, touched = _with_neighbours(here, others, hops)
         bundles = list(dict.fromkeys(tuple(self._wide[each]) for each in touched if each in self._wide))
         for bundle in bundles:

@@ -181,7 +181,7 @@ class Observer:
         self._permissions = {each.relation.event: each for each in permissions}
         self._model = model
         self._roles = Roles(model)
-        self._troubles: dict[sct.Event, Trouble] = {}
+        self._troubles: dict[tuple[sct.Event, Diagram], Trouble] = {}
         self._triggers = [each for each in self._roles.triggers if each in self._permissions]
 
     def observations(self, uncontrolled: Diagram) -> Observations:
@@ -289,10 +289,7 @@ class Observer:
             return Hindrance(edge, Forbidden.BY_PLANTS, plants=tuple(plants))
         if not (enabled & relation.requirement).satisfiable():
             return Hindrance(edge, Forbidden.BY_REQUIREMENTS, requirements=forbidding(relation, enabled))
-        way = self._layers.path_to(held_back(self._permissions[edge.event], self._found) & here)
-        assert way is not None
-        found = trouble(self._encoding, self._moves, self._found, relation, way)
-        return Hindrance(edge, Forbidden.BY_SYNTHESIS, trouble=found)
+        return Hindrance(edge, Forbidden.BY_SYNTHESIS, trouble=self._trouble(self._permissions[edge.event], here))
 
     @cached_property
     def _relations(self) -> dict[sct.Event, EventRelation]:
@@ -325,19 +322,25 @@ class Observer:
         for event, permission in self._permissions.items():
             if permission.guard.synthesis is None:
                 continue
-            known = self._troubles.get(event)
-            way = None if known or steps > _STEPS else self._layers.path_to(held_back(permission, self._found), _EFFORT)
+            goal = held_back(permission, self._found)
+            known = self._troubles.get((event, goal))
+            way = None if known or steps > _STEPS else self._layers.path_to(goal, _EFFORT)
             found = known or (way and trouble(self._encoding, self._moves, self._found, permission.relation, way))
             if found:
                 steps += len(found.trace) + len(found.onwards)
                 yield event, found
 
-    def _trouble(self, permission: Permission) -> Trouble:
-        way = self._layers.path_to(held_back(permission, self._found))
-        assert way is not None
-        event = permission.relation.event
-        found = trouble(self._encoding, self._moves, self._found, permission.relation, way)
-        return self._troubles.setdefault(event, found)
+    def _trouble(self, permission: Permission, where: Diagram | None = None) -> Trouble:
+        """What is prevented where the event is held back, in some of these states: looked for once, it may be long."""
+        goal = held_back(permission, self._found)
+        if where is not None:
+            goal &= where
+        key = permission.relation.event, goal
+        if key not in self._troubles:
+            way = self._layers.path_to(goal)
+            assert way is not None
+            self._troubles[key] = trouble(self._encoding, self._moves, self._found, permission.relation, way)
+        return self._troubles[key]
 
 
 def held_back(permission: Permission, found: SupervisedStates) -> Diagram:

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 
 from robosc.diagnostics import ModelError
-from robosc.synthesis import encoding, fixpoint, leaps, synthesize
+from robosc.synthesis import encoding, leaps, synthesize
 from tests.random_sct import sct_models
 from tests.sct_models import edge, model, needs, plant
 from tests.synthesis.test_against_oracle import RANDOM_MODELS, check
@@ -20,7 +20,7 @@ LARGEST = 2**31 - 1
 @given(sct_models())
 @RANDOM_MODELS
 def test_random_models_in_leaps(random_model):
-    with patch.object(encoding, "_WIDE", 2), patch.object(fixpoint, "_PATIENCE", 1):
+    with patch.object(encoding, "_WIDE", 2), patch.object(leaps, "_PATIENCE", 1):
         check(random_model, synthesize(random_model))
 
 
@@ -137,7 +137,7 @@ def test_what_must_not_happen_after_a_million_counts():
 
 
 def test_where_nothing_helps_the_widest_integer_is_named(monkeypatch):
-    monkeypatch.setattr(fixpoint, "_HOPELESS", 64)
+    monkeypatch.setattr(leaps, "_HOPELESS", 64)
     monkeypatch.setattr(leaps, "_LARGE", 1)
     endless = counter()
     endless.plants[0].variables[0].source = "robot.rscd:7:9-7:20"

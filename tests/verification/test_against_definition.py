@@ -1,11 +1,13 @@
 """The properties over decision diagrams against the properties by their definition, on random supervised models."""
 
+from unittest.mock import patch
+
 import pytest
 from hypothesis import HealthCheck, assume, event, given, settings
 from hypothesis import strategies as st
 
 from robosc.metamodel import sct
-from robosc.synthesis import synthesize
+from robosc.synthesis import encoding, leaps, synthesize
 from robosc.verification import Outcome, Verdict, verify_system
 from robosc.verification.properties.requirement import requirement_name
 from tests.random_sct import sct_models
@@ -60,6 +62,11 @@ def test_random_models(model: sct.SupervisoryControlModel) -> None:
     check_control_loop(explicit, by_name["non-blocking in the control loop"])
     for each in verdicts:
         event(f"{each.property.split(' on ')[0]} {each.outcome}")
+
+
+def test_random_models_in_leaps() -> None:
+    with patch.object(encoding, "_WIDE", 2), patch.object(leaps, "_PATIENCE", 1):
+        test_random_models()
 
 
 def check(explicit: Explicit, verdict: Verdict, faults: set[State], *, appended: bool = False) -> None:

@@ -3,9 +3,13 @@
 from typing import Any
 from unittest.mock import patch
 
+import pytest
+
 from robosc.metamodel import sct
-from robosc.synthesis import synthesize
+from robosc.synthesis import leaps, synthesize
+from robosc.synthesis.relation import Step
 from robosc.verification import Outcome, Verdict, verify_system
+from robosc.verification.loop import ControlLoop
 from tests.sct_models import disables, edge, model, needs, plant
 
 
@@ -393,6 +397,49 @@ def test_what_waits_for_silent_events_may_wait_for_ever() -> None:
         [],
         [],
     )
+
+
+def counter() -> Any:
+    """Counts messages while it is open, and starts again by itself after each 65,535th."""
+    return plant(
+        "tank",
+        {
+            "closed": [edge("c_trigger", to="open"), edge("u_error", do={"level": "0"})],
+            "open": [
+                edge("u_response", do={"level": "level + 1"}),
+                edge("c_cancel", to="closed"),
+                edge("c_tau1", when="level == 65534", do={"level": "0"}, to="closed"),
+            ],
+        },
+        controllable=["c_trigger", "c_cancel", "c_tau1"],
+        uncontrollable=["u_response", "u_error"],
+        variables={"level": "0..65535 = 0"},
+    )
+
+
+@pytest.mark.parametrize("name", ["confluence", "non-blocking in the control loop"])
+def test_a_wide_integer_that_the_control_loop_counts(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    images = []
+    image = Step.image
+    monkeypatch.setattr(Step, "image", lambda step, states: images.append(step) or image(step, states))
+    found = verdict(model([counter()], guards={}), name)
+    assert found.outcome is Outcome.PROVED
+    assert found.evidence.startswith("131,069 states")
+    assert len(images) < 2000
+
+
+@pytest.mark.parametrize("name", ["confluence", "non-blocking in the control loop"])
+def test_a_wide_integer_that_takes_too_many_turns(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(ControlLoop, "states", property(endless))
+    found = verdict(model([counter()], guards={}), name)
+    assert (found.outcome, found.evidence) == (Outcome.SKIPPED, "")
+    assert found.explanation.startswith("the range of level, 65536 values, is too wide")
+
+
+def endless(loop: ControlLoop) -> None:
+    """As where leaps get large."""
+    with patch.object(leaps, "_HOPELESS", 64), patch.object(leaps.Leaps, "_closed", lambda *_: None):
+        loop._after(loop._system.encoding.initial, loop._waits)
 
 
 def test_counting_is_given_up_at_some_point() -> None:

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from robosc.synthesis.fixpoint import coreachable
 from robosc.synthesis.paths import shortest_path
 from robosc.synthesis.settling import groups
+from robosc.verification.loop import asked_of_the_loop
 from robosc.verification.system import counted, steps
 from robosc.verification.verdict import Outcome, Verdict
 
@@ -34,6 +35,7 @@ NAME = "confluence"
 _HELD = 6
 
 
+@asked_of_the_loop(NAME)
 def confluence(system: SupervisedSystem) -> Verdict:
     """From every state that the control loop comes to silent events lead to no more than one in which it rests.
 

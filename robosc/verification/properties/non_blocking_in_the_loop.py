@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from robosc.verification.loop import asked_of_the_loop
 from robosc.verification.system import counted, stuck
 from robosc.verification.verdict import Outcome, Verdict
 
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 NAME = "non-blocking in the control loop"
 
 
+@asked_of_the_loop(NAME)
 def non_blocking_in_the_loop(system: SupervisedSystem) -> Verdict:
     """From each state that the control loop comes to it can come to a marked one in which it rests."""
     loop = system.loop
