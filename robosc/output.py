@@ -420,6 +420,21 @@ def _reason(error: OSError | RuntimeError) -> str:
     return str(error)
 
 
+@contextmanager
+def temporary_folder() -> Iterator[Path]:
+    """A folder that is gone when the `with` block has ended, be it by a signal that would end the process.
+
+    Such a signal raises KeyboardInterrupt in the block, and takes effect once the folder is gone.
+    """
+    with _Signals() as signals:
+        folder = Path(tempfile.mkdtemp(prefix="robosc-"))
+        try:
+            with signals.raised():
+                yield folder
+        finally:
+            shutil.rmtree(folder, ignore_errors=True)
+
+
 class _Signals:
     """Lets signals that would end the process wait until the `with` block has ended.
 
@@ -430,6 +445,7 @@ class _Signals:
     def __init__(self) -> None:
         self._before: dict[int, Any] = {}
         self._heard: list[int] = []
+        self._raises = False
 
     def __enter__(self) -> _Signals:
         if threading.current_thread() is threading.main_thread():
@@ -442,6 +458,20 @@ class _Signals:
 
     def _hear(self, number: int, _frame: object) -> None:
         self._heard.append(number)
+        if self._raises:
+            self._raises = False
+            raise KeyboardInterrupt
+
+    @contextmanager
+    def raised(self) -> Iterator[None]:
+        """KeyboardInterrupt, once, where a signal comes in the `with` block or waits already."""
+        if self._heard:
+            raise KeyboardInterrupt
+        self._raises = True
+        try:
+            yield
+        finally:
+            self._raises = False
 
     def check(self) -> None:
         """Raises OutputError where a signal waits."""

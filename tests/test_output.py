@@ -5,6 +5,7 @@ import os
 import re
 import signal
 import stat
+import tempfile
 from collections.abc import Mapping
 from contextlib import suppress
 from functools import partial
@@ -15,7 +16,7 @@ from typing import Any
 import pytest
 
 from robosc import files, output
-from robosc.output import OutputError, open_log, write, write_file
+from robosc.output import OutputError, open_log, temporary_folder, write, write_file
 
 from .interruptions import CHANGES, interrupted, interruptions
 
@@ -384,3 +385,26 @@ def test_two_texts_for_one_file(tmp_path: Path) -> None:
     assert tree(tmp_path) == {}
     write({tmp_path / "out": {"copy/a": "1"}, tmp_path / "out" / "copy": {"a": "1"}})
     assert (tmp_path / "out" / "copy" / "a").read_text() == "1"
+
+
+@pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_a_temporary_folder_is_gone_after_a_signal_at_any_change(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, sent: signal.Signals
+) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+
+    def work() -> None:
+        with temporary_folder() as folder:
+            (folder / "below").mkdir()
+            (folder / "below" / "file").touch()
+
+    def run(number: int) -> int:
+        return interrupted(work, number, sent)
+
+    statuses = []
+    for _, status in interruptions(run):
+        statuses.append(status)
+        assert list(tmp_path.iterdir()) == []
+    assert len(statuses) == 5  # two folders made, a file and two folders removed
+    assert set(statuses) == {130 if sent == signal.SIGINT else -sent}
+    assert list(tmp_path.iterdir()) == []

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import groupby
 from typing import TYPE_CHECKING
 
 from robosc.diagnostics import Span
@@ -126,14 +127,15 @@ def _stuck(plant: sct.Plant, reason: Reason) -> str:
 
 
 def in_words(steps: Sequence[TraceStep], model: sct.SupervisoryControlModel) -> str:
-    """The events of a trace with the data that matters."""
+    """The events of a trace with the data that matters; what happens several times in a row is said once."""
     events = {event_name(event): event for plant in model.plants for event in plant.events}
     said = []
     for step in steps:
         event = events[step.event]
         data = ", ".join(f"{_data(each, event)} = {text(chosen)}" for each, chosen in step.inputs.items())
         said.append(f"{words(event)} ({data})" if data else words(event))
-    return ", then ".join(said)
+    runs = [(each, len(list(run))) for each, run in groupby(said)]
+    return ", then ".join(each if times == 1 else f"{times:,} times {each}" for each, times in runs)
 
 
 def trouble_in_words(trouble: Trouble, model: sct.SupervisoryControlModel) -> str:

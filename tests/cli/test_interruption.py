@@ -1,5 +1,6 @@
 """An interrupt is told as one, wherever it comes, and nothing is written after it."""
 
+import os
 import signal
 import subprocess
 import sys
@@ -78,6 +79,38 @@ def test_a_command_is_interrupted_at_any_change(tmp_path: Path, sent: signal.Sig
     assert {untidy, DOOR} == set(seen)
     assert model.read_text() == DOOR
     assert list(tmp_path.iterdir()) == [model]
+
+
+#: A compiler that starts a process of its own, and ends neither that nor itself before robosc got a signal.
+COMPILER = """#!/bin/sh
+sleep 1000 &
+echo $! > {number}
+sleep 0.5
+kill -{signal} $PPID
+wait
+"""
+
+
+@pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_verify_leaves_neither_files_nor_processes(door: Path, tmp_path: Path, sent: signal.Signals) -> None:
+    number, tools, temporary = tmp_path / "number", tmp_path / "tools", tmp_path / "temporary"
+    tools.mkdir()
+    temporary.mkdir()
+    compiler = tools / "cc"
+    compiler.write_text(COMPILER.format(number=number, signal=sent.name.removeprefix("SIG")))
+    compiler.chmod(0o755)
+    done = subprocess.run(
+        [sys.executable, "-m", "robosc", "verify", door],
+        env={**os.environ, "PATH": f"{tools}:{os.environ['PATH']}", "TMPDIR": str(temporary)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (done.returncode, done.stderr) == (130 if sent == signal.SIGINT else -sent, "")
+    assert list(temporary.iterdir()) == []
+    state = Path("/proc", number.read_text().strip(), "status")
+    # It is killed, be it that nobody has asked yet for how it ended.
+    assert not state.exists() or "State:\tZ" in state.read_text()
 
 
 def test_an_interrupt_while_the_program_loads_is_no_traceback() -> None:

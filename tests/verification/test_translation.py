@@ -473,6 +473,13 @@ def test_cif_nested_too_deep_is_not_read(opening: str, closing: str) -> None:
     assert re.match(expected, verdict.explanation)
 
 
+def test_cif_as_deep_as_it_is_read_is_compared() -> None:
+    verdict = with_changed_cif(
+        r"^    edge component_Pump.c_tau2;", f"    edge component_Pump.c_tau2 when {'not ' * 1998}true;"
+    )
+    assert verdict.outcome is Outcome.PROVED
+
+
 def chosen() -> sct.SupervisoryControlModel:
     """Data chosen by a state, under a supervisor."""
     given = model(

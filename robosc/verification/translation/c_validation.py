@@ -6,16 +6,18 @@ import errno
 import os
 import re
 import shutil
+import signal
 import subprocess
-import tempfile
+import sys
 from dataclasses import dataclass
 from math import prod
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robosc.m2t.c.comments import string_literal
 from robosc.m2t.c.names import CNames
 from robosc.m2t.templates import environment
+from robosc.output import temporary_folder
+from robosc.recursion import deep_recursion
 from robosc.roles import event_name
 from robosc.synthesis import MEMORY
 from robosc.synthesis.bdd import Diagrams, with_enough_memory
@@ -28,6 +30,7 @@ from robosc.verification.verdict import Outcome, Verdict
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
+    from pathlib import Path
 
     from robosc.metamodel import sct
     from robosc.synthesis.bdd import Diagram
@@ -58,6 +61,7 @@ class Effort:
     operations: int = 5_000
 
 
+@deep_recursion()
 def validate_c(model: sct.SupervisoryControlModel, files: Mapping[str, str], effort: Effort | None = None) -> Verdict:
     """Whether the C in these files (relative path to text), compiled, does what the model says with its supervisor.
 
@@ -67,8 +71,8 @@ def validate_c(model: sct.SupervisoryControlModel, files: Mapping[str, str], eff
     if compiler is None:
         return Verdict(PROPERTY, Outcome.SKIPPED, "", f"there is no C compiler ({', '.join(COMPILERS)}) to try it with")
     try:
-        with tempfile.TemporaryDirectory() as name:
-            trial = _Trial(model, Path(name), effort or Effort())
+        with temporary_folder() as folder:
+            trial = _Trial(model, folder, effort or Effort())
             fault = trial.build(compiler, files)
             if fault is not None:
                 return refuted(PROPERTY, fault)
@@ -108,15 +112,7 @@ class _Trial:
         (self._folder / "explorer.c").write_text(source, encoding="utf-8")
         sources = [f"{names.prefix}_supervisor.c", "explorer.c"]
         command = [compiler, "-std=c99", "-O1", "-w", *sources, "-o", "explorer"]
-        done = subprocess.run(  # noqa: S603
-            command,
-            cwd=self._folder,
-            capture_output=True,
-            text=True,
-            errors="replace",
-            check=False,
-            env={**os.environ, "LC_ALL": "C"},
-        )
+        done = self._done(command)
         if done.returncode == 0:
             return None
         short = next((line for line in done.stderr.splitlines() if _SHORTAGE.search(line)), None)
@@ -124,6 +120,28 @@ class _Trial:
             raise OSError(short or f"{compiler} was ended by signal {-done.returncode}")
         first = next((line for line in done.stderr.splitlines() if "error" in line), done.stderr.strip())
         return f"{compiler} does not compile {TEXT}: {first}"
+
+    def _done(self, command: Sequence[str]) -> subprocess.CompletedProcess[str]:
+        """As `subprocess.run` in the folder; but where that is interrupted, what the command has begun ends, too."""
+        with subprocess.Popen(  # noqa: S603
+            command,
+            cwd=self._folder,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            errors="replace",
+            env={**os.environ, "LC_ALL": "C"},
+            process_group=0,
+        ) as process:
+            try:
+                output, errors = process.communicate()
+            except BaseException:
+                if sys.platform == "win32":
+                    process.kill()
+                else:
+                    os.killpg(process.pid, signal.SIGKILL)
+                raise
+        return subprocess.CompletedProcess(command, process.returncode, output, errors)
 
     @staticmethod
     def _member(names: CNames, element: Element) -> dict[str, str]:
@@ -142,7 +160,7 @@ class _Trial:
         loop = LoopWalk(self._model, min(effort.operations, _LOOP // max(len(self._events), 1)))
         (self._folder / "script").write_text("\n".join(loop.script), encoding="ascii")
         command = ["./explorer", "reference", str(states), str(effort.steps), str(effort.walk), "script"]
-        done = subprocess.run(command, cwd=self._folder, capture_output=True, text=True, check=False)  # noqa: S603
+        done = self._done(command)
         if done.returncode != 0:
             return refuted(PROPERTY, f"{TEXT} ends with status {done.returncode}: {done.stderr.strip()}")
         found, *said = done.stdout.split("\n")

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from robosc.diagnostics import ModelError
 from robosc.metamodel import sct
+from robosc.recursion import deep_recursion
 from robosc.synthesis import MEMORY, arithmetic
 from robosc.synthesis.bdd import Diagrams, with_enough_memory
 from robosc.synthesis.decoding import pick
@@ -38,6 +39,7 @@ TEXT = "the generated CIF"
 UNSUPERVISED = f"{TEXT} without supervisor"
 
 
+@deep_recursion()
 def validate_cif(model: sct.SupervisoryControlModel, files: Mapping[str, str]) -> Verdict:
     """Whether `<robot>.cif` means the model's plants and requirements, and `<robot>.supervised.cif` its supervisor.
 
