@@ -13,9 +13,9 @@ if TYPE_CHECKING:
     from tests.ros.faults.partners import Scout
 
 RATE = 2000
-SECONDS = int(os.environ.get("ROBOSC_FLOOD_SECONDS", "10"))
+SECONDS = int(os.environ.get("ROBOSC_FLOOD_SECONDS", "5"))
 #: On a busy machine a node may be late with what it must not lose.
-PATIENCE = SECONDS + 60
+PATIENCE = SECONDS + 240
 
 
 @pytest.fixture
