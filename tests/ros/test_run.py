@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 HERE = Path(__file__).parent
 PACKAGE = "courier_controller"
+LISTEN = HERE.parents[1] / "examples" / "listen.py"
 LINE_FOLLOWER = HERE.parents[1] / "examples" / "line_follower" / "line_follower.rscd"
 NAVIGATION = HERE.parents[1] / "examples" / "simple_navigation" / "simple_navigation.rscd"
 
@@ -71,3 +72,26 @@ def test_a_parameter_out_of_range_is_named(runner: Runner, parameter: str, tmp_p
         text = processes.logs()
         assert "period_ms" in text
         assert "Traceback" not in text
+
+
+def test_it_says_what_it_hears_and_sends(runner: Runner, tmp_path: Path) -> None:
+    with middleware(runner, tmp_path / "run") as processes:
+        processes.start("node", runner.command(LINE_FOLLOWER))
+        said = "line_follower_controller runs: hears"
+        processes.wait_until(lambda: said in processes.logs(), "it says so at its start")
+        (line,) = (line for line in processes.logs().splitlines() if said in line)
+        assert "/scan" in line.partition("sends")[0]
+        assert "/cmd_vel" in line.partition("sends")[2]
+        assert "Ctrl-C ends it." in line
+
+
+def test_its_reports_can_be_listened_to_without_the_commands_of_ros_2(run_ros2: Runner, tmp_path: Path) -> None:
+    with middleware(run_ros2, tmp_path / "run") as processes:
+        processes.start("node", run_ros2.command(LINE_FOLLOWER))
+        listener = processes.start("listener", [run_ros2.ros.python, LISTEN, "line_follower_controller/state"])
+        heard = tmp_path / "run" / "listener.log"
+        processes.wait_until(lambda: heard.read_text().count("\n") > 1, "it reports, and somebody listens")
+        topic, _, report = heard.read_text().splitlines()[0].partition(": ")
+        assert topic == "/line_follower_controller/state"
+        assert json.loads(report)["robot"] == "LineFollower"
+        assert processes.stop(listener) == 0
