@@ -7,6 +7,7 @@ import os
 import signal
 import subprocess
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -61,6 +62,10 @@ class Graph:
         command = ["env", f"LD_PRELOAD={preloaded}", *self.workspace.node(package, f"event_log:={log}", *parameters)]
         self.nodes.append(self.processes.start(name, [*command, "-r", f"__node:={name}"]))
         return self.nodes[-1], log
+
+    def change(self, node: str, *transitions: int) -> list[Any]:
+        """Asks a managed node for transitions, one after the other; whether each succeeded."""
+        return [self.manage("change", node, transition) for transition in transitions]
 
     def commands(self, topic: str) -> int:
         """How many commands the world has heard."""
@@ -145,7 +150,7 @@ def test_a_hangup_stops_the_robot(graph: Graph) -> None:
 def test_a_managed_node_acts_while_it_is_active(graph: Graph) -> None:
     before = graph.commands("/cmd_vel")
     node, log = graph.start("managed_porter", "porter")
-    change = lambda *transitions: [graph.manage("change", "/porter", each) for each in transitions]  # noqa: E731
+    change = partial(graph.change, "/porter")
     assert change(CONFIGURE) == [True]
     silent = graph.commands("/cmd_vel") - before
     assert change(ACTIVATE) == [True]
@@ -169,7 +174,7 @@ def test_a_managed_node_that_fails_is_still_and_can_be_configured_again(graph: G
     code = FAILING.format(len(f"on_{transition}"), transition)
     subprocess.run(["gcc", "-shared", "-fPIC", "-x", "c", "-", "-o", library], input=code, text=True, check=True)
     node, log = graph.start("managed_porter", "failing", preloaded=library)
-    change = lambda *transitions: [graph.manage("change", "/failing", each) for each in transitions]  # noqa: E731
+    change = partial(graph.change, "/failing")
     graph.world.do("advertise", topic="/order", kind="std_msgs/Float64")
     if transition == "activate":
         assert change(CONFIGURE, ACTIVATE) == [True, False]

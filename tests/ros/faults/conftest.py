@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 HERE = Path(__file__).parent
 MODEL = HERE / "scout.rscd"
 PACKAGE = "scout_controller"
+#: How long a patient node waits for a goal's acceptance.
+ACCEPTANCE_SECONDS = 60
 
 
 @dataclass(frozen=True)
@@ -108,7 +110,7 @@ def scout(under_way: Scout, request: pytest.FixtureRequest) -> Iterator[Scout]:
 @pytest.fixture
 def with_patience(controller: Controller, kept: Keep, tmp_path_factory: pytest.TempPathFactory) -> Scout:
     """A node that waits long for a goal's acceptance, which takes its time on a busy machine."""
-    parameter = "action_timeout_ms:=60000"
+    parameter = f"action_timeout_ms:={1000 * ACCEPTANCE_SECONDS}"
     return kept("with patience", lambda: scouting(controller, tmp_path_factory.mktemp("patient") / "run", parameter))
 
 

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from tests.ros.faults.conftest import ACCEPTANCE_SECONDS
+
 if TYPE_CHECKING:
     from tests.ros.faults.partners import Moment, Peer, Scout
 
@@ -34,7 +36,8 @@ def test_feedback(scout: Scout, server: Peer) -> None:
 
 def test_goal_rejected(scout: Scout, server: Peer) -> None:
     since, number = travel(scout, server, accept=False)
-    scout.until_event(since, ERROR)
+    error = scout.until_event(since, ERROR)
+    assert error["time"] - scout.events(since, TRIGGER)[0]["time"] < ACCEPTANCE_SECONDS
     scout.until_says(since, "/travel: rejected")
     succeed(scout, server, number + 1)
 
