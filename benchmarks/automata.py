@@ -11,12 +11,12 @@ from dataclasses import dataclass
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
-from robosc.edges import edges_from, edges_of
-from robosc.evaluation import evaluate
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 from robosc.metamodel.reflection import tree
-from robosc.roles import event_name
+from robosc.semantics.edges import edges_from, edges_of
+from robosc.semantics.evaluation import evaluate
+from robosc.semantics.roles import event_name
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence

@@ -11,11 +11,11 @@ import subprocess
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from robosc.config import ControlLoop
+from robosc.configuration import ControlLoop
 from robosc.m2t.c import engine
 from robosc.m2t.c.names import CNames
 from robosc.m2t.c.types import interval_of
-from robosc.roles import Roles
+from robosc.semantics.roles import Roles
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

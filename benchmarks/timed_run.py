@@ -7,7 +7,7 @@ from pathlib import Path
 from time import perf_counter_ns
 
 from robosc.cli import run
-from robosc.runtime.controller import Controller
+from robosc.runtime.core.controller import Controller
 
 
 def main() -> None:

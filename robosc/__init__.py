@@ -21,14 +21,14 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from os import PathLike
 
-    from robosc.config import Configuration
+    from robosc.analysis.supervision import EmptySupervisorError
+    from robosc.configuration import Configuration
     from robosc.diagnostics import Diagnostic, ModelError
     from robosc.m2m.trace import Trace
+    from robosc.m2t.models import Models
     from robosc.metamodel.robosc import Base, Robot
     from robosc.metamodel.rosgraph import RosGraph
     from robosc.metamodel.sct import Supervisor, SupervisoryControlModel
-    from robosc.models import Models
-    from robosc.supervision import EmptySupervisorError
 
 __version__ = "0.1.0"
 
@@ -47,11 +47,11 @@ __all__ = [
 ]
 
 _LOADED_WHEN_ASKED = {
-    "Configuration": "robosc.config",
+    "Configuration": "robosc.configuration",
     "Diagnostic": "robosc.diagnostics",
-    "EmptySupervisorError": "robosc.supervision",
+    "EmptySupervisorError": "robosc.analysis.supervision",
     "ModelError": "robosc.diagnostics",
-    "Models": "robosc.models",
+    "Models": "robosc.m2t.models",
 }
 
 
@@ -85,8 +85,8 @@ def load(
 
         base = xmi.load(str(path))
     else:
-        from robosc.interfaces import Interfaces
         from robosc.language import read
+        from robosc.ros_types import Interfaces
 
         reading = read(str(path), [str(each) for each in library_paths], Interfaces(interface_paths))
         if reading.base is None or has_errors(reading.findings):
@@ -104,7 +104,7 @@ def check(robot: Base, interface_paths: Sequence[str | PathLike[str]] = ()) -> l
     ROBOSC_INTERFACE_PATH, in the ROS installation and among the standard types.
     """
     from robosc.checks import check as checked
-    from robosc.interfaces import Interfaces
+    from robosc.ros_types import Interfaces
 
     return checked(robot, (), Interfaces(interface_paths))
 
@@ -123,8 +123,8 @@ def to_rosgraph(robot: Robot, interface_paths: Sequence[str | PathLike[str]] = (
 
     ROS types are looked up as `check` does: the field of a basic value is the only one of its type, else `data`.
     """
-    from robosc.interfaces import Interfaces
     from robosc.m2m import robosc_to_rosgraph
+    from robosc.ros_types import Interfaces
 
     return robosc_to_rosgraph.transform(_plants(robot)[1], Interfaces(interface_paths))
 
@@ -145,10 +145,10 @@ def synthesize(model: SupervisoryControlModel) -> Supervisor:
 
     Raises EmptySupervisorError, a ModelError that says why, where there is none; ModelError where an action would
     cancel itself; MemoryError where the decision diagrams would take more than 4 GB. What is merely doubtful about the
-    supervisor, `robosc.supervision.supervise` tells.
+    supervisor, `robosc.analysis.supervision.supervise` tells.
     """
+    from robosc.analysis.supervision import supervise
     from robosc.diagnostics import ModelError, has_errors
-    from robosc.supervision import supervise
 
     supervision = supervise(model)
     if has_errors(supervision.findings):
@@ -167,10 +167,10 @@ def generate(
     of `ros1` and `ros2`. Raises ModelError where the models or the configuration
     don't meet the target's preconditions, ValueError where the target is unknown or a model that it reads is missing.
     """
-    from robosc.config import Configuration
+    from robosc.configuration import Configuration
     from robosc.diagnostics import ModelError, has_errors
-    from robosc.recursion import deep_recursion
-    from robosc.targets import TARGETS
+    from robosc.m2t.targets import TARGETS
+    from robosc.semantics.recursion import deep_recursion
 
     if target not in TARGETS:
         raise ValueError(f"there is no target {target!r}, but {', '.join(TARGETS)}")

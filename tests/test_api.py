@@ -9,7 +9,7 @@ from click.testing import CliRunner
 
 import robosc
 from robosc.cli import main
-from robosc.targets import TARGETS
+from robosc.m2t.targets import TARGETS
 from tests.cli.conftest import COURIER, DOOR, LAMPS
 
 

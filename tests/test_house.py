@@ -17,16 +17,13 @@ ROOMS = {
     "checks",
     "m2m",
     "synthesis",
+    "analysis",
     "engine",
     "runtime",
     "simulation",
     "diagrams",
     "m2t",
-    "supervision",
-    "targets",
-    "traces",
-    "verification",
-    "explanation",
+    "node_tests",
     "cli",
     "__main__",
     "",
@@ -35,20 +32,19 @@ ROOMS = {
 ALLOWED = {
     "": ROOMS - {"cli", "__main__"},
     "__main__": {"cli"},
-    "supervision": {"synthesis"},
+    "analysis": {"synthesis", "engine", "m2t"},
     "runtime": {"engine"},
-    "traces": {"engine", "runtime"},
+    "node_tests": {"engine", "runtime", "m2t"},
     "simulation": {"engine", "runtime"},
-    "explanation": {"synthesis", "supervision", "engine"},
-    "verification": {"synthesis", "supervision", "engine", "m2t"},
     "cli": ROOMS - {"__main__"},
 }
 #: Pieces that generators share, each with what it may use of the others.
 SHARED = {
+    "models": set(),
     "templates": set(),
-    "c": {"templates"},
-    "cpp": {"c", "templates"},
-    "layer": {"c", "cpp", "templates"},
+    "c": {"models", "templates"},
+    "cpp": {"c", "models", "templates"},
+    "layer": {"c", "cpp", "models", "templates"},
     "roscpp": set(),
     "rclcpp": set(),
 }
@@ -63,12 +59,12 @@ LIBRARIES = {
     "jinja2": {"diagrams", "m2t"},
     "networkx": {"diagrams"},
     "oxidd": {"synthesis"},
-    "pydantic": {"config"},
+    "pydantic": {"configuration"},
     "pyecore": {"metamodel"},
     "rcl_interfaces": {"runtime"},
     "rclpy": {"runtime"},
     "rich": {"cli", "diagnostics"},
-    "rosbags": {"interfaces"},
+    "rosbags": {"ros_types"},
     "rosgraph": {"runtime"},
     "rosgraph_msgs": {"runtime"},
     "rospy": {"runtime"},
@@ -78,7 +74,7 @@ LIBRARIES = {
     **{f"rosidl_typesupport_{name}": {"runtime"} for name in ("c", "fastrtps_c", "introspection_c")},
     "rosidl_generator_type_description": {"runtime"},
     "numpy": {"runtime"},
-    "textx": {"language", "verification"},
+    "textx": {"language", "analysis"},
 }
 
 
@@ -150,19 +146,19 @@ OPENING = {
     "replace",
 }
 OPENERS = {
-    "files",
-    "output",
+    "files.reading",
+    "files.writing",
     "cli",  # the null device, for streams that are closed
     "cli.format",  # the standard output
     "diagnostics.rules",  # what ships with the tool, here and in the next three
-    "memory",  # what the kernel tells of the process
+    "synthesis.memory",  # what the kernel tells of the process
     "metamodel._ecore",
     "metamodel.stubs",
-    "traces.trace_test",
-    "runtime.ros2_interfaces",  # a tool of its own, whose files are made for the generators
-    "runtime.reports",  # what `output` has opened
-    "traces.trace_player",  # ships with generated packages, and sees nothing of ours
-    "verification.translation.c_validation",  # a temporary folder
+    "node_tests.trace_test",
+    "runtime.ros2.interfaces",  # a tool of its own, whose files are made for the generators
+    "runtime.core.reports",  # what `output` has opened
+    "node_tests.trace_player",  # ships with generated packages, and sees nothing of ours
+    "analysis.verification.translation.c_validation",  # a temporary folder
 }
 
 
@@ -191,13 +187,13 @@ def test_files_that_others_name_go_through_one_place() -> None:
         ("m2t.cpp", "m2t.ros1"),
         ("m2t.c", "m2t.cpp"),
         ("m2t.cif", "m2m"),
-        ("typing", "checks"),
+        ("semantics.typing", "checks"),
         ("metamodel.sct", "cli"),
         ("m2t.cif", "cli"),
         ("engine", "runtime"),
         ("runtime", "m2t.cpp"),
-        ("m2t.ros1", "traces"),
-        ("runtime", "traces"),
+        ("m2t.ros1", "node_tests"),
+        ("runtime", "node_tests"),
         ("checks.rule", "__version__"),
     ],
 )
@@ -210,7 +206,7 @@ def test_the_rule_allows() -> None:
         ("m2t.ros1", "m2t.cpp"),
         ("m2t.cpp", "m2t.c"),
         ("m2t.cif", "m2t.templates"),
-        ("m2t.cif", "config"),
+        ("m2t.cif", "configuration"),
         ("m2t.cif.edges", "m2t.cif.names"),
         ("checks.rule", "metamodel"),
         ("cli.transform", "language"),

@@ -4,7 +4,7 @@ import re
 from pathlib import Path
 
 import robosc
-from robosc.resources import locate
+from robosc.files.resources import locate
 
 PAGE = Path(__file__).parent.parent / "docs" / "language.md"
 

@@ -11,12 +11,12 @@ from itertools import count
 from pathlib import Path
 
 import robosc
-from robosc import config
-from robosc.runtime.agenda import Agenda
-from robosc.runtime.controller import Controller
-from robosc.runtime.layer import Layer
-from robosc.runtime.port import Outcome
-from robosc.runtime.settings import Settings, controller_parameters, layer_parameters
+from robosc import configuration as config
+from robosc.runtime.core.agenda import Agenda
+from robosc.runtime.core.controller import Controller
+from robosc.runtime.core.layer import Layer
+from robosc.runtime.core.port import Outcome
+from robosc.runtime.core.settings import Settings, controller_parameters, layer_parameters
 
 from .playing import tell
 from .simulation import GoalNews

@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING
 from robosc.checks.libraries import reachable, remembering
 from robosc.checks.rule import RULES
 from robosc.diagnostics import Diagnostic, in_order
-from robosc.interfaces import Interfaces
 from robosc.metamodel.files import path_of
 from robosc.metamodel.places import place
-from robosc.recursion import deep_recursion
+from robosc.ros_types import Interfaces
+from robosc.semantics.recursion import deep_recursion
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence

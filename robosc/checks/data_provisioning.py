@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from robosc.checks.declarations import DIRECTIONS, sent_type
 from robosc.checks.rule import Finding, rule
 from robosc.metamodel import robosc as rsc
-from robosc.typing import NONE, declared_type
+from robosc.semantics.typing import NONE, declared_type
 
 
 @rule("data-provisioning")

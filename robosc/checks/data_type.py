@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 from robosc.checks.declarations import carried_types, communications, sent_type
 from robosc.checks.rule import Finding, rule
 from robosc.metamodel import robosc as rsc
-from robosc.naming import written
-from robosc.typing import NONE, ArrayType, EnumType, declared_type
+from robosc.semantics.naming import written
+from robosc.semantics.typing import NONE, ArrayType, EnumType, declared_type
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

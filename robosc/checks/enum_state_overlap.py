@@ -12,8 +12,8 @@ from robosc.checks.unique_enum_value import enum_values, has_enum_values
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from robosc.instances import Instance
     from robosc.metamodel import robosc as rsc
+    from robosc.semantics.instances import Instance
 
 
 @rule("enum-state-overlap")

@@ -9,11 +9,11 @@ from typing import Any
 from robosc.checks.libraries import instances
 from robosc.checks.rule import Finding
 from robosc.checks.type_repairs import equality_repair, repair
-from robosc.expressions import RoboscPrinter
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
-from robosc.naming import written
-from robosc.typing import (
+from robosc.semantics.naming import written
+from robosc.semantics.printing import RoboscPrinter
+from robosc.semantics.typing import (
     BOOLEAN,
     DOUBLE,
     EQUALITY,

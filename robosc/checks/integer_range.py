@@ -9,16 +9,16 @@ from robosc.checks.declarations import data_types, sent_type, variables
 from robosc.checks.rule import Finding, rule
 from robosc.checks.supervised import Fault, data_reads, supervised_faults
 from robosc.checks.tabulation import table_faults
-from robosc.evaluation import evaluate
 from robosc.metamodel import robosc as rsc
-from robosc.needed import Need, Needed, accesses, read_type
-from robosc.typing import INTEGER, infer
+from robosc.semantics.cone_of_influence import Need, Needed, accesses, read_type
+from robosc.semantics.evaluation import evaluate
+from robosc.semantics.typing import INTEGER, infer
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from robosc.instances import Instances
     from robosc.metamodel import expression as ex
+    from robosc.semantics.instances import Instances
 
 
 @rule("integer-range")

@@ -8,8 +8,8 @@ from robosc.checks.declarations import carried_types, communications
 from robosc.checks.libraries import imports
 from robosc.checks.rule import Finding, rule
 from robosc.metamodel import robosc as rsc
-from robosc.naming import written
-from robosc.typing import NONE, UNKNOWN, EnumType, ObjectType, Type, declared_type
+from robosc.semantics.naming import written
+from robosc.semantics.typing import NONE, UNKNOWN, EnumType, ObjectType, Type, declared_type
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from robosc.checks.wire_data import Carried
-    from robosc.interfaces import Interfaces
     from robosc.metamodel import robosc as rsc
+    from robosc.ros_types import Interfaces
 
 
 @interface_rule("interface-mix", Severity.WARNING)

@@ -9,15 +9,15 @@ from robosc.checks.rule import Finding, interface_rule
 from robosc.checks.wire_data import Carried, UsedData, Uses, carried, carries
 from robosc.checks.wire_faults import Fault, Unknown, faults
 from robosc.diagnostics import Severity
-from robosc.interfaces.unknown import OWN_OBJECT, other_kinds
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
 from robosc.metamodel.reflection import tree
+from robosc.ros_types.unknown import OWN_OBJECT, other_kinds
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from robosc.interfaces import Interfaces
+    from robosc.ros_types import Interfaces
 
 
 @interface_rule("interface-type")

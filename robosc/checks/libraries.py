@@ -7,13 +7,13 @@ from contextvars import ContextVar
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from robosc.instances import Instances, imported, libraries
 from robosc.metamodel import robosc as rsc
+from robosc.semantics.instances import Instances, imported, libraries
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
 
-    from robosc.instances import Resolved
+    from robosc.semantics.instances import Resolved
 
     #: Says whether a robot or library by itself has what a rule looks for.
     Holds = Callable[[rsc.Base], bool]

@@ -8,7 +8,7 @@ from robosc.checks.automata import behaviours, common_transitions, states
 from robosc.checks.rule import Finding, rule
 from robosc.checks.unique_names import on_line
 from robosc.metamodel import robosc as rsc
-from robosc.typing import events
+from robosc.semantics.typing import events
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

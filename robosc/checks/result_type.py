@@ -5,8 +5,8 @@ from collections.abc import Iterator
 from robosc.checks.automata import behaviours, transitions
 from robosc.checks.rule import Finding, rule
 from robosc.metamodel import robosc as rsc
-from robosc.naming import written
-from robosc.typing import events
+from robosc.semantics.naming import written
+from robosc.semantics.typing import events
 
 _FROM = {"response", "error", "feedback", "cancel"}
 

@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
     from robosc.diagnostics import Diagnostic, Span
-    from robosc.interfaces import Interfaces
     from robosc.metamodel import robosc as rsc
+    from robosc.ros_types import Interfaces
 
 
 @dataclass(frozen=True)

@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 from robosc.checks.libraries import fact, instances, reachable
 from robosc.checks.rule import Finding
 from robosc.metamodel import robosc as rsc
-from robosc.needed import Need, Needed, accesses, needed
-from robosc.typing import BOOLEAN, INTEGER, UNKNOWN, EnumType, declared_type, type_of
+from robosc.semantics.cone_of_influence import Need, Needed, accesses, needed
+from robosc.semantics.typing import BOOLEAN, INTEGER, UNKNOWN, EnumType, declared_type, type_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from robosc.instances import Instances
     from robosc.metamodel import expression as ex
-    from robosc.needed import Assigned
+    from robosc.semantics.cone_of_influence import Assigned
+    from robosc.semantics.instances import Instances
 
 
 @dataclass(frozen=True)

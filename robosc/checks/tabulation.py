@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, NamedTuple
 from robosc.checks.supervised import Fault, can_be_needed
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
-from robosc.needed import LARGEST_TABLE, Need, Needed, accesses, conditions, read_type
-from robosc.typing import DOUBLE, EQUALITY, ORDERING, infer, value_type
+from robosc.semantics.cone_of_influence import LARGEST_TABLE, Need, Needed, accesses, conditions, read_type
+from robosc.semantics.typing import DOUBLE, EQUALITY, ORDERING, infer, value_type
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from robosc.instances import Instance, Instances
-    from robosc.needed import Assigned
+    from robosc.semantics.cone_of_influence import Assigned
+    from robosc.semantics.instances import Instance, Instances
 
 
 class _Limit(NamedTuple):

@@ -8,8 +8,17 @@ from robosc.checks.automata import assigned_variable, behaviours, sends_message,
 from robosc.checks.expression_types import CONSTANT, ENUM_RULE, ExpressionCheck, Place
 from robosc.checks.rule import Finding, rule
 from robosc.metamodel import robosc as rsc
-from robosc.typing import BOOLEAN, NONE, UNKNOWN, ArrayType, ObjectType, Type, declared_type, provided_data_type
-from robosc.typing import value_type as value_type_in
+from robosc.semantics.typing import (
+    BOOLEAN,
+    NONE,
+    UNKNOWN,
+    ArrayType,
+    ObjectType,
+    Type,
+    declared_type,
+    provided_data_type,
+)
+from robosc.semantics.typing import value_type as value_type_in
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

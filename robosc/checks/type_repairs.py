@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robosc.expressions import RoboscPrinter
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
-from robosc.naming import written
-from robosc.typing import (
+from robosc.semantics.naming import written
+from robosc.semantics.printing import RoboscPrinter
+from robosc.semantics.typing import (
     BOOLEAN,
     DOUBLE,
     INTEGER,

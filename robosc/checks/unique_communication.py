@@ -4,8 +4,8 @@ from collections.abc import Iterator
 
 from robosc.checks.libraries import fact, instances, reachable
 from robosc.checks.rule import Finding, rule
-from robosc.instances import Occurrence
 from robosc.metamodel import robosc as rsc
+from robosc.semantics.instances import Occurrence
 
 
 @rule("unique-communication")

@@ -5,9 +5,9 @@ from collections.abc import Iterator
 from robosc.checks.libraries import instances
 from robosc.checks.rule import Finding, rule
 from robosc.diagnostics import Severity
-from robosc.instances import Occurrence
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
+from robosc.semantics.instances import Occurrence
 
 
 @rule("unique-topic", Severity.WARNING)

@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING
 from robosc.checks.declarations import variables
 from robosc.checks.rule import Finding, rule
 from robosc.checks.supervised import Fault, data_reads, supervised_faults
-from robosc.expressions import RoboscPrinter
-from robosc.needed import Need, Needed
-from robosc.typing import DOUBLE, NONE, STRING, ArrayType, ObjectType, access_types, declared_type, value_type
+from robosc.semantics.cone_of_influence import Need, Needed
+from robosc.semantics.printing import RoboscPrinter
+from robosc.semantics.typing import DOUBLE, NONE, STRING, ArrayType, ObjectType, access_types, declared_type, value_type
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from robosc.instances import Instances
     from robosc.metamodel import robosc as rsc
+    from robosc.semantics.instances import Instances
 
 
 @rule("variable-type")

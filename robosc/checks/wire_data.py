@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
 from robosc.checks.declarations import communications, sent_type
-from robosc.interfaces.wire import Nested, Part
 from robosc.metamodel import robosc as rsc
 from robosc.metamodel.reflection import tree
-from robosc.needed import accesses
+from robosc.ros_types.wire import Nested, Part
+from robosc.semantics.cone_of_influence import accesses
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator

@@ -6,17 +6,17 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
-from robosc.interfaces.unknown import MAKE_KNOWN, REPAIR, why_unknown
-from robosc.interfaces.wire import INTEGER_RANGES, Basic, DefinitionError, Fields, Nested, Part, Sequence, WireType
 from robosc.metamodel import robosc as rsc
-from robosc.naming import written
-from robosc.typing import declared_type
+from robosc.ros_types.unknown import MAKE_KNOWN, REPAIR, why_unknown
+from robosc.ros_types.wire import INTEGER_RANGES, Basic, DefinitionError, Fields, Nested, Part, Sequence, WireType
+from robosc.semantics.naming import written
+from robosc.semantics.typing import declared_type
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from robosc.checks.wire_data import Carried, Uses
-    from robosc.interfaces import Edition, Interfaces
+    from robosc.ros_types import Edition, Interfaces
 
 _INTEGERS = frozenset(INTEGER_RANGES)
 #: The wire types that hold values of a type, and the type to write for them.

@@ -16,9 +16,9 @@ import click
 from robosc import __version__
 from robosc.cli import interruption
 from robosc.cli.saying import say
-from robosc.files import noting
-from robosc.recursion import deep_recursion
-from robosc.visible import visible, visible_lines
+from robosc.diagnostics.visible import visible, visible_lines
+from robosc.files.reading import noting
+from robosc.semantics.recursion import deep_recursion
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -21,8 +21,8 @@ from robosc.diagrams import (
     plants_graph,
     ros_graph,
 )
+from robosc.files.writing import refuse, write_file
 from robosc.metamodel import robosc as rsc
-from robosc.output import refuse, write_file
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

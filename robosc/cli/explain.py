@@ -7,28 +7,28 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from robosc.analysis.explanation import as_json
+from robosc.analysis.explanation.as_text import Teller
+from robosc.analysis.explanation.emptiness import emptiness
+from robosc.analysis.explanation.explaining import explain
+from robosc.analysis.explanation.names import NamingError, event_named, state_given
+from robosc.analysis.explanation.possibility import possibility
+from robosc.analysis.explanation.space import explored
+from robosc.analysis.supervision import supervise
 from robosc.cli import CallError
 from robosc.cli.options import interface_path, library_path, model
 from robosc.cli.progress import progress
 from robosc.cli.reading import read_models
 from robosc.cli.report import Report
 from robosc.cli.saying import put, say
-from robosc.explanation import as_json
-from robosc.explanation.as_text import Teller
-from robosc.explanation.emptiness import emptiness
-from robosc.explanation.explaining import explain
-from robosc.explanation.names import NamingError, event_named, state_given
-from robosc.explanation.possibility import possibility
-from robosc.explanation.space import explored
+from robosc.diagnostics.visible import visible
 from robosc.metamodel.places import place
-from robosc.supervision import supervise
-from robosc.visible import visible
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from robosc.explanation.answers import Explanation, Possibility
-    from robosc.explanation.space import Space
+    from robosc.analysis.explanation.answers import Explanation, Possibility
+    from robosc.analysis.explanation.space import Space
     from robosc.metamodel import sct
 
 

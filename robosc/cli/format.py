@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, NoReturn
 
 import click
 
-from robosc import files
 from robosc.cli import ERRORS_FOUND, CallError, interruption
 from robosc.cli.report import Report
 from robosc.cli.saying import say
+from robosc.diagnostics.visible import visible
+from robosc.files import reading as files
+from robosc.files.writing import write_file
 from robosc.language.formatting import format_text
 from robosc.language.text import decode
-from robosc.output import write_file
-from robosc.visible import visible
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

@@ -10,7 +10,7 @@ from threading import Event, Thread, Timer, current_thread, main_thread
 from typing import TYPE_CHECKING
 
 from robosc.cli import INTERRUPTED
-from robosc.memory import TooFewAddressesError
+from robosc.synthesis.memory import TooFewAddressesError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

@@ -8,20 +8,20 @@ from typing import TYPE_CHECKING, Any
 import robosc
 from robosc.checks import check
 from robosc.cli import CallError
-from robosc.instances import libraries
-from robosc.interfaces import Interfaces
 from robosc.language import read as read_text
 from robosc.language.libraries import search_folders
+from robosc.m2t.models import Models
 from robosc.metamodel import robosc as rsc
 from robosc.metamodel import rosgraph, sct
 from robosc.metamodel.files import set_locate
-from robosc.models import Models
+from robosc.ros_types import Interfaces
+from robosc.semantics.instances import libraries
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from robosc.cli.report import Report
-    from robosc.config import Configuration
+    from robosc.configuration import Configuration
 
     Root = rsc.Base | sct.SupervisoryControlModel | rosgraph.RosGraph
 
@@ -98,9 +98,9 @@ def _locate_sources(root: Any, sources: _Sources) -> None:
 def read_configuration(model: str, chosen: str | None, report: Report) -> Configuration:
     """The configuration in the file that was chosen, else in the one near the model; what is wrong may be shown.
 
-    Raises ModelError and OSError as `robosc.config` does.
+    Raises ModelError and OSError as `robosc.configuration` does.
     """
-    from robosc import config  # loads pydantic
+    from robosc import configuration as config  # loads pydantic
 
     file = Path(chosen) if chosen else config.find(Path(model).parent)
     if file is None:

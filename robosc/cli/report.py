@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Literal
 
 import click
 
-from robosc import files
 from robosc.cli import EMPTY_SUPERVISOR, ERRORS_FOUND
 from robosc.cli.saying import put
 from robosc.diagnostics import ModelError, has_errors
+from robosc.files import reading as files
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping

@@ -7,19 +7,19 @@ from typing import TYPE_CHECKING
 
 import click
 
+from robosc.analysis.supervision import supervise
 from robosc.cli import CallError, interruption
 from robosc.cli.options import FILE, findings_format, interface_path, library_path, model
 from robosc.cli.progress import synthesizing
 from robosc.cli.reading import read_configuration, read_models
 from robosc.cli.report import Report
-from robosc.supervision import supervise
-from robosc.targets import TARGETS
+from robosc.m2t.targets import TARGETS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from robosc.config import Configuration
-    from robosc.models import Models
+    from robosc.configuration import Configuration
+    from robosc.m2t.models import Models
 
 
 @click.command("run", context_settings={"ignore_unknown_options": True})
@@ -78,9 +78,9 @@ def command(
 
 def _run(models: Models, configuration: Configuration, version: int, arguments: Sequence[str], *, layer: bool) -> None:
     from robosc.m2t.cpp.shutdown import message_named
+    from robosc.runtime.core.settings import SafeMessages
+    from robosc.runtime.core.starting import StartError
     from robosc.runtime.node import run_controller, run_layer
-    from robosc.runtime.settings import SafeMessages
-    from robosc.runtime.starting import StartError
 
     graph = models.rosgraph
     assert graph is not None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import click
 
-from robosc.visible import visible_lines
+from robosc.diagnostics.visible import visible_lines
 
 
 def say(text: str = "", *, err: bool = False, nl: bool = True) -> None:

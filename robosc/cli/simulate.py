@@ -10,26 +10,26 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from robosc import files
+from robosc.analysis.supervision import supervise
+from robosc.analysis.supervision.wording import with_words
 from robosc.cli.options import FILE, interface_path, library_path, model
 from robosc.cli.progress import synthesizing
 from robosc.cli.reading import read_configuration, read_models
 from robosc.cli.report import Report
 from robosc.cli.saying import put, say
 from robosc.engine import Settings
+from robosc.files import reading as files
 from robosc.language.text import decode
-from robosc.roles import event_name
+from robosc.semantics.roles import event_name
 from robosc.simulation import Simulation, read_script, unfit_data
 from robosc.simulation.loop import LoopSimulation
 from robosc.simulation.script import RULE
 from robosc.simulation.session import Session, trace_line
-from robosc.supervision import supervise
-from robosc.supervision.wording import with_words
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from robosc.models import Models
+    from robosc.m2t.models import Models
 
 
 @click.command("simulate")

@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from robosc.analysis.supervision import EmptySupervisorError, supervise
+from robosc.analysis.supervision.wording import change
 from robosc.cli.options import interface_path, library_path, memory, model
 from robosc.cli.progress import synthesizing
 from robosc.cli.reading import read_models
 from robosc.cli.report import Report
 from robosc.cli.saying import put, say
-from robosc.expressions import SctPrinter, conjunction, copied
 from robosc.metamodel import sct
-from robosc.roles import SILENT, event_name
-from robosc.supervision import EmptySupervisorError, supervise
-from robosc.supervision.wording import change
+from robosc.semantics.printing import SctPrinter, conjunction, copied
+from robosc.semantics.roles import SILENT, event_name
 
 if sys.platform != "win32":
     import resource

@@ -7,23 +7,23 @@ from typing import TYPE_CHECKING
 
 import click
 
+from robosc.analysis.supervision import supervise
 from robosc.cli import CallError, interruption
 from robosc.cli.options import FILE, findings_format, interface_path, library_path, memory, model
 from robosc.cli.progress import progress, synthesizing
 from robosc.cli.reading import read_configuration, read_models
 from robosc.cli.report import Report
 from robosc.cli.saying import say
-from robosc.config import LOCATIONS
-from robosc.memory import bounded
-from robosc.output import write
-from robosc.supervision import supervise
-from robosc.targets import TARGETS, Target, together
+from robosc.configuration import LOCATIONS
+from robosc.files.writing import write
+from robosc.m2t.targets import TARGETS, Target, together
+from robosc.synthesis.memory import bounded
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from robosc.config import Configuration
-    from robosc.models import Models
+    from robosc.configuration import Configuration
+    from robosc.m2t.models import Models
 
 
 def _targets(_context: click.Context, _parameter: click.Parameter, values: Sequence[str]) -> list[Target]:

@@ -9,22 +9,22 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from robosc.analysis.supervision import supervise
+from robosc.analysis.verification import Outcome, as_json, as_junit, as_text, verify
 from robosc.cli import ERRORS_FOUND, interruption
 from robosc.cli.options import FILE, interface_path, library_path, model
 from robosc.cli.progress import progress
 from robosc.cli.reading import read_configuration, read_models
 from robosc.cli.report import Report
 from robosc.cli.saying import put, say
-from robosc.output import refuse, write_file
-from robosc.supervision import supervise
-from robosc.verification import Outcome, as_json, as_junit, as_text, verify
-from robosc.visible import visible
+from robosc.diagnostics.visible import visible
+from robosc.files.writing import refuse, write_file
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from robosc.analysis.verification import Verdict
     from robosc.metamodel import sct
-    from robosc.verification import Verdict
 
 _STYLES = {
     Outcome.PROVED: "green",

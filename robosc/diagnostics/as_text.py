@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal, TypeAlias
 from rich.cells import cell_len
 
 from robosc.diagnostics import Diagnostic, Severity, in_order
-from robosc.visible import visible
+from robosc.diagnostics.visible import visible
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping

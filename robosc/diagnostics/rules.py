@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from robosc.resources import locate
+from robosc.files.resources import locate
 
 
 def rules() -> list[str]:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from robosc.diagnostics.visible import visible
 from robosc.diagrams.graph import Arrow, Group, Node
-from robosc.visible import visible
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

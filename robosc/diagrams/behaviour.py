@@ -4,20 +4,20 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from robosc.diagnostics.visible import visible
 from robosc.diagrams.automata import EVERY, State, Step, automaton
 from robosc.diagrams.graph import Graph
-from robosc.expressions import RoboscPrinter
-from robosc.instances import Instances
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc
-from robosc.naming import written
-from robosc.visible import visible
+from robosc.semantics.instances import Instances
+from robosc.semantics.naming import written
+from robosc.semantics.printing import RoboscPrinter
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from robosc.diagrams.graph import Group, Label
-    from robosc.instances import Instance
+    from robosc.semantics.instances import Instance
 
 
 def behaviour_graph(base: robosc.Base) -> Graph:

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from robosc.diagnostics.visible import visible
 from robosc.diagrams.automata import EVERY, State, Step, automaton
 from robosc.diagrams.graph import Graph
-from robosc.edges import edges_from
-from robosc.expressions import SctPrinter
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
-from robosc.roles import event_name, plant_of
-from robosc.visible import visible
+from robosc.semantics.edges import edges_from
+from robosc.semantics.printing import SctPrinter
+from robosc.semantics.roles import event_name, plant_of
 
 if TYPE_CHECKING:
     from robosc.diagrams.graph import Group, Label

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from robosc.diagnostics.visible import visible
 from robosc.diagrams.graph import Arrow, Graph, Group, Node
-from robosc.naming import controller_name
-from robosc.roles import plant_of
-from robosc.visible import visible
+from robosc.semantics.naming import controller_name
+from robosc.semantics.roles import plant_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
-from robosc.recursion import deep_recursion
+from robosc.semantics.recursion import deep_recursion
 
 #: The value of an expression, given the cells of a state and the inputs: an integer; false and true are 0 and 1.
 Function = Callable[[Sequence[int], Sequence[int]], int]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from robosc.engine.expressions import Compiler, Function
 from robosc.engine.state import Domain, Layout, State, Value
 from robosc.metamodel import sct
-from robosc.roles import Roles, event_name
+from robosc.semantics.roles import Roles, event_name
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
-from robosc.naming import Names
+from robosc.semantics.naming import Names
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

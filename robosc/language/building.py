@@ -6,10 +6,10 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from robosc.expressions import PRECEDENCE
 from robosc.language.grammar import attribute
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
+from robosc.semantics.printing import PRECEDENCE
 
 if TYPE_CHECKING:
     from robosc.diagnostics import Diagnostic

@@ -9,7 +9,7 @@ from typing import Any
 import arpeggio
 import textx
 
-from robosc.resources import locate
+from robosc.files.resources import locate
 
 #: A node of a parse tree: `rule_name`, `position`, `position_end`; a list of nodes, or a word with its `value`.
 Node = Any

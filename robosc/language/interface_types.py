@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robosc.interfaces import DefinitionError, Part
-from robosc.interfaces.unknown import OWN_OBJECT, other_kinds, why_unknown
-from robosc.interfaces.wire import INTEGER_RANGES, Basic, Sequence
 from robosc.metamodel import robosc as rsc
 from robosc.metamodel.reflection import contents, tree
+from robosc.ros_types import DefinitionError, Part
+from robosc.ros_types.unknown import OWN_OBJECT, other_kinds, why_unknown
+from robosc.ros_types.wire import INTEGER_RANGES, Basic, Sequence
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from robosc.interfaces import Edition, Fields, Interfaces, WireType
     from robosc.metamodel import expression as ex
+    from robosc.ros_types import Edition, Fields, Interfaces, WireType
 
 #: Small integers bring their range with them.
 _NARROW = ("int8", "uint8", "int16", "uint16")

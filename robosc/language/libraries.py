@@ -7,8 +7,8 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from robosc import files
-from robosc.resources import locate
+from robosc.files import reading as files
+from robosc.files.resources import locate
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

@@ -11,8 +11,8 @@ from robosc.language.scopes import File, Names, Scope
 from robosc.language.unread import Declared
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
-from robosc.naming import written
-from robosc.typing import (
+from robosc.semantics.naming import written
+from robosc.semantics.typing import (
     UNKNOWN,
     ArrayType,
     EnumType,
@@ -29,9 +29,9 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from robosc.diagnostics import Diagnostic
-    from robosc.instances import Resolved
-    from robosc.interfaces import Interfaces
     from robosc.language.building import Name
+    from robosc.ros_types import Interfaces
+    from robosc.semantics.instances import Resolved
 
 _Element = TypeVar("_Element")
 RULE = "unresolved-reference"

@@ -7,9 +7,9 @@ from difflib import get_close_matches
 from pathlib import Path, PurePath
 from typing import TYPE_CHECKING
 
-from robosc import files
 from robosc.diagnostics import in_order
-from robosc.interfaces import Interfaces
+from robosc.files import reading as files
+from robosc.files.resources import locate
 from robosc.language.libraries import LibraryPath
 from robosc.language.linking import RULE, link
 from robosc.language.recovery import parse_file
@@ -17,15 +17,15 @@ from robosc.language.scopes import File
 from robosc.language.text import decode
 from robosc.metamodel import robosc as rsc
 from robosc.metamodel.files import set_path
-from robosc.recursion import deep_recursion
-from robosc.resources import locate
+from robosc.ros_types import Interfaces
+from robosc.semantics.recursion import deep_recursion
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from robosc.diagnostics import Diagnostic
-    from robosc.instances import Resolved
     from robosc.language.building import Name
+    from robosc.semantics.instances import Resolved
 
 
 @dataclass(frozen=True)

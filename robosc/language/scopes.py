@@ -7,16 +7,16 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from robosc.diagnostics import Span
-from robosc.instances import Instance, Instances
 from robosc.language.unread import Declared, Unread
 from robosc.metamodel import robosc as rsc
+from robosc.semantics.instances import Instance, Instances
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from robosc.instances import Resolved
     from robosc.language.building import Name
     from robosc.language.text import Text
+    from robosc.semantics.instances import Resolved
 
 #: Elements by name; where a name is declared twice, the first one counts (the uniqueness rules report the second).
 Names: TypeAlias = "Mapping[str, Any]"

@@ -105,7 +105,7 @@ def _tokens(text: str) -> Iterator[Token]:
 
 
 #: How deep brackets and signs may be nested, and how many operators one expression may have: what reads the model
-#: follows it by recursion (`robosc.recursion` says how far that goes).
+#: follows it by recursion (`robosc.semantics.recursion` says how far that goes).
 DEEPEST = 50
 LONGEST = 5000
 _STARTERS = ("requirement", "provide", "component", "datatype", "state", "on", "transition")

@@ -2,9 +2,9 @@
 
 import math
 
-from robosc.evaluation import Value, evaluate, saturate
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc
+from robosc.semantics.evaluation import Value, evaluate, saturate
 
 
 def initial_value(variable: robosc.Variable) -> Value:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from robosc.m2m.sources import source
 from robosc.metamodel import expression as ex
-from robosc.naming import Names
+from robosc.semantics.naming import Names
 
 if TYPE_CHECKING:
     from robosc.metamodel import robosc, rosgraph, sct

@@ -11,9 +11,9 @@ from robosc.metamodel.expression_types import is_double
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from robosc.instances import Instance, InstanceVariable
     from robosc.m2m.enumerations import Enumerations
     from robosc.m2m.trace import Trace
+    from robosc.semantics.instances import Instance, InstanceVariable
 
 _NUMERIC = (ex.Addition, ex.Subtraction, ex.Multiplication)
 _COMPARISONS = (

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from robosc.instances import Instance, InstanceVariable, Occurrence, libraries
-from robosc.interfaces import Interfaces, Part
 from robosc.m2m.constants import default_value, initial_value, literal
 from robosc.m2m.enumerations import Enumerations
 from robosc.m2m.node_expressions import NodeExpressions, as_double
@@ -14,9 +12,11 @@ from robosc.m2m.trace import EVENT_OF
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc, rosgraph, sct
 from robosc.metamodel.files import derive_paths
-from robosc.naming import Names
-from robosc.needed import transitions
-from robosc.recursion import deep_recursion
+from robosc.ros_types import Interfaces, Part
+from robosc.semantics.cone_of_influence import transitions
+from robosc.semantics.instances import Instance, InstanceVariable, Occurrence, libraries
+from robosc.semantics.naming import Names
+from robosc.semantics.recursion import deep_recursion
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

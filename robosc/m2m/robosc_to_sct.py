@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from robosc.expressions import RoboscPrinter, conjunction, disjunction
-from robosc.instances import Instance, Instances, InstanceVariable, Occurrence, libraries
 from robosc.m2m.constants import initial_value, literal
 from robosc.m2m.enumerations import Enumerations
 from robosc.m2m.sct_expressions import SctExpressions
@@ -12,9 +10,11 @@ from robosc.m2m.trace import EVENT_OF, Trace
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc, sct
 from robosc.metamodel.files import derive_paths
-from robosc.naming import Names
-from robosc.needed import Data, needed, transitions
-from robosc.recursion import deep_recursion
+from robosc.semantics.cone_of_influence import Data, needed, transitions
+from robosc.semantics.instances import Instance, Instances, InstanceVariable, Occurrence, libraries
+from robosc.semantics.naming import Names
+from robosc.semantics.printing import RoboscPrinter, conjunction, disjunction
+from robosc.semantics.recursion import deep_recursion
 
 #: What comes from outside, or must always be possible: a component elsewhere than in the right state ignores it.
 _NEVER_BLOCKED = (sct.EventKind.response, sct.EventKind.error, sct.EventKind.feedback, sct.EventKind.cancel)

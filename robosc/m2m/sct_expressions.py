@@ -5,16 +5,16 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.diagnostics import START, Diagnostic, ModelError, Severity, Span
-from robosc.evaluation import evaluate
 from robosc.m2m.tabulation import TooLargeError, tabulate
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc, sct
 from robosc.metamodel.files import path_of
-from robosc.needed import Data, property_path
+from robosc.semantics.cone_of_influence import Data, property_path
+from robosc.semantics.evaluation import evaluate
 
 if TYPE_CHECKING:
-    from robosc.instances import Instance
     from robosc.m2m.trace import Trace
+    from robosc.semantics.instances import Instance
 
 _COMPARISONS = (
     ex.Equation,

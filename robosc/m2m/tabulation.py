@@ -5,12 +5,12 @@ from __future__ import annotations
 from itertools import groupby
 from typing import TYPE_CHECKING
 
-from robosc.evaluation import Value, evaluate
-from robosc.expressions import conjunction, disjunction
 from robosc.m2m.constants import literal
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
-from robosc.needed import LARGEST_TABLE
+from robosc.semantics.cone_of_influence import LARGEST_TABLE
+from robosc.semantics.evaluation import Value, evaluate
+from robosc.semantics.printing import conjunction, disjunction
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence

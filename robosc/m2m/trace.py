@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 from robosc.metamodel import sct
 
 if TYPE_CHECKING:
-    from robosc.instances import Instance, Instances, InstanceVariable, Occurrence
     from robosc.m2m.enumerations import Enumerations
     from robosc.metamodel import expression as ex
     from robosc.metamodel import robosc
-    from robosc.needed import Data, Needed
+    from robosc.semantics.cone_of_influence import Data, Needed
+    from robosc.semantics.instances import Instance, Instances, InstanceVariable, Occurrence
 
 
 #: Table 5.1: the plant's event that a result type means.

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from jinja2 import BaseLoader, ChoiceLoader, Environment, FileSystemBytecodeCache, FileSystemLoader, StrictUndefined
 
-from robosc.resources import locate
+from robosc.files.resources import locate
 
 if TYPE_CHECKING:
     from jinja2.bccache import Bucket

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from robosc.instances import libraries
 from robosc.metamodel import xmi
-from robosc.naming import Names
+from robosc.semantics.instances import libraries
+from robosc.semantics.naming import Names
 
 if TYPE_CHECKING:
-    from robosc.config import Configuration
+    from robosc.configuration import Configuration
     from robosc.diagnostics import Diagnostic
-    from robosc.models import Models
+    from robosc.m2t.models import Models
 
 
 def preconditions(_models: Models, _configuration: Configuration) -> list[Diagnostic]:

@@ -9,7 +9,7 @@ from typing import Any
 from pyecore.ecore import EClass, EPackage
 from pyecore.resources import URI, ResourceSet
 
-from robosc.resources import locate
+from robosc.files.resources import locate
 
 PACKAGES = ("expression", "robosc", "sct", "rosgraph")
 

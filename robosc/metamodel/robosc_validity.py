@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from robosc.metamodel import robosc
-from robosc.typing import UNKNOWN, ObjectType, access_types, declared_type, provided_data_type, value_type
+from robosc.semantics.typing import UNKNOWN, ObjectType, access_types, declared_type, provided_data_type, value_type
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections import Counter
 from typing import TYPE_CHECKING, Any
 
-from robosc.edges import edges_of
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 from robosc.metamodel.expression_types import ExpressionTypes, declared_type
+from robosc.semantics.edges import edges_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

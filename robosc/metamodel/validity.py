@@ -5,13 +5,13 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Any
 
+from robosc.diagnostics.visible import visible
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc, rosgraph, sct
 from robosc.metamodel.reflection import tree
 from robosc.metamodel.robosc_validity import robosc_faults
 from robosc.metamodel.rosgraph_validity import rosgraph_faults
 from robosc.metamodel.sct_validity import sct_faults
-from robosc.visible import visible
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -5,19 +5,19 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, TypeVar
 
-from robosc.runtime.controller import Controller
-from robosc.runtime.layer import Layer
-from robosc.runtime.reports import default_log
-from robosc.runtime.settings import SafeMessages, Settings, controller_parameters, layer_parameters
-from robosc.runtime.starting import StartError
+from robosc.runtime.core.controller import Controller
+from robosc.runtime.core.layer import Layer
+from robosc.runtime.core.reports import default_log
+from robosc.runtime.core.settings import SafeMessages, Settings, controller_parameters, layer_parameters
+from robosc.runtime.core.starting import StartError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from robosc.config import Configuration
+    from robosc.configuration import Configuration
     from robosc.metamodel import rosgraph
-    from robosc.runtime.ros1 import Ros1Port
-    from robosc.runtime.ros2 import Ros2Port
+    from robosc.runtime.ros1.node import Ros1Port
+    from robosc.runtime.ros2.node import Ros2Port
 
 _Acting = TypeVar("_Acting", Controller, Layer)
 
@@ -56,10 +56,10 @@ def run_layer(graph: rosgraph.RosGraph, configuration: Configuration, version: i
     """
     name = configuration.layer_name(graph)
     if version == 1:
-        import_module("robosc.runtime.ros1")  # finds rospy
-        from robosc.runtime.ros1_layer import Ros1Layer as Node  # noqa: PLC0415  # only one of the two is there
+        import_module("robosc.runtime.ros1.node")  # finds rospy
+        from robosc.runtime.ros1.layer import Ros1Layer as Node  # noqa: PLC0415  # only one of the two is there
     else:
-        from robosc.runtime.ros2_layer import Ros2Layer as Node  # type: ignore[assignment]  # noqa: PLC0415
+        from robosc.runtime.ros2.layer import Ros2Layer as Node  # type: ignore[assignment]  # noqa: PLC0415
     port = Node(name, graph, configuration, arguments)
     try:
         log = default_log(port.full_name, name) if configuration.write_events_to_log else ""
@@ -98,9 +98,9 @@ def _port(
     version: int, name: str, graph: rosgraph.RosGraph, configuration: Configuration, arguments: Sequence[str]
 ) -> Ros1Port | Ros2Port:
     if version == 1:
-        from robosc.runtime.ros1 import Ros1Port  # noqa: PLC0415  # only one of the two is there
+        from robosc.runtime.ros1.node import Ros1Port  # noqa: PLC0415  # only one of the two is there
 
         return Ros1Port(name, graph, configuration, arguments)
-    from robosc.runtime.ros2 import Ros2Port  # noqa: PLC0415
+    from robosc.runtime.ros2.node import Ros2Port  # noqa: PLC0415
 
     return Ros2Port(name, graph, configuration, arguments)

@@ -7,13 +7,13 @@ from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 from robosc.engine.state import Domain
-from robosc.evaluation import as_double
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
 from robosc.metamodel.reflection import tree
-from robosc.received import receptions
-from robosc.roles import Roles, event_name
-from robosc.runtime.node_data import NodeData
+from robosc.runtime.core.node_data import NodeData
+from robosc.semantics.evaluation import as_double
+from robosc.semantics.received import receptions
+from robosc.semantics.roles import Roles, event_name
 from robosc.simulation.unread import Unread, missing
 
 if TYPE_CHECKING:

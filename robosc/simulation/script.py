@@ -7,7 +7,7 @@ from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
 
 from robosc.diagnostics import Diagnostic, Severity, Span
-from robosc.json_reading import JsonError, json_lines, json_value
+from robosc.files.json_reading import JsonError, json_lines, json_value
 from robosc.simulation.data import DataError
 
 if TYPE_CHECKING:

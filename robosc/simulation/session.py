@@ -7,11 +7,11 @@ from difflib import get_close_matches
 from random import Random
 from typing import TYPE_CHECKING
 
-from robosc import files
 from robosc.engine import Blocked
-from robosc.expressions import SctPrinter
-from robosc.output import write_file
-from robosc.roles import event_name
+from robosc.files import reading as files
+from robosc.files.writing import write_file
+from robosc.semantics.printing import SctPrinter
+from robosc.semantics.roles import event_name
 from robosc.simulation.data import DataError
 from robosc.simulation.script import read_script
 from robosc.simulation.simulation import whole_state

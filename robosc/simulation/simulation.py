@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from robosc.engine import Engine
 from robosc.metamodel import expression as ex
-from robosc.roles import event_name
+from robosc.semantics.roles import event_name
 from robosc.simulation.data import EventData
 
 if TYPE_CHECKING:

@@ -6,10 +6,10 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from robosc.evaluation import Value, evaluate
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph
-from robosc.runtime.node_data import PastEndError
+from robosc.runtime.core.node_data import PastEndError
+from robosc.semantics.evaluation import Value, evaluate
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

@@ -14,8 +14,8 @@ from dataclasses import dataclass
 from robosc.diagnostics import Diagnostic, ModelError, Severity
 from robosc.metamodel import sct
 from robosc.metamodel.places import place
-from robosc.recursion import deep_recursion
-from robosc.roles import event_name
+from robosc.semantics.recursion import deep_recursion
+from robosc.semantics.roles import event_name
 from robosc.synthesis.bdd import Diagrams, with_enough_memory
 from robosc.synthesis.encoding import Encoding, Layout
 from robosc.synthesis.explanation import EmptySupervisor, Reason

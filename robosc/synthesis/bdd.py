@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, TypeAlias
 from oxidd.bcdd import BCDDFunction, BCDDManager
 from oxidd.util import BooleanOperator, DDMemoryError
 
-from robosc.memory import TooFewAddressesError, address_space, bounded
+from robosc.synthesis.memory import TooFewAddressesError, address_space, bounded
 from robosc.synthesis.statistics import Statistics
 
 if TYPE_CHECKING:

@@ -9,9 +9,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, TypeAlias
 
-from robosc.expressions import conjunction, disjunction
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
+from robosc.semantics.printing import conjunction, disjunction
 from robosc.synthesis.decoding import Ranges, codes, complement, cost, is_one_of, pick
 
 if TYPE_CHECKING:

@@ -14,11 +14,11 @@ from functools import cached_property
 from typing import TYPE_CHECKING, TypeAlias
 
 from robosc.diagnostics import Diagnostic, ModelError, Severity
-from robosc.edges import edges_of
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 from robosc.metamodel.places import place
 from robosc.metamodel.reflection import tree
+from robosc.semantics.edges import edges_of
 from robosc.synthesis import arithmetic
 from robosc.synthesis.order import variable_order
 

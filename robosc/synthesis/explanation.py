@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
-from robosc.roles import event_name
+from robosc.semantics.roles import event_name
 from robosc.synthesis.decoding import Value, value
 from robosc.synthesis.fixpoint import reachable
 from robosc.synthesis.paths import Path, TraceStep, shortest_path, trace

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from itertools import count, groupby
 from typing import TYPE_CHECKING
 
-from robosc.recursion import deep_recursion
+from robosc.semantics.recursion import deep_recursion
 from robosc.synthesis.bdd import Diagram, Diagrams, split
 from robosc.synthesis.leaps import Leaps
 

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from robosc.expressions import conjunction, copied
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
+from robosc.semantics.printing import conjunction, copied
 from robosc.synthesis.cover import separating_expression
 from robosc.synthesis.simplification import simplified
 

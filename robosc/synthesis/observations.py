@@ -9,7 +9,7 @@ from itertools import combinations
 from typing import TYPE_CHECKING
 
 from robosc.metamodel import sct
-from robosc.roles import Roles, plant_of, provide_numbers
+from robosc.semantics.roles import Roles, plant_of, provide_numbers
 from robosc.synthesis.decoding import Value, pick, value
 from robosc.synthesis.explanation import never_marked, unavoidable
 from robosc.synthesis.paths import Layers, Path, TraceStep, deciding, trace

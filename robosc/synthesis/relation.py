@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from robosc.edges import edges_of
 from robosc.metamodel import sct
+from robosc.semantics.edges import edges_of
 from robosc.synthesis import arithmetic
 from robosc.synthesis.bdd import Diagram, and_exists
 from robosc.synthesis.encoding import referenced

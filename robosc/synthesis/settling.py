@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from itertools import islice
 from typing import TYPE_CHECKING
 
-from robosc.roles import SILENT
+from robosc.semantics.roles import SILENT
 from robosc.synthesis.encoding import referenced
 
 if TYPE_CHECKING:

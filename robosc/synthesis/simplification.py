@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robosc.expressions import copied
 from robosc.metamodel import expression as ex
+from robosc.semantics.printing import copied
 
 if TYPE_CHECKING:
     from robosc.synthesis.bdd import Diagram

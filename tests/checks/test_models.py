@@ -10,8 +10,8 @@ import pytest
 from robosc.checks import check
 from robosc.checks.rule import RULES
 from robosc.diagnostics import Diagnostic, as_text
-from robosc.interfaces import Interfaces
 from robosc.language import read
+from robosc.ros_types import Interfaces
 
 HERE = Path(__file__).parent
 REJECTED = sorted((HERE / "rejected").glob("*/*.rscd"))

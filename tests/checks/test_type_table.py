@@ -8,7 +8,7 @@ from robosc.checks import check
 from robosc.checks.expression_types import ExpressionCheck, Place
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
-from robosc.typing import (
+from robosc.semantics.typing import (
     BOOLEAN,
     DOUBLE,
     INTEGER,

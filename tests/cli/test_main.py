@@ -9,8 +9,8 @@ from click.testing import CliRunner
 
 import robosc
 import robosc.cli.check
-from robosc import files
 from robosc.cli import main
+from robosc.files import reading as files
 
 from .conftest import Run
 
@@ -21,7 +21,7 @@ def loaded_by(*arguments: str) -> set[str]:
     """The modules that a call of the command line loads."""
     program = f"""
 import sys
-from robosc import files
+from robosc.files import reading as files
 from robosc.cli import main
 try:
     main({arguments!r})

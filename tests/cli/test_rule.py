@@ -1,7 +1,7 @@
 """`robosc rule`: what rules mean."""
 
 from robosc.diagnostics.rules import rules
-from robosc.resources import locate
+from robosc.files.resources import locate
 
 from .conftest import Run
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from robosc.targets import TARGETS
+from robosc.m2t.targets import TARGETS
 
 from .conftest import Run
 

@@ -10,7 +10,7 @@ from xml.etree.ElementTree import fromstring
 import pytest
 
 from robosc import cli
-from robosc.visible import HIDDEN, code, visible, visible_lines
+from robosc.diagnostics.visible import HIDDEN, code, visible, visible_lines
 from tests.cli.conftest import DOOR, Run
 
 CODES = [number for first, last in HIDDEN for number in {first, (first + last) // 2, last}]

@@ -13,12 +13,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import robosc
+from robosc.diagnostics.visible import visible
 from robosc.diagrams import GRAPH_NOTATIONS, behaviour_graph, diagram, plants_graph, ros_graph
 from robosc.diagrams.graph import Arrow, Graph, Group, Node
 from robosc.diagrams.graph_drawing import draw
 from robosc.diagrams.graph_layout import lay_out
 from robosc.language import read
-from robosc.visible import visible
 
 YARD = Path(__file__).with_name("yard")
 ENDINGS = {"mermaid": "mmd", "dot": "dot", "svg": "svg"}

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from robosc.engine import ControlLoop, Hooks, Settings
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
-from robosc.roles import event_name, plant_of
+from robosc.semantics.roles import event_name, plant_of
 from tests.engine.robots import robots
 
 _SETTINGS = st.builds(

@@ -4,7 +4,7 @@ from functools import cache
 from pathlib import Path
 
 import robosc
-from robosc.models import Models
+from robosc.m2t.models import Models
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 #: Every model, by its name.

@@ -8,7 +8,7 @@ import pytest
 from robosc.engine import ControlLoop, Engine, Hooks
 from robosc.engine.state import State
 from robosc.metamodel import expression as ex
-from robosc.roles import event_name
+from robosc.semantics.roles import event_name
 
 from .conftest import MODELS, models_of
 

@@ -12,7 +12,7 @@ from pathlib import Path
 from random import Random
 from typing import TYPE_CHECKING
 
-from robosc.naming import ROBOSC_KEYWORDS
+from robosc.semantics.naming import ROBOSC_KEYWORDS
 
 if TYPE_CHECKING:
     from collections.abc import Callable

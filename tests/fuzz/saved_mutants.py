@@ -8,9 +8,9 @@ from random import Random
 from typing import TYPE_CHECKING
 
 import robosc
+from robosc.analysis.supervision import supervise
 from robosc.m2t import xmi
-from robosc.models import Models
-from robosc.supervision import supervise
+from robosc.m2t.models import Models
 from tests.fuzz.mutants import EDGES, HOSTILE, LIBRARIES, ROOT
 
 if TYPE_CHECKING:

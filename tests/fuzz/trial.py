@@ -14,15 +14,15 @@ from click.testing import CliRunner
 
 import robosc
 from robosc import cli
+from robosc.analysis.supervision import EmptySupervisorError, supervise
 from robosc.checks import check
-from robosc.config import FILE_NAME
+from robosc.configuration import FILE_NAME
 from robosc.diagnostics import START, Diagnostic, ModelError, as_json, as_sarif, as_text, has_errors
 from robosc.language import read
+from robosc.m2t.models import Models
+from robosc.m2t.targets import TARGETS
 from robosc.metamodel import robosc as rsc
 from robosc.metamodel.validity import faults
-from robosc.models import Models
-from robosc.supervision import EmptySupervisorError, supervise
-from robosc.targets import TARGETS
 from tests.fuzz.mutants import LIBRARIES
 from tests.fuzz.saved_mutants import UNTOLD, saved_mutant
 

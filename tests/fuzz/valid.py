@@ -7,14 +7,14 @@ from dataclasses import dataclass
 from random import Random
 from typing import TYPE_CHECKING
 
-from robosc import config
-from robosc.config import Configuration
+from robosc import configuration as config
+from robosc.configuration import Configuration
 from robosc.diagnostics import has_errors
 from robosc.engine import Settings
 from robosc.m2t import cif, xmi
 from robosc.m2t.cif.names import CifNames, is_numbered
+from robosc.m2t.models import Models
 from robosc.metamodel import xmi as saved
-from robosc.models import Models
 from robosc.synthesis import synthesize
 from tests.fuzz.trial import Outcome, tried
 from tests.m2t.cif.differences import differences

@@ -6,13 +6,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robosc.expressions import PRECEDENCE, RoboscPrinter
 from robosc.language.building import Builder
 from robosc.language.grammar import Failure, parse
 from robosc.language.text import Text
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
-from robosc.naming import ROBOSC_KEYWORDS
+from robosc.semantics.naming import ROBOSC_KEYWORDS
+from robosc.semantics.printing import PRECEDENCE, RoboscPrinter
 
 NAMES = st.sampled_from(["a", "B2", "_", "not", *sorted(ROBOSC_KEYWORDS)])
 SEGMENTS = st.lists(

@@ -5,11 +5,11 @@ from pathlib import Path
 import pytest
 
 from robosc.checks import check
-from robosc.interfaces import Interfaces
 from robosc.language import read
 from robosc.m2m import robosc_to_rosgraph, robosc_to_sct
 from robosc.metamodel import robosc as rsc
 from robosc.metamodel.reflection import tree
+from robosc.ros_types import Interfaces
 
 ROBOT = """
 robot Carrier {

@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 
+from robosc.files.resources import locate
 from robosc.language import read
 from robosc.metamodel import robosc as rsc
 from robosc.metamodel.files import path_of
-from robosc.resources import locate
 from tests.language.texts import places, reading, underlined
 
 ROBOT = "robot R {\n  component C from L import C\n}\n"

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from robosc.diagnostics import as_text
 from robosc.language import read
 from robosc.metamodel import robosc as rsc
-from robosc.naming import ROBOSC_KEYWORDS
+from robosc.semantics.naming import ROBOSC_KEYWORDS
 from tests.language.texts import places, reading, underlined
 
 MODEL = """

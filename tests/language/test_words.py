@@ -9,7 +9,7 @@ from robosc.diagnostics import Span
 from robosc.language import read
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
-from robosc.naming import ROBOSC_KEYWORDS
+from robosc.semantics.naming import ROBOSC_KEYWORDS
 from tests.language.texts import reading, underlined
 
 PROVIDE = "robot R { component C { incoming message m with type: none } provide m with "

@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 
-from robosc.interfaces import Interfaces
 from robosc.m2m import robosc_to_rosgraph, robosc_to_sct
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
+from robosc.ros_types import Interfaces
 
 SCANNER = """
 robot R {

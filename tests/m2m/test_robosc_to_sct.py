@@ -1,8 +1,8 @@
 """What a robot model means as plants and requirements."""
 
-from robosc.edges import edges_from
-from robosc.expressions import SctPrinter
 from robosc.metamodel import expression as ex
+from robosc.semantics.edges import edges_from
+from robosc.semantics.printing import SctPrinter
 
 MESSAGES = """
 robot R {

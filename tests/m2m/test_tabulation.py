@@ -6,11 +6,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robosc.evaluation import evaluate
 from robosc.m2m.tabulation import TooLargeError, tabulate
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
-from robosc.needed import LARGEST_TABLE
+from robosc.semantics.cone_of_influence import LARGEST_TABLE
+from robosc.semantics.evaluation import evaluate
 
 VARIABLES = [sct.DiscreteVariable(name=name) for name in ("x", "y")]
 COMPARISONS = [ex.Equation, ex.Inequation, ex.LessThan, ex.LessOrEqual, ex.GreaterThan, ex.GreaterOrEqual]

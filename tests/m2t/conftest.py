@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import robosc
-from robosc import config
+from robosc import configuration as config
 
 HERE = Path(__file__).parent / "cpp"
 

@@ -13,10 +13,10 @@ from xml.etree import ElementTree as ET
 import pytest
 
 import robosc
-from robosc.config import Configuration
+from robosc.configuration import Configuration
+from robosc.m2t.models import Models
 from robosc.metamodel import expression as ex
 from robosc.metamodel.reflection import tree
-from robosc.models import Models
 
 pytestmark = pytest.mark.slow
 

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 import pytest
 
 import robosc
+from robosc.m2t.models import Models
 from robosc.metamodel import xmi
 from robosc.metamodel.validity import faults
-from robosc.models import Models
 from robosc.simulation import Simulation
 
 if TYPE_CHECKING:

@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 
 import robosc
-from robosc.models import Models
-from robosc.targets import TARGETS
+from robosc.m2t.models import Models
+from robosc.m2t.targets import TARGETS
 
 MODEL = Path(__file__).parents[2] / "examples/supervised_line_follower/supervised_line_follower.rscd"
 

@@ -17,7 +17,7 @@ import robosc
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from robosc.config import Configuration
+    from robosc.configuration import Configuration
 
 HERE = Path(__file__).parent
 TEST_DEPENDS = {

@@ -2,12 +2,12 @@
 
 from pathlib import Path
 
-from robosc.config import Configuration
+from robosc.configuration import Configuration
 from robosc.language import read
 from robosc.m2m import robosc_to_rosgraph, robosc_to_sct
 from robosc.m2t import xmi
+from robosc.m2t.models import Models
 from robosc.metamodel.xmi import load
-from robosc.models import Models
 
 LIBRARY = """
 library {name} {{

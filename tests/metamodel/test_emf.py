@@ -8,9 +8,9 @@ from typing import Any
 
 import pytest
 
+from robosc.files.resources import locate
 from robosc.metamodel import robosc
 from robosc.metamodel.xmi import load, to_texts
-from robosc.resources import locate
 from tests.sct_models import edge, model, needs, plant
 
 JARS = [

@@ -10,15 +10,15 @@ from typing import TYPE_CHECKING
 import pytest
 
 import robosc
+from robosc.analysis.supervision import supervise
 from robosc.checks import check
 from robosc.diagnostics import ModelError, has_errors
-from robosc.interfaces import Interfaces
+from robosc.m2t.models import Models
+from robosc.m2t.targets import TARGETS
 from robosc.metamodel import robosc as rsc
 from robosc.metamodel import rosgraph, xmi
-from robosc.models import Models
+from robosc.ros_types import Interfaces
 from robosc.simulation import Simulation
-from robosc.supervision import supervise
-from robosc.targets import TARGETS
 from tests.fuzz.hostile_xmi import edits
 from tests.fuzz.trial import time_limit
 

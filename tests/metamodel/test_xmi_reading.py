@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 from robosc.diagnostics import Diagnostic, ModelError
 from robosc.diagnostics.rules import page
+from robosc.files.resources import locate
 from robosc.metamodel.xmi import load, to_texts
-from robosc.resources import locate
 
 HEAD = (
     '<?xml version="1.0" encoding="UTF-8"?>\n'

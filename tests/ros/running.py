@@ -95,7 +95,7 @@ def ros2_modules(ros: Ros, folder: Path) -> str:
     modules = folder / "modules"
     if not modules.exists():
         packages = sorted((HERE / "interfaces" / "ros2").iterdir())
-        _done(ros, [ros.python, "-m", "robosc.runtime.ros2_interfaces", modules, *packages])
+        _done(ros, [ros.python, "-m", "robosc.runtime.ros2.interfaces", modules, *packages])
     return str(modules)
 
 

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from robosc.checks import check
-from robosc.interfaces import Interfaces
 from robosc.language import read
+from robosc.ros_types import Interfaces
 from tests.ros.installations import find_ros1, find_ros2
 
 HERE = Path(__file__).parent

@@ -14,7 +14,7 @@ from xml.etree import ElementTree
 import pytest
 from jsonschema import Draft202012Validator
 
-from robosc.resources import locate
+from robosc.files.resources import locate
 from tests.ros.launching import launched
 from tests.ros.running import Runner
 from tests.ros.workspaces import DRIVER, HERE, USHER, Workspace, middleware

@@ -7,16 +7,16 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import robosc
-from robosc.config import Configuration
-from robosc.runtime.agenda import Agenda
-from robosc.runtime.controller import Controller
-from robosc.runtime.settings import SafeMessages, Settings, controller_parameters
+from robosc.configuration import Configuration
+from robosc.runtime.core.agenda import Agenda
+from robosc.runtime.core.controller import Controller
+from robosc.runtime.core.settings import SafeMessages, Settings, controller_parameters
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from robosc.metamodel import rosgraph
-    from robosc.runtime.port import CallHandlers, Endpoint, GoalHandlers
+    from robosc.runtime.core.port import CallHandlers, Endpoint, GoalHandlers
 
 
 class Record:

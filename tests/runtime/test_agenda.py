@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robosc.runtime.agenda import Agenda
+from robosc.runtime.core.agenda import Agenda
 
 
 class Clock:

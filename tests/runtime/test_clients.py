@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robosc.runtime.agenda import Agenda
-from robosc.runtime.clients import ActionClient, Answers, ServiceClient
-from robosc.runtime.port import Outcome
+from robosc.runtime.core.agenda import Agenda
+from robosc.runtime.core.clients import ActionClient, Answers, ServiceClient
+from robosc.runtime.core.port import Outcome
 from tests.runtime.fake import FakePort
 
 TIMEOUT = 5.0

@@ -13,9 +13,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from jsonschema import Draft202012Validator
 
-from robosc.config import NO_STOP, NO_STOP_ON_SILENCE, Configuration
-from robosc.resources import locate
-from robosc.runtime.port import Endpoint, Outcome
+from robosc.configuration import NO_STOP, NO_STOP_ON_SILENCE, Configuration
+from robosc.files.resources import locate
+from robosc.runtime.core.port import Endpoint, Outcome
 from tests.runtime.fake import Record, World
 
 if TYPE_CHECKING:
@@ -229,7 +229,7 @@ def test_the_end_waits_for_the_answer_to_a_goal_and_cancels_it(
     make: Callable[..., World], monkeypatch: pytest.MonkeyPatch, accepted: bool, ended: float
 ) -> None:
     world = make()
-    monkeypatch.setattr("robosc.runtime.controller.time", SimpleNamespace(monotonic=lambda: world.port.time))
+    monkeypatch.setattr("robosc.runtime.core.controller.time", SimpleNamespace(monotonic=lambda: world.port.time))
     world.port.types = {}
     world.hear("scan", ranges=[3.0, 0.3])
     world.hear("travel_order", data=True)

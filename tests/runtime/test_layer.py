@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from jsonschema import Draft202012Validator
 
-from robosc.config import Configuration
-from robosc.resources import locate
-from robosc.runtime.agenda import Agenda
-from robosc.runtime.layer import Layer
-from robosc.runtime.settings import Settings, layer_parameters
+from robosc.configuration import Configuration
+from robosc.files.resources import locate
+from robosc.runtime.core.agenda import Agenda
+from robosc.runtime.core.layer import Layer
+from robosc.runtime.core.settings import Settings, layer_parameters
 from tests.runtime.fake import FakePort, Record, supervised
 
 if TYPE_CHECKING:

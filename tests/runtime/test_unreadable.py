@@ -10,8 +10,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from robosc.config import Configuration
-from robosc.runtime.port import Outcome
+from robosc.configuration import Configuration
+from robosc.runtime.core.port import Outcome
 from tests.runtime.fake import Record, World
 
 if TYPE_CHECKING:

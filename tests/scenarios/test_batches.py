@@ -11,7 +11,7 @@ import pytest
 from examples.simulator.engine import connected, load, model_of
 from examples.simulator.scenarios import SCENARIOS
 from examples.simulator.simulation import Message, Simulation
-from robosc.runtime.controller import Controller
+from robosc.runtime.core.controller import Controller
 from tests.scenarios.rules.books import BOOKS
 from tests.scenarios.runs import played, run_of
 

@@ -6,10 +6,10 @@ import pytest
 from click.testing import CliRunner
 
 import robosc
+from robosc.analysis.supervision import supervise
 from robosc.cli import main
 from robosc.simulation import Simulation
 from robosc.simulation.session import Session
-from robosc.supervision import supervise
 
 MODEL = Path(__file__).parent / "gauge.rscd"
 

@@ -5,9 +5,9 @@ from unittest.mock import patch
 import pytest
 from hypothesis import HealthCheck, event, given, settings
 
-from robosc.expressions import SctPrinter
 from robosc.metamodel import sct
-from robosc.roles import event_name
+from robosc.semantics.printing import SctPrinter
+from robosc.semantics.roles import event_name
 from robosc.synthesis import Synthesis, encoding, synthesize
 from tests.random_sct import sct_models
 from tests.synthesis.oracle import Oracle

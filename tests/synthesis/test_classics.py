@@ -2,8 +2,8 @@
 
 import pytest
 
-from robosc.expressions import SctPrinter
-from robosc.roles import event_name
+from robosc.semantics.printing import SctPrinter
+from robosc.semantics.roles import event_name
 from robosc.synthesis import synthesize
 from tests.sct_models import disables, edge, model, needs, plant
 from tests.synthesis.classics import counting_buffer, machine_buffer_machine, philosophers

@@ -8,7 +8,7 @@ from hypothesis import assume, given
 
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
-from robosc.roles import event_name
+from robosc.semantics.roles import event_name
 from robosc.synthesis import Reason, TraceStep, synthesize
 from tests.random_sct import sct_models
 from tests.sct_models import disables, edge, model, needs, plant

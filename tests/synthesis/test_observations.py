@@ -7,9 +7,9 @@ import pytest
 from hypothesis import assume, event, given
 from hypothesis import strategies as st
 
-from robosc.edges import edges_from
 from robosc.metamodel import sct
-from robosc.roles import event_name, plant_of
+from robosc.semantics.edges import edges_from
+from robosc.semantics.roles import event_name, plant_of
 from robosc.synthesis import Observations, observations, synthesize
 from robosc.synthesis.observations import Example, Forbidden, Trouble, UnreachableState
 from tests.random_sct import sct_models

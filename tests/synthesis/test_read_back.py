@@ -3,12 +3,12 @@
 import pytest
 from hypothesis import event, given
 
-from robosc.config import Configuration
-from robosc.edges import edges_from
+from robosc.configuration import Configuration
 from robosc.m2t import cif
+from robosc.m2t.models import Models
 from robosc.metamodel import sct
 from robosc.metamodel.reflection import tree
-from robosc.models import Models
+from robosc.semantics.edges import edges_from
 from robosc.synthesis import synthesize
 from tests.m2t.cif.rebuilding import rebuild
 from tests.random_sct import sct_models

@@ -8,14 +8,14 @@ from pathlib import Path
 import pytest
 
 from robosc.diagnostics import ModelError
-from robosc.expressions import SctPrinter
+from robosc.semantics.printing import SctPrinter
 from robosc.synthesis import bdd, synthesize
 from tests.sct_models import edge, model, needs, plant
 from tests.synthesis.classics import philosophers
 
 ROOT = Path(__file__).parents[2]
 SCRIPT = """
-from robosc.expressions import SctPrinter
+from robosc.semantics.printing import SctPrinter
 from robosc.synthesis import synthesize
 from robosc.synthesis import bdd
 from tests.sct_models import model, needs

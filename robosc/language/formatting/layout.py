@@ -5,11 +5,11 @@ from __future__ import annotations
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from robosc.expressions import PRECEDENCE
 from robosc.language.building import element_class
 from robosc.language.formatting.comments import Space, spaces
 from robosc.language.formatting.documents import Document, Gap, Group, Indent
 from robosc.language.grammar import attribute
+from robosc.semantics.printing import PRECEDENCE
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Sequence

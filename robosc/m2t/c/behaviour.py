@@ -12,7 +12,7 @@ from robosc.m2t.c.nodes import All
 from robosc.m2t.c.sharing import Shared
 from robosc.m2t.c.types import unsigned_type
 from robosc.m2t.c.watching import Watching
-from robosc.roles import event_name, plant_of
+from robosc.semantics.roles import event_name, plant_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

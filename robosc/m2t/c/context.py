@@ -9,7 +9,7 @@ from robosc.m2t.c.guards import EventTable
 from robosc.m2t.c.names import CNames
 from robosc.m2t.c.nodes import All
 from robosc.m2t.c.ranges import Ranges
-from robosc.roles import Roles
+from robosc.semantics.roles import Roles
 
 if TYPE_CHECKING:
     from robosc.metamodel import sct

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from robosc.expressions import RobotPrinter
 from robosc.m2t.c.comments import comment, comment_text, string_literal
 from robosc.m2t.c.types import index_type, interval_of, number, type_name
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
-from robosc.roles import event_name, plant_of, provide_numbers
+from robosc.semantics.printing import RobotPrinter
+from robosc.semantics.roles import event_name, plant_of, provide_numbers
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from robosc.expressions import ATOM
 from robosc.m2t.c.expressions import CPrinter
 from robosc.m2t.c.guards import Edges, Everywhere, within
 from robosc.m2t.c.nodes import All
 from robosc.m2t.c.types import interval_of, number, signed, type_name
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
+from robosc.semantics.printing import ATOM
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

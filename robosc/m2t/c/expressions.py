@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robosc.expressions import ATOM, PRECEDENCE, ExpressionPrinter
 from robosc.m2t.c.nodes import COMPARISONS, Junction, Not, children_of, is_condition
 from robosc.m2t.c.types import Interval, index_type, number, signed, type_name
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
-from robosc.recursion import deep_recursion
+from robosc.semantics.printing import ATOM, PRECEDENCE, ExpressionPrinter
+from robosc.semantics.recursion import deep_recursion
 
 if TYPE_CHECKING:
     from collections.abc import Collection

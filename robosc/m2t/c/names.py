@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from robosc.naming import Names, snake_case
+from robosc.semantics.naming import Names, snake_case
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence

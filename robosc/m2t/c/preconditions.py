@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.diagnostics import Diagnostic, Severity
-from robosc.edges import edges_of
 from robosc.m2t.c.expressions import working_type
 from robosc.m2t.c.nodes import Node, children_of, is_condition
 from robosc.m2t.c.ranges import Ranges
 from robosc.metamodel import expression as ex
 from robosc.metamodel.places import place
+from robosc.semantics.edges import edges_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -10,7 +10,7 @@ from robosc.m2t.c.comments import comment_text
 from robosc.m2t.c.guards import Everywhere
 from robosc.m2t.c.sharing import Condition
 from robosc.m2t.c.types import unsigned_type
-from robosc.roles import event_name, plant_of
+from robosc.semantics.roles import event_name, plant_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from typing import Any
 
-    from robosc.config import Configuration
-    from robosc.models import Models
+    from robosc.configuration import Configuration
+    from robosc.m2t.models import Models
 
 _NAME = re.compile("[A-Za-z_][A-Za-z0-9_]*")
 _SMALLER = "give the integers smaller ranges"

@@ -9,10 +9,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robosc.expressions import copied
 from robosc.m2t.cif.linear import LARGEST, Linear, Unsupported, bounds, shift
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
+from robosc.semantics.printing import copied
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable

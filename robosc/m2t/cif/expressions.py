@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, ClassVar
 
-from robosc.expressions import PRECEDENCE, ExpressionPrinter
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
+from robosc.semantics.printing import PRECEDENCE, ExpressionPrinter
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

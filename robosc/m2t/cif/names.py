@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from robosc.m2t.cif.keywords import KEYWORDS
 from robosc.metamodel import sct
-from robosc.naming import Names
+from robosc.semantics.naming import Names
 
 if TYPE_CHECKING:
     from robosc.metamodel import expression as ex

@@ -9,7 +9,6 @@ from math import prod
 from textwrap import wrap
 from typing import TYPE_CHECKING
 
-from robosc.edges import edges_from, edges_of
 from robosc.m2t.cif.arithmetic import assigned, condition, held
 from robosc.m2t.cif.expressions import CifPrinter
 from robosc.m2t.cif.linear import bounds, shift
@@ -17,7 +16,8 @@ from robosc.m2t.cif.names import CifNames, is_numbered
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 from robosc.metamodel.reflection import tree
-from robosc.roles import provide_numbers
+from robosc.semantics.edges import edges_from, edges_of
+from robosc.semantics.roles import provide_numbers
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

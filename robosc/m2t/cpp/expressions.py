@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, ClassVar
 
-from robosc.expressions import ATOM, PRECEDENCE, ExpressionPrinter
 from robosc.m2t.c.comments import string_literal
 from robosc.m2t.c.types import number
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
 from robosc.metamodel.expression_types import is_double
 from robosc.metamodel.reflection import tree
+from robosc.semantics.printing import ATOM, PRECEDENCE, ExpressionPrinter
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

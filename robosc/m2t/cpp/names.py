@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, TypeVar
 from robosc.m2t.c.names import KEYWORDS, CNames
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
-from robosc.naming import Names
+from robosc.semantics.naming import Names
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

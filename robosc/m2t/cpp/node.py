@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from robosc.expressions import PRECEDENCE
-from robosc.headers import parts_with_headers
 from robosc.m2t.c.types import type_name
 from robosc.m2t.cpp import reports
 from robosc.m2t.cpp.expressions import CppPrinter, parts
@@ -16,7 +14,9 @@ from robosc.m2t.cpp.shutdown import message_named
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
 from robosc.metamodel.expression_types import is_double
-from robosc.received import reads_elements
+from robosc.semantics.headers import parts_with_headers
+from robosc.semantics.printing import PRECEDENCE
+from robosc.semantics.received import reads_elements
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -5,15 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from robosc.config import NO_STOP, NO_STOP_ON_SILENCE
-from robosc.definition import definition_text
+from robosc.configuration import NO_STOP, NO_STOP_ON_SILENCE
 from robosc.m2t.c import engine
 from robosc.m2t.cpp.rendering import fold, node_environment
+from robosc.semantics.definition import definition_text
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from robosc.config import Configuration
+    from robosc.configuration import Configuration
     from robosc.m2t.cpp.node import Node
     from robosc.metamodel import rosgraph
 

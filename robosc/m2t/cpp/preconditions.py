@@ -19,8 +19,8 @@ from robosc.metamodel.reflection import tree
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from robosc.config import Configuration
-    from robosc.models import Models
+    from robosc.configuration import Configuration
+    from robosc.m2t.models import Models
 
 RULE = "ros-node"
 

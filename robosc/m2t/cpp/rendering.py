@@ -9,10 +9,10 @@ from xml.sax.saxutils import escape, quoteattr
 
 from jinja2 import ChoiceLoader
 
-from robosc.definition import TRANSITIONS_KEPT
+from robosc.diagnostics.visible import HIDDEN
 from robosc.m2t.c.comments import comment_text, string_literal
 from robosc.m2t.templates import environment
-from robosc.visible import HIDDEN
+from robosc.semantics.definition import TRANSITIONS_KEPT
 
 if TYPE_CHECKING:
     from jinja2 import Environment

@@ -9,7 +9,7 @@ from robosc.m2t.c.comments import string_literal
 from robosc.m2t.cpp.expressions import CppPrinter, parts
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
-from robosc.received import reads_elements
+from robosc.semantics.received import reads_elements
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence

@@ -9,7 +9,7 @@ from robosc.m2t.cpp.names import CppNames
 from robosc.m2t.cpp.node import Node
 from robosc.m2t.layer.passages import Passage, Passages
 from robosc.metamodel import rosgraph, sct
-from robosc.roles import Roles, plant_of
+from robosc.semantics.roles import Roles, plant_of
 
 if TYPE_CHECKING:
     from robosc.m2t.cpp.node import Happening

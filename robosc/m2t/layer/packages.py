@@ -5,16 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from robosc.definition import definition_text
 from robosc.m2t.c import engine
 from robosc.m2t.cpp.rendering import fold, node_environment
 from robosc.m2t.layer.node import LayerNode
+from robosc.semantics.definition import definition_text
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from robosc.config import Configuration
-    from robosc.models import Models
+    from robosc.configuration import Configuration
+    from robosc.m2t.models import Models
 
 
 @dataclass(frozen=True)

@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from robosc.edges import edges_from
 from robosc.m2t.c.comments import string_literal
 from robosc.m2t.cpp.expressions import CppPrinter
 from robosc.metamodel import sct
-from robosc.roles import plant_of
+from robosc.semantics.edges import edges_from
+from robosc.semantics.roles import plant_of
 
 if TYPE_CHECKING:
     from robosc.m2t.cpp.names import CppNames

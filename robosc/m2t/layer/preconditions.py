@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from robosc.config import Configuration
+from robosc.configuration import Configuration
 from robosc.diagnostics import Diagnostic, Severity
 from robosc.m2t.cpp.preconditions import graph_preconditions, package_preconditions
 from robosc.metamodel.places import place
@@ -13,8 +13,8 @@ from robosc.metamodel.places import place
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from robosc.m2t.models import Models
     from robosc.metamodel import rosgraph
-    from robosc.models import Models
 
 RULE = "layer-topic"
 

@@ -12,8 +12,8 @@ from robosc.m2t.roscpp import header
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from robosc.config import Configuration
-    from robosc.models import Models, TraceTest
+    from robosc.configuration import Configuration
+    from robosc.m2t.models import Models, TraceTest
 
 __all__ = ["generate", "preconditions"]
 

@@ -9,13 +9,13 @@ from robosc.m2t.layer import preconditions as shared
 from robosc.m2t.layer.names import remapped
 from robosc.m2t.layer.packages import Target, controller_package, package, type_packages
 from robosc.m2t.roscpp import header
-from robosc.naming import below_layer
+from robosc.semantics.naming import below_layer
 
 if TYPE_CHECKING:
-    from robosc.config import Configuration
+    from robosc.configuration import Configuration
     from robosc.diagnostics import Diagnostic
     from robosc.m2t.layer.node import LayerNode
-    from robosc.models import Models
+    from robosc.m2t.models import Models
 
 _TARGET = Target(
     "robosc.m2t.ros1_layer",

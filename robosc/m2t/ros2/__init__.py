@@ -10,8 +10,8 @@ from robosc.m2t.cpp.preconditions import preconditions
 from robosc.m2t.rclcpp import header
 
 if TYPE_CHECKING:
-    from robosc.config import Configuration
-    from robosc.models import Models, TraceTest
+    from robosc.configuration import Configuration
+    from robosc.m2t.models import Models, TraceTest
 
 __all__ = ["generate", "preconditions"]
 

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from robosc.config import QualityOfService
+from robosc.configuration import QualityOfService
 from robosc.m2t.layer.names import remapped
 from robosc.m2t.layer.packages import Target, controller_package, package, type_packages
 from robosc.m2t.layer.preconditions import preconditions
 from robosc.m2t.rclcpp import header
-from robosc.naming import below_layer
+from robosc.semantics.naming import below_layer
 
 if TYPE_CHECKING:
-    from robosc.config import Configuration
+    from robosc.configuration import Configuration
     from robosc.m2t.layer.node import Call, Inward, LayerNode, Outward
-    from robosc.models import Models
+    from robosc.m2t.models import Models
 
 __all__ = ["generate", "preconditions"]
 

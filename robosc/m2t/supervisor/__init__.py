@@ -10,9 +10,9 @@ from robosc.m2t.c.names import CNames
 from robosc.m2t.templates import environment
 
 if TYPE_CHECKING:
-    from robosc.config import Configuration
+    from robosc.configuration import Configuration
     from robosc.diagnostics import Diagnostic
-    from robosc.models import Models
+    from robosc.m2t.models import Models
 
 
 def preconditions(models: Models, configuration: Configuration) -> list[Diagnostic]:  # noqa: ARG001

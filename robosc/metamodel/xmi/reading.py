@@ -7,13 +7,13 @@ from typing import Any
 from urllib.parse import unquote
 
 from robosc.diagnostics import ModelError, Span
-from robosc.files import read
+from robosc.files.reading import read
 from robosc.metamodel.reflection import features, is_attribute
 from robosc.metamodel.validity import faults
 from robosc.metamodel.xmi.building import Document, Reference, build
 from robosc.metamodel.xmi.format import a
 from robosc.metamodel.xmi.markup import parse
-from robosc.recursion import deep_recursion
+from robosc.semantics.recursion import deep_recursion
 
 _FRAGMENT = re.compile(r"/(/@\w+(\.[0-9]{1,9})?)*", re.ASCII)
 _ADDRESS = re.compile(r"[\w.+-]+:|/")

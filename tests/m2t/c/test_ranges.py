@@ -6,13 +6,13 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from robosc.edges import edges_from
 from robosc.engine.expressions import Compiler
 from robosc.m2t.c.nodes import All, Not, Some, children_of
 from robosc.m2t.c.ranges import Ranges
 from robosc.m2t.c.types import Interval, interval_of, number, storage
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
+from robosc.semantics.edges import edges_from
 from tests.random_sct import sct_models
 from tests.sct_models import edge, model, plant
 

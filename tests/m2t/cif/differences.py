@@ -4,11 +4,11 @@ from collections.abc import Iterator
 from itertools import product, zip_longest
 from typing import Any
 
-from robosc.edges import edges_from, edges_of
-from robosc.evaluation import evaluate, saturate
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 from robosc.metamodel.reflection import tree
+from robosc.semantics.edges import edges_from, edges_of
+from robosc.semantics.evaluation import evaluate, saturate
 
 #: Valuations that two expressions are compared under.
 _MOST = 400

@@ -3,10 +3,10 @@
 import re
 from typing import Any
 
+from robosc.analysis.verification.cif_reading import read
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 from robosc.metamodel.reflection import tree
-from robosc.verification.cif_reading import read
 
 _KINDS = {"message": "message", "service": "service", "action": "action", "component": "behaviour", "data": "data"}
 _EVENTS = [each.name for each in sct.EventKind.eLiterals]  # type: ignore[attr-defined]

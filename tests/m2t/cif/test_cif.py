@@ -6,20 +6,20 @@ from pathlib import Path
 import pytest
 from hypothesis import given, settings
 
+from robosc.analysis.verification.cif_reading import read as read_cif
 from robosc.checks import check
-from robosc.config import Configuration
+from robosc.configuration import Configuration
 from robosc.diagnostics import Severity, Span
 from robosc.diagnostics.rules import page
-from robosc.expressions import copied
 from robosc.language import read
 from robosc.m2m import robosc_to_sct
 from robosc.m2t import cif
+from robosc.m2t.models import Models
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 from robosc.metamodel.reflection import tree
-from robosc.models import Models
+from robosc.semantics.printing import copied
 from robosc.synthesis import synthesize
-from robosc.verification.cif_reading import read as read_cif
 from tests.m2t.cif.differences import differences
 from tests.m2t.cif.rebuilding import rebuild
 from tests.random_sct import sct_models

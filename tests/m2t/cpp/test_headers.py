@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING
 import pytest
 
 import robosc
-from robosc.runtime.json_text import json_text
-from robosc.visible import HIDDEN
+from robosc.diagnostics.visible import HIDDEN
+from robosc.runtime.core.json_text import json_text
 
 if TYPE_CHECKING:
-    from robosc.config import Configuration
+    from robosc.configuration import Configuration
 
 pytestmark = pytest.mark.build
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 import robosc
-from robosc import config
+from robosc import configuration as config
 from robosc.diagnostics import Severity
 from robosc.m2t.cpp.preconditions import preconditions
 

@@ -12,10 +12,10 @@ import pytest
 from catkin_pkg.package import parse_package_string
 
 import robosc
-from robosc import config
-from robosc.config import Configuration
+from robosc import configuration as config
+from robosc.configuration import Configuration
+from robosc.m2t.targets import TARGETS
 from robosc.metamodel import sct
-from robosc.targets import TARGETS
 from tests.ros.launching import launched
 
 if TYPE_CHECKING:

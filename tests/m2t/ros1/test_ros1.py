@@ -12,7 +12,7 @@ import pytest
 from catkin_pkg.package import parse_package_string
 
 import robosc
-from robosc.config import Configuration
+from robosc.configuration import Configuration
 
 if TYPE_CHECKING:
     from collections.abc import Callable

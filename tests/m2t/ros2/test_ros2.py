@@ -14,8 +14,8 @@ from catkin_pkg.package import parse_package_string
 from ruamel.yaml import YAML
 
 import robosc
-from robosc import config
-from robosc.config import Configuration
+from robosc import configuration as config
+from robosc.configuration import Configuration
 
 if TYPE_CHECKING:
     from collections.abc import Callable

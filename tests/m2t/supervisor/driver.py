@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from unittest.mock import patch
 
-from robosc.config import ControlLoop
+from robosc.configuration import ControlLoop
 from robosc.m2t.c import behaviour, engine
 from robosc.m2t.c.names import CNames
 from robosc.metamodel import expression as ex

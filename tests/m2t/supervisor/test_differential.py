@@ -8,7 +8,7 @@ import pytest
 from hypothesis import HealthCheck, Phase, assume, given, settings
 from hypothesis import strategies as st
 
-from robosc import config
+from robosc import configuration as config
 from robosc.engine import Settings
 from robosc.m2t.c.behaviour import SMALL
 from robosc.metamodel import sct

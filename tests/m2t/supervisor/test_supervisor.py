@@ -9,13 +9,13 @@ from pathlib import Path
 import pytest
 
 import robosc
-from robosc.config import Configuration
-from robosc.config import ControlLoop as Chosen
+from robosc.configuration import Configuration
+from robosc.configuration import ControlLoop as Chosen
 from robosc.engine import Settings
 from robosc.m2t import supervisor
 from robosc.m2t.c.behaviour import SMALL
+from robosc.m2t.models import Models
 from robosc.metamodel import sct
-from robosc.models import Models
 from tests.m2t.supervisor import corners
 from tests.m2t.supervisor.driver import STRICT, build, run, write
 from tests.m2t.supervisor.walk import Walk

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from robosc.definition import TRANSITIONS_KEPT
+from robosc.semantics.definition import TRANSITIONS_KEPT
 from tests.ros.faults.conftest import scouting
 
 if TYPE_CHECKING:

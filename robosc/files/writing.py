@@ -1,0 +1,485 @@
+"""Writes files: all of them or none, only what changed, never outside of the folder that was named.
+
+A folder is locked while it is written. New texts are staged in a folder inside of it; a journal there says what is
+about to be moved where, and then everything is moved. A signal that would end the process waits meanwhile: it undoes
+what was moved, and only then ends it. After SIGKILL the next call that writes to the folder undoes what the journal
+tells of.
+"""
+
+from __future__ import annotations
+
+import errno
+import json
+import os
+import re
+import shutil
+import signal
+import stat
+import sys
+import tempfile
+import threading
+import time
+from contextlib import ExitStack, contextmanager, suppress
+from dataclasses import dataclass
+from pathlib import Path, PurePosixPath
+from typing import TYPE_CHECKING, Any
+
+from robosc.files import reading
+
+if sys.platform != "win32":
+    import fcntl
+
+from robosc.files.json_reading import json_value
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator, Mapping
+
+#: How long a folder is waited for that another process writes to.
+PATIENCE_SECONDS = 60.0
+
+_STAGE = re.compile(r"\.robosc-[a-z0-9_]{8}")
+_STAGED = re.compile(r"[0-9]+\.(new|old)|journal(\.new)?")
+_ENDING_SIGNALS = tuple(
+    getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP", "SIGQUIT") if hasattr(signal, name)
+)
+
+
+class OutputError(OSError):
+    """Files could not be written, and none was; the message says why."""
+
+
+def write(trees: Mapping[Path, Mapping[str, str]]) -> list[Path]:
+    """Writes texts below folders, as UTF-8, and says which files are new or different.
+
+    Each folder comes with its files: relative POSIX path to text. Missing folders are made. A file that has its text
+    already keeps its time of change; files that are not mentioned are left alone. Scripts (`#!`) can be
+    executed. Raises OutputError, after undoing everything, where something can't be written, leads out of its folder
+    (by `..`, an absolute path or a link), is asked to be two texts, or would take the place of what is no regular file
+    or of an input (`robosc.files.reading.noting`); and where another process goes on writing to a folder.
+    """
+    with _Signals() as signals:
+        try:
+            return _write(trees, signals)
+        except OutputError:
+            raise
+        except (OSError, RuntimeError) as error:  # a RuntimeError is how `resolve` reports links in a circle
+            raise OutputError(_reason(error)) from error
+
+
+def write_file(path: str | os.PathLike[str], text: str) -> None:
+    """Writes a text to the file that somebody named, as `write` does.
+
+    A link is followed, and stays. What is a character device or a pipe that somebody reads gets the text, and stays.
+    Raises OutputError.
+    """
+    try:
+        refuse(path)
+        mode = _mode(Path.stat, path)
+        if mode is not None and not stat.S_ISREG(mode):
+            _pour(path, text)
+            return
+        target = Path(os.path.realpath(path))
+    except OutputError:
+        raise
+    except OSError as error:
+        raise OutputError(_reason(error)) from error
+    write({target.parent: {target.name: text}})
+
+
+def refuse(path: str | os.PathLike[str]) -> None:
+    """Raises OutputError where `write_file` would refuse a path for what is there already."""
+    try:
+        found = Path(path).stat()
+    except FileNotFoundError:
+        return
+    except (OSError, ValueError) as error:
+        raise OutputError(_reason(error) if isinstance(error, OSError) else str(error)) from error
+    if stat.S_ISCHR(found.st_mode) or stat.S_ISFIFO(found.st_mode):
+        return
+    _refuse_existing(Path(path), found)
+
+
+def open_log(path: str | os.PathLike[str]) -> int:
+    """Opens a file for lines to be added to its end, and gives its descriptor.
+
+    It may also be a character device, or a pipe that somebody reads. Raises OSError, also where it was read within
+    `robosc.files.reading.noting`.
+    """
+    wanted = os.O_WRONLY | os.O_APPEND | os.O_CREAT | getattr(os, "O_CLOEXEC", 0) | getattr(os, "O_NOCTTY", 0)
+    descriptor = os.open(path, wanted | getattr(os, "O_NONBLOCK", 0), 0o666)
+    found = os.fstat(descriptor)
+    fault = None
+    if not any(test(found.st_mode) for test in (stat.S_ISREG, stat.S_ISCHR, stat.S_ISFIFO)):
+        fault = f"this is {reading.kind(found.st_mode)}, no file for a log"
+    elif reading.input_named(found) is not None:
+        fault = "this call has read it: it can't be the log, too"
+    if fault is not None:
+        os.close(descriptor)
+        raise OSError(errno.EINVAL, fault, os.fspath(path))
+    if sys.platform != "win32":
+        os.set_blocking(descriptor, True)
+    return descriptor
+
+
+def _pour(path: str | os.PathLike[str], text: str) -> None:
+    descriptor = os.open(path, os.O_WRONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_NOCTTY", 0))
+    if sys.platform != "win32":
+        os.set_blocking(descriptor, True)
+    with os.fdopen(descriptor, "wb") as file:
+        file.write(text.encode())
+
+
+def _write(trees: Mapping[Path, Mapping[str, str]], signals: _Signals) -> list[Path]:
+    placed: dict[Path, dict[Path, str]] = {}
+    for named, files in trees.items():
+        folder = named.resolve()
+        _place(folder, files, placed.setdefault(folder, {}))
+    _refuse_conflicts(placed)
+    with ExitStack() as made, ExitStack() as locks:
+        for folder in sorted(folder for folder, files in placed.items() if files):
+            locks.enter_context(_locked(folder, made, signals))
+            for left in _left_over(folder):
+                left.undo()
+                left.discard()
+        changed = {
+            folder: {path: text.encode() for path, text in files.items() if not _is(path, text.encode())}
+            for folder, files in placed.items()
+        }
+        for path in (path for files in changed.values() for path in files):
+            if os.path.lexists(path):
+                _refuse_existing(path, path.lstat())
+        _replace(changed, signals)
+        made.pop_all()
+    return [path for files in changed.values() for path in files]
+
+
+def _place(folder: Path, files: Mapping[str, str], placed: dict[Path, str]) -> None:
+    for name, text in files.items():
+        path = _inside(folder, name)
+        if path.is_dir() and not path.is_symlink():
+            raise OutputError(f"{path} is a folder: a file of that name can't be written")
+        _refuse_two(path, placed.setdefault(path, text), text)
+
+
+def _inside(folder: Path, name: str) -> Path:
+    """The path of a name below a folder. Raises OutputError where that is not inside of it."""
+    relative = PurePosixPath(name)
+    path = folder / relative
+    if relative.is_absolute() or not relative.parts or ".." in relative.parts or "\\" in name:
+        raise OutputError(f"{name} is no path inside of the output folder")
+    if not path.parent.resolve().is_relative_to(folder):
+        raise OutputError(f"{path} leads out of {folder}: there is a link on the way")
+    return path
+
+
+def _refuse_conflicts(placed: Mapping[Path, Mapping[Path, str]]) -> None:
+    texts: dict[Path, str] = {}
+    for files in placed.values():
+        for path, text in files.items():
+            _refuse_two(path, texts.setdefault(path, text), text)
+
+
+def _refuse_two(path: Path, one: str, other: str) -> None:
+    if one != other:
+        raise OutputError(f"{path} would be written twice, with different texts")
+
+
+def _refuse_existing(path: Path, found: os.stat_result) -> None:
+    if stat.S_ISDIR(found.st_mode):
+        raise OutputError(f"{path} is a folder: a file of that name can't be written")
+    if not stat.S_ISREG(found.st_mode):
+        what = "a link" if stat.S_ISLNK(found.st_mode) else reading.kind(found.st_mode)
+        raise OutputError(f"{path} is {what}: nothing but a regular file is replaced")
+    name = reading.input_named(found)
+    if name is not None:
+        also = "" if Path(name) == path else f", as {name}"
+        raise OutputError(f"{path} was read by this call{also}: what is read is not written over")
+
+
+@contextmanager
+def _locked(folder: Path, made: ExitStack, signals: _Signals) -> Iterator[None]:
+    """Makes a folder where there is none, and keeps other processes that call this out of it."""
+    if sys.platform == "win32":
+        _make(folder, made)
+        yield
+        return
+    until = time.monotonic() + PATIENCE_SECONDS
+    while True:
+        _make(folder, made)
+        descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
+        try:
+            while not _lock(descriptor):
+                signals.check()
+                if time.monotonic() > until:
+                    raise OutputError(f"another run of robosc goes on writing to {folder}: try again when it has ended")
+                time.sleep(0.02)
+            if folder.exists() and os.path.samestat(os.fstat(descriptor), folder.stat()):
+                yield
+                return
+            # Whoever had the lock has removed the folder again.
+        finally:
+            os.close(descriptor)
+
+
+def _lock(descriptor: int) -> bool:
+    """Whether a folder is locked now; where the file system knows no locks, nothing is kept apart."""
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    except OSError as error:
+        return error.errno in (errno.ENOLCK, errno.EBADF, errno.EINVAL, errno.ENOTSUP, errno.ENOSYS)
+    return True
+
+
+@dataclass(frozen=True)
+class _Move:
+    """A staged file, the path below the folder that it is for, and what tells later that it is what is there."""
+
+    number: int
+    path: str
+    mark: list[int]
+
+
+def _mark(path: Path) -> list[int]:
+    """What a move keeps of a file and a change does not."""
+    found = path.lstat()
+    return [found.st_ino, found.st_size, found.st_mtime_ns]
+
+
+class _Stage:
+    """A folder inside of one that is written, with the new files, and with the old ones while they may come back."""
+
+    def __init__(self, folder: Path, path: Path) -> None:
+        self._folder = folder
+        self._path = path
+        self._moves: list[_Move] = []
+        self._folders: list[str] = []
+
+    def fill(self, files: Mapping[Path, bytes], signals: _Signals) -> None:
+        """Stages all files, then says in the journal what will be moved."""
+        for number, (path, content) in enumerate(files.items()):
+            signals.check()
+            new = self._path / f"{number}.new"
+            with new.open("xb") as file:
+                file.write(content)
+            if path.exists():
+                shutil.copymode(path, new)
+            if content.startswith(b"#!"):
+                new.chmod(new.stat().st_mode | 0o111)
+            self._moves.append(_Move(number, path.relative_to(self._folder).as_posix(), _mark(new)))
+            missing = [each for each in path.relative_to(self._folder).parents if not (self._folder / each).exists()]
+            self._folders += [each.as_posix() for each in reversed(missing) if each.as_posix() not in self._folders]
+        moves = [[move.number, move.path, move.mark] for move in self._moves]
+        draft = self._path / "journal.new"
+        draft.write_text(json.dumps({"moves": moves, "folders": self._folders}), encoding="utf-8")
+        draft.replace(self._journal)
+
+    def read_journal(self) -> bool:
+        """Takes from the journal what was to be moved; False where it can't be from here."""
+        try:
+            found = json_value(reading.read(self._journal, is_input=False).decode("utf-8"))
+            self._moves = [_Move(int(number), str(path), list(mark)) for number, path, mark in found["moves"]]
+            self._folders = [str(each) for each in found["folders"]]
+            for path in [*(move.path for move in self._moves), *self._folders]:
+                _inside(self._folder, path)
+        except FileNotFoundError:
+            return True  # nothing is moved yet, or all of it
+        except (OSError, ValueError, TypeError, KeyError, OutputError):
+            return False
+        return True
+
+    def move(self, signals: _Signals) -> None:
+        """Moves every file to its place; what is there is kept."""
+        for each in self._folders:
+            (self._folder / each).mkdir()
+        for move in self._moves:
+            signals.check()
+            path = self._folder / move.path
+            old = self._path / f"{move.number}.old"
+            if os.path.lexists(path):
+                try:
+                    old.hardlink_to(path)
+                except OSError:  # for a moment nothing is there, then
+                    path.replace(old)
+            (self._path / f"{move.number}.new").replace(path)
+
+    def undo(self) -> None:
+        """Puts back what was there, if it is still our file that is there now."""
+        for move in reversed(self._moves):
+            path = self._folder / move.path
+            old = self._path / f"{move.number}.old"
+            is_there = os.path.lexists(path)
+            if is_there and _mark(path) != move.mark:
+                continue  # not yet moved, or changed since by somebody else
+            if old.exists():
+                old.replace(path)
+            elif is_there:
+                path.unlink()
+        for each in reversed(self._folders):
+            with suppress(OSError):  # it was not made yet, or somebody else uses it
+                (self._folder / each).rmdir()
+
+    def commit(self) -> None:
+        """From now on nothing comes back."""
+        self._journal.unlink()
+
+    def discard(self) -> None:
+        """Removes the stage; the journal first, so that nobody undoes by half a stage."""
+        self._journal.unlink(missing_ok=True)
+        shutil.rmtree(self._path, ignore_errors=True)
+
+    @property
+    def _journal(self) -> Path:
+        return self._path / "journal"
+
+
+def _left_over(folder: Path) -> Iterator[_Stage]:
+    """The stages of calls that were killed: ours, as nobody else may tell what is to be moved."""
+    with os.scandir(folder) as entries:
+        names = sorted(entry.name for entry in entries if _STAGE.fullmatch(entry.name))
+    for name in names:
+        path = folder / name
+        found = path.lstat()
+        if stat.S_ISDIR(found.st_mode) and (sys.platform == "win32" or found.st_uid == os.geteuid()):
+            stage = _Stage(folder, path)
+            if all(_STAGED.fullmatch(each.name) for each in path.iterdir()) and stage.read_journal():
+                yield stage
+
+
+def _replace(changed: Mapping[Path, Mapping[Path, bytes]], signals: _Signals) -> None:
+    """Stages all files, then moves each into its place."""
+    stages: list[tuple[_Stage, Mapping[Path, bytes]]] = []
+    try:
+        for folder, files in changed.items():
+            if files:
+                # Inside of the folder: only there one can count on the right to write and on one file system.
+                stages.append((_Stage(folder, Path(tempfile.mkdtemp(prefix=".robosc-", dir=folder))), files))
+        for stage, files in stages:
+            stage.fill(files, signals)
+        for stage, _ in stages:
+            stage.move(signals)
+        signals.check()
+        for stage, _ in stages:
+            stage.commit()
+    except BaseException as error:
+        _undo([stage for stage, _ in reversed(stages)], error)
+        raise
+    for stage, _ in stages:
+        stage.discard()
+
+
+def _undo(stages: Iterable[_Stage], cause: BaseException) -> None:
+    failure = None
+    for stage in stages:
+        try:
+            stage.undo()
+            stage.discard()
+        except OSError as error:  # the stage keeps what was there
+            failure = failure or error
+    if failure is not None:
+        reason = _reason(cause) if isinstance(cause, OSError) else str(cause)
+        again = "the next run that writes there tries to restore it"
+        raise OutputError(f"{reason}; what was there before could not be restored: {_reason(failure)}; {again}")
+
+
+def _make(folder: Path, made: ExitStack) -> None:
+    missing = [each for each in (folder, *folder.parents) if not each.exists()]
+    for each in reversed(missing):
+        with suppress(FileExistsError):
+            each.mkdir()
+            made.callback(_remove_empty, each)
+
+
+def _remove_empty(folder: Path) -> None:
+    with suppress(OSError):  # somebody else uses it already
+        folder.rmdir()
+
+
+def _is(path: Path, content: bytes) -> bool:
+    """Whether this is the regular file with that content."""
+    try:
+        found = path.lstat()
+        # The kernel's files say that they are empty, and may have whoever reads them wait.
+        return stat.S_ISREG(found.st_mode) and found.st_size == len(content) and path.read_bytes() == content
+    except (FileNotFoundError, NotADirectoryError):
+        return False
+
+
+def _mode(look: Callable[[Path], os.stat_result], path: str | os.PathLike[str]) -> int | None:
+    try:
+        mode: int = look(Path(path)).st_mode
+    except (FileNotFoundError, NotADirectoryError):
+        return None
+    return mode
+
+
+def _reason(error: OSError | RuntimeError) -> str:
+    if isinstance(error, OSError) and error.filename:
+        return f"{error.filename}: {error.strerror}"
+    return str(error)
+
+
+@contextmanager
+def temporary_folder() -> Iterator[Path]:
+    """A folder that is gone when the `with` block has ended, be it by a signal that would end the process.
+
+    Such a signal raises KeyboardInterrupt in the block, and takes effect once the folder is gone.
+    """
+    with _Signals() as signals:
+        folder = Path(tempfile.mkdtemp(prefix="robosc-"))
+        try:
+            with signals.raised():
+                yield folder
+        finally:
+            shutil.rmtree(folder, ignore_errors=True)
+
+
+class _Signals:
+    """Lets signals that would end the process wait until the `with` block has ended.
+
+    It takes handlers, as a mask does not keep a signal from the threads of libraries. Other threads than the main one
+    hear of no signal.
+    """
+
+    def __init__(self) -> None:
+        self._before: dict[int, Any] = {}
+        self._heard: list[int] = []
+        self._raises = False
+
+    def __enter__(self) -> _Signals:
+        if threading.current_thread() is threading.main_thread():
+            for number in _ENDING_SIGNALS:
+                before = signal.getsignal(number)
+                if before is not signal.SIG_IGN and before is not None:
+                    self._before[number] = before
+                    signal.signal(number, self._hear)
+        return self
+
+    def _hear(self, number: int, _frame: object) -> None:
+        self._heard.append(number)
+        if self._raises:
+            self._raises = False
+            raise KeyboardInterrupt
+
+    @contextmanager
+    def raised(self) -> Iterator[None]:
+        """KeyboardInterrupt, once, where a signal comes in the `with` block or waits already."""
+        if self._heard:
+            raise KeyboardInterrupt
+        self._raises = True
+        try:
+            yield
+        finally:
+            self._raises = False
+
+    def check(self) -> None:
+        """Raises OutputError where a signal waits."""
+        if self._heard:
+            raise OutputError("the writing was interrupted")
+
+    def __exit__(self, *_: object) -> None:
+        for number, before in self._before.items():
+            signal.signal(number, before)
+        for number in dict.fromkeys(self._heard):
+            signal.raise_signal(number)

@@ -1,0 +1,123 @@
+"""What can be generated: each target is a room of `robosc.m2t`, found by its name."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from importlib import import_module
+from typing import TYPE_CHECKING, Literal, Protocol, cast
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+    from contextlib import AbstractContextManager
+
+    from robosc.configuration import Configuration
+    from robosc.diagnostics import Diagnostic
+    from robosc.m2t.models import Models, TraceTest
+
+
+class Generator(Protocol):
+    """What the module of a target offers."""
+
+    def preconditions(self, models: Models, configuration: Configuration) -> list[Diagnostic]:
+        """What keeps the target from these models, or is doubtful about them."""
+
+    def generate(self, models: Models, configuration: Configuration) -> dict[str, str]:
+        """Files: POSIX path in the target's folder to text. The models have a supervisor; the preconditions hold."""
+
+
+class TestedGenerator(Protocol):
+    """What the module of a target offers whose packages can have tests."""
+
+    def generate(self, models: Models, configuration: Configuration, tests: TraceTest) -> dict[str, str]:
+        """The files that it generates without tests, with these tests."""
+
+
+@dataclass(frozen=True)
+class Target:
+    """A target: what it is, what it reads, and where its files go."""
+
+    name: str
+    description: str
+    _folder: str = ""
+    #: Whose name the package has, of a target that is a ROS package.
+    package: Literal["controller", "layer"] | None = None
+    #: The setting in the configuration's `output` that names a folder for a copy.
+    location: str | None = None
+
+    @property
+    def needs_graph(self) -> bool:
+        """Whether it reads the ROS graph beside the sct model."""
+        return self.package is not None
+
+    def folder(self, models: Models, configuration: Configuration) -> str:
+        """Where its files go below the output folder: POSIX path, empty for that folder itself.
+
+        ROS packages stand beside those of other robots in one folder, so that this can be a workspace's `src`.
+        """
+        if self.package is None:
+            return self._folder
+        named = configuration.layer_name if self.package == "layer" else configuration.package_name
+        return f"{self._folder}/{named(models.sct)}"
+
+    def findings(self, models: Models, configuration: Configuration) -> list[Diagnostic]:
+        """What keeps the target from these models and settings, and what is doubtful about them."""
+        found = self.generator().preconditions(models, configuration)
+        graph = models.rosgraph
+        if not self.needs_graph or graph is None:
+            return found
+        topics = [each.topic for each in graph.subscriptions] + [each.topic for each in graph.publishers]
+        topics += [each.identifier for each in graph.serviceClients] + [each.identifier for each in graph.actionClients]
+        return [*found, *configuration.unknown_names([each.removeprefix("/") for each in topics])]
+
+    @property
+    def tested_ros(self) -> int | None:
+        """The ROS, 1 or 2, on which its packages can be tested with traces; None where they can't."""
+        return int(self.name[-1]) if self.package == "controller" else None
+
+    def files(
+        self,
+        models: Models,
+        configuration: Configuration,
+        *,
+        with_tests: bool = False,
+        interface_paths: Sequence[str] = (),
+    ) -> dict[str, str]:
+        """What it generates; with tests where they are asked for and its packages can have any.
+
+        `interface_paths` are folders in which the tests look for ROS types, as `robosc.ros_types` does.
+        """
+        if not with_tests or self.tested_ros is None:
+            return self.generator().generate(models, configuration)
+        made = import_module("robosc.node_tests.trace_test").trace_test
+        tests: TraceTest = made(models.rosgraph, configuration, self.tested_ros, interface_paths)
+        return cast("TestedGenerator", self.generator()).generate(models, configuration, tests)
+
+    def generator(self) -> Generator:
+        """The module that generates it; loaded when it is asked for."""
+        return cast("Generator", import_module(f"robosc.m2t.{self.name.replace('-', '_')}"))
+
+
+TARGETS = {
+    target.name: target
+    for target in (
+        Target("cif", "plants and requirements, and the supervised system, in CIF 3"),
+        Target("supervisor", "the supervisor and its control loop in C99", "supervisor"),
+        Target("ros1", "a controller node for ROS 1", "ros1", "controller", "ros1_controller_node_location"),
+        Target("ros2", "a controller node for ROS 2", "ros2", "controller", "ros2_controller_node_location"),
+        Target("ros1-layer", "a supervisory layer before a controller for ROS 1", "ros1", "layer"),
+        Target(
+            "ros2-layer",
+            "a supervisory layer before a controller for ROS 2",
+            "ros2",
+            "layer",
+            "ros2_supervisor_node_location",
+        ),
+        Target("xmi", "the models between the steps"),
+    )
+}
+
+
+def together() -> AbstractContextManager[None]:
+    """While it lasts, what several targets have in common is made once; nobody changes the models meanwhile."""
+    shared: Callable[[], AbstractContextManager[None]] = import_module("robosc.m2t.c.engine").shared
+    return shared()

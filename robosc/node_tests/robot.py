@@ -1,0 +1,122 @@
+"""The robot of a walk: everything that the controller is connected to, without any ROS."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from robosc.node_tests.shapes import Field, Path, message, wire_type
+from robosc.ros_types import Part as DefinedPart
+from robosc.runtime.core.port import Outcome, Part
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from robosc.metamodel import rosgraph
+    from robosc.ros_types import Edition
+    from robosc.runtime.core.port import CallHandlers, Endpoint, GoalHandlers, Message
+
+_DEFINED = {Part.MESSAGE: DefinedPart.MESSAGE, Part.REQUEST: DefinedPart.REQUEST, Part.GOAL: DefinedPart.GOAL}
+
+
+@dataclass
+class RunningGoal:
+    """A goal that the robot works on, until it is asked to cancel it."""
+
+    handlers: GoalHandlers
+    cancelled: bool = False
+
+    def cancel(self) -> None:
+        """The controller wants it to end."""
+        self.cancelled = True
+
+
+class Robot:
+    """A port (`robosc.runtime.core.port.Port`) whose servers are there and wait to be told what to answer."""
+
+    def __init__(self, graph: rosgraph.RosGraph, edition: Edition, clock: Callable[[], float]) -> None:
+        self.now = clock
+        #: The calls that wait, each since when.
+        self.calls: dict[rosgraph.ServiceClient, tuple[float, CallHandlers]] = {}
+        self.goals: dict[rosgraph.ActionClient, RunningGoal] = {}
+        self._edition = edition
+        self._fields: dict[tuple[rosgraph.Interface, Part], dict[Path, Field]] = {}
+        for publisher in graph.publishers:
+            for sending in publisher.sendings:
+                self._note(publisher.interface, Part.MESSAGE, sending)
+        for service in graph.serviceClients:
+            self._note(service.interface, Part.REQUEST, service.request)
+        for action in graph.actionClients:
+            self._note(action.interface, Part.GOAL, action.request)
+
+    def _note(self, interface: rosgraph.Interface, part: Part, sending: rosgraph.Sending) -> None:
+        fields = self._fields.setdefault((interface, part), {})
+        for each in (field for alternative in sending.alternatives for field in alternative.fields):
+            path = tuple(each.path)
+            fields[path] = Field(each.type, wire_type(self._edition, interface, _DEFINED[part], path))
+
+    # What the controller asks
+
+    def create(self, interface: rosgraph.Interface, part: Part) -> Message:
+        """Data with the fields that the model sets."""
+        return message(self._fields[interface, part], {}) if self._fields[interface, part] else None
+
+    def wire_types(self, owner: Message) -> Mapping[str, str]:
+        """The types of the fields that the model sets."""
+        types: Mapping[str, str] = owner.wire_types
+        return types
+
+    def stamp(self, message: Message, frame: str) -> None:
+        """Nobody looks at the header."""
+
+    def type_name(self, interface: rosgraph.Interface) -> str:
+        """A type's name."""
+        return f"{interface.package}/{interface.type}"
+
+    def publish(self, publisher: rosgraph.Publisher, message: Message) -> None:
+        """The log tells what was sent."""
+
+    def is_served(self, client: rosgraph.ServiceClient | rosgraph.ActionClient) -> bool:
+        """All servers are there."""
+        del client
+        return True
+
+    def call(self, client: rosgraph.ServiceClient, request: Message, handlers: CallHandlers) -> None:
+        """A call, which waits for its answer."""
+        del request
+        self.calls[client] = (self.now(), handlers)
+
+    def send_goal(self, client: rosgraph.ActionClient, goal: Message, handlers: GoalHandlers) -> RunningGoal:
+        """A goal, which is accepted."""
+        del goal
+        self.goals[client] = RunningGoal(handlers)
+        handlers.accepted()
+        return self.goals[client]
+
+    def end_cancelled(self) -> None:
+        """Ends the goals that the controller has given up."""
+        for client, goal in list(self.goals.items()):
+            if goal.cancelled:
+                del self.goals[client]
+                goal.handlers.ended(Outcome.CANCELLED, None, "")
+
+    def tell(self, what: str, text: str) -> None:
+        """Nobody listens to reports."""
+
+    def listeners(self, what: str) -> int:
+        """Nobody listens to reports."""
+        del what
+        return 0
+
+    def wiring(self) -> dict[rosgraph.Subscription | rosgraph.Publisher, list[Endpoint]]:
+        """Nobody else is there."""
+        return {}
+
+    def info(self, text: str) -> None:
+        """Nobody reads it."""
+
+    def warn(self, text: str) -> None:
+        """Nobody reads it."""
+
+    def error(self, text: str) -> None:
+        """Nobody reads it."""

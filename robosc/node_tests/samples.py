@@ -1,0 +1,190 @@
+"""Messages of which a node makes something else each time, found by trying."""
+
+from __future__ import annotations
+
+import math
+import random
+import struct
+from dataclasses import dataclass, field
+from itertools import islice
+from typing import TYPE_CHECKING, Any
+
+from robosc.metamodel import expression as ex
+from robosc.metamodel import rosgraph
+from robosc.metamodel.reflection import tree
+from robosc.node_tests.shapes import Field, Leaf, Path, message, reads, wire_type
+from robosc.ros_types.wire import INTEGER_RANGES
+from robosc.semantics.received import reads_elements
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Mapping, Sequence
+
+    from robosc.ros_types import Edition, Part
+    from robosc.runtime.core.node_data import NodeData
+
+#: So many messages are tried in vain before no more are looked for.
+_TRIALS = 500
+_KEPT = 4
+
+
+@dataclass(frozen=True)
+class Read:
+    """What the event log shows of a message: a value as it is, or what a conversion makes of what is there."""
+
+    path: Path
+    conversion: rosgraph.Conversion | None
+
+
+@dataclass
+class Incoming:
+    """One kind of data that comes in: what each of its events shows of it, all that is read, and messages to send.
+
+    `samples`: by the literals that the conversions make of a message, in the order of the events, some messages.
+    """
+
+    events: list[tuple[str, list[Read]]]
+    fields: dict[Path, Field]
+    #: The events that a message may not be, since elements of arrays that they need may not be there.
+    unreadable: set[str]
+    samples: dict[tuple[str, ...], list[dict[Path, Leaf]]] = field(default_factory=dict)
+
+    @property
+    def conversions(self) -> list[Read]:
+        """What is shown as literals."""
+        return [read for _, shown in self.events for read in shown if read.conversion is not None]
+
+    @property
+    def direct(self) -> list[Path]:
+        """What is shown as it is."""
+        return list(dict.fromkeys(read.path for _, shown in self.events for read in shown if read.conversion is None))
+
+
+class Values:
+    """Values to try: those around all constants that the models compare with."""
+
+    def __init__(self, graph: rosgraph.RosGraph) -> None:
+        found = [each for root in (graph, graph.model) for _, each in tree(root)]
+        texts = [each.value for each in found if isinstance(each, ex.StringLiteral)]
+        integers = [each.value for each in found if isinstance(each, ex.IntegerLiteral)]
+        doubles = [float(each.value) for each in found if isinstance(each, (ex.IntegerLiteral, ex.DoubleLiteral))]
+        self._texts = list(dict.fromkeys([*texts, "", "something"]))
+        self._integers = sorted({0, 1, *(near for each in integers for near in (each - 1, each, each + 1, -each))})
+        self._doubles = sorted({each for value in (0.0, 1.0, *doubles) for each in _around(value)})
+
+    def of(self, field: Field) -> list[Leaf]:
+        """Values that a field can hold, in ROS exactly as here."""
+        match field.type:
+            case ex.BooleanType():
+                return [False, True]
+            case ex.StringType():
+                return list(self._texts)
+            case ex.DoubleType() if field.wire_type.startswith(("float", "double")):
+                precise = field.wire in ("float64", "double")
+                return [each for each in self._doubles if precise or _is_single(each)]
+        low, high = _bounds(field)
+        integers = [each for each in self._integers if low <= each <= high]
+        return [float(each) for each in integers] if isinstance(field.type, ex.DoubleType) else list(integers)
+
+
+def _around(value: float) -> tuple[float, ...]:
+    """The value, and near it on both sides numbers that a float32 holds."""
+    if not math.isfinite(value) or abs(value) > 1e6:
+        return ()
+    below, above = math.ceil(value * 8 - 1) / 8, math.floor(value * 8 + 1) / 8
+    return (value, below, above, -below)
+
+
+def _is_single(value: float) -> bool:
+    return bool(struct.unpack("f", struct.pack("f", value))[0] == value)
+
+
+def _bounds(field: Field) -> tuple[int, int]:
+    if field.wire in (None, "byte"):
+        return 0, 127  # every type holds these, and a byte of either ROS
+    return INTEGER_RANGES.get(field.wire, INTEGER_RANGES["int64"])
+
+
+def incoming(
+    edition: Edition,
+    interface: rosgraph.Interface,
+    part: Part,
+    receptions: Sequence[tuple[str, Mapping[Path, ex.Expression], Collection[ex.Expression]]],
+) -> Incoming:
+    """What comes in as one message: for each event its name, what is shown of it, and the values that read it."""
+    fields: dict[Path, Field] = {}
+    events = []
+    unreadable = set()
+    for event, shown, values in receptions:
+        if any(map(reads_elements, values)):
+            unreadable.add(event)
+        for path, kind in reads(values):
+            fields.setdefault(path, Field(kind, wire_type(edition, interface, part, path)))
+        found = [
+            Read(path, each.conversion if isinstance(each, rosgraph.ConversionCall) else None)
+            for path, each in shown.items()
+        ]
+        events.append((event, found))
+    return Incoming(events, fields, unreadable)
+
+
+def find_samples(kind: Incoming, values: Values, data: NodeData, seed: int) -> None:
+    """Fills in `samples`: tries messages until each combination of literals has some, or enough were tried."""
+    choice = random.Random(seed)  # noqa: S311  # the same each time
+    pools = {path: values.of(each) for path, each in kind.fields.items()}
+    paths = [path for path in pools if pools[path]]
+    conversions = kind.conversions
+    combinations = math.prod(len(each.conversion.enumeration.literals) for each in conversions if each.conversion)
+    seen: list[dict[Path, Leaf]] = [{}]
+    in_vain = 0
+    while in_vain < _TRIALS:
+        tried = _tried(choice, paths, pools, seen)
+        made = message(kind.fields, tried)
+        literals = tuple(_literal(each, made, data) for each in conversions)
+        kept = kind.samples.setdefault(literals, [])
+        in_vain += 1
+        if len(kept) < _KEPT and tried not in kept:
+            kept.append(tried)
+            seen.append(tried)
+            in_vain = 0
+        if len(kind.samples) == combinations and all(len(each) == _KEPT for each in kind.samples.values()):
+            break
+    kind.samples = {literals: sorted(found, key=len, reverse=True) for literals, found in kind.samples.items()}
+
+
+def _tried(
+    choice: random.Random,
+    paths: Sequence[Path],
+    pools: Mapping[Path, Sequence[Leaf]],
+    seen: Sequence[dict[Path, Leaf]],
+) -> dict[Path, Leaf]:
+    """A message: all fields at one place of their pools, each at random, or a few others than in one that was kept."""
+    if not paths:
+        return {}
+    place = choice.random()
+    match choice.randrange(4):
+        case 0:
+            made = {path: pools[path][int(place * len(pools[path]))] for path in paths}
+        case 1:
+            made = {path: choice.choice(pools[path]) for path in paths}
+        case _:
+            made = dict(choice.choice(seen))
+            for path in choice.sample(paths, min(len(paths), choice.randint(1, 3))):
+                made[path] = choice.choice(pools[path])
+    if choice.random() < 1 / 16:
+        made = shortened(made, choice)
+    return {path: made[path] for path in paths if path in made}
+
+
+def shortened(values: Mapping[Path, Leaf], choice: random.Random) -> dict[Path, Leaf]:
+    """Some of the values: an array may be too short."""
+    return dict(islice(values.items(), choice.randrange(len(values) + 1)))
+
+
+def _literal(read: Read, argument: Any, data: NodeData) -> str:
+    assert read.conversion is not None
+    for step in read.path:
+        try:
+            argument = argument[int(step)] if step.isdigit() else getattr(argument, step)
+        except IndexError:
+            return read.conversion.default.name
+    return data.convert(read.conversion, argument).name

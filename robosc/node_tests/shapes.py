@@ -1,0 +1,125 @@
+"""Data of ROS as a walk plays it: objects with the fields that the model knows."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
+
+from robosc.metamodel import expression as ex
+from robosc.metamodel import rosgraph
+from robosc.metamodel.reflection import tree
+from robosc.ros_types import DefinitionError, Edition, Part
+from robosc.ros_types.wire import Basic, Nested, Sequence
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
+    from robosc.runtime.core.json_text import Json
+
+#: Elements of an array that a walk makes at most.
+LONGEST = 10_000
+#: Names of fields and positions in arrays, from the outside inwards.
+Path = tuple[str, ...]
+Leaf = bool | int | float | str
+
+_DEFAULTS: dict[type[ex.Type], tuple[str, Leaf]] = {
+    ex.BooleanType: ("bool", False),
+    ex.IntegerType: ("int64", 0),
+    ex.DoubleType: ("float64", 0.0),
+    ex.StringType: ("string", ""),
+}
+
+
+@dataclass(frozen=True)
+class Field:
+    """A field that the model reads or sets: its type in the model, and in ROS as far as that is known."""
+
+    type: ex.Type
+    wire: str | None
+
+    @property
+    def default(self) -> Leaf:
+        """What ROS holds where nobody set it."""
+        return _DEFAULTS[type(self.type)][1]
+
+    @property
+    def wire_type(self) -> str:
+        """The type in ROS, or the widest of its kind."""
+        return self.wire or _DEFAULTS[type(self.type)][0]
+
+
+def wire_type(edition: Edition, interface: rosgraph.Interface, part: Part, path: Path) -> str | None:
+    """The basic ROS type at the end of a path; None where it is unknown."""
+    package, name = interface.package, interface.type
+    found: object = None
+    for step in path:
+        if step.isdigit():
+            found = found.element if isinstance(found, Sequence) else None
+        else:
+            try:
+                fields = edition.fields(package, name, part)
+            except DefinitionError:
+                return None
+            found = None if fields is None else fields.get(step)
+        if isinstance(found, Nested):
+            package, name, part = found.package, found.name, Part.MESSAGE
+    return found.name if isinstance(found, Basic) else None
+
+
+def reads(values: Iterable[ex.Expression], prefix: Path = ()) -> Iterator[tuple[Path, ex.Type]]:
+    """All basic data in a message that expressions read, also through conversions; repeated where they repeat it."""
+    for value in values:
+        arguments = []
+        for _, part in tree(value):
+            if isinstance(part, rosgraph.ConversionCall):
+                arguments.append(part.argument)
+                conditions = [rule.condition for rule in part.conversion.rules]
+                yield from reads(conditions, prefix + steps(part.argument))
+            elif isinstance(part, rosgraph.WireAccess) and part not in arguments and part.type is not None:
+                yield prefix + steps(part), part.type
+
+
+def steps(access: rosgraph.WireAccess) -> Path:
+    """The names and indices on the way that an access takes."""
+    return tuple(
+        step.name if isinstance(step, rosgraph.FieldStep) else str(step.index)  # type: ignore[attr-defined]
+        for step in access.steps
+    )
+
+
+def message(fields: Mapping[Path, Field], values: Mapping[Path, Leaf]) -> Any:
+    """Data with these values, defaults elsewhere; an array is as long as the last element with a value wants it.
+
+    Elements from `LONGEST` on are left out: what reads them can't.
+    """
+    if () in fields:
+        return values.get((), fields[()].default)
+    heads = list(dict.fromkeys(path[0] for path in fields))
+    if not all(each.isdigit() for each in heads):
+        return SimpleNamespace(
+            **{each: message(_below(each, fields), _below(each, values)) for each in heads},
+            wire_types={path[0]: field.wire_type for path, field in fields.items() if len(path) == 1},
+        )
+    element: dict[Path, Field] = {}
+    for each in heads:
+        element |= _below(each, fields)
+    length = 1 + max((int(path[0]) for path in values if int(path[0]) < LONGEST), default=-1)
+    if () in element:
+        return [values.get((str(index),), element[()].default) for index in range(length)]
+    return [message(element, _below(str(index), values)) for index in range(length)]
+
+
+def nested(values: Mapping[Path, Leaf]) -> dict[str, Json]:
+    """The values as objects in objects, arrays from index to element."""
+    made: dict[str, Any] = {}
+    for path, value in values.items():
+        owner = made
+        for name in path[:-1]:
+            owner = owner.setdefault(name, {})
+        owner[path[-1]] = value
+    return made
+
+
+def _below(head: str, paths: Mapping[Path, Any]) -> dict[Path, Any]:
+    return {path[1:]: value for path, value in paths.items() if path and path[0] == head}

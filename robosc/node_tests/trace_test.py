@@ -1,0 +1,128 @@
+"""The test of one node: what is played against it, what plays it, and how the node has to be started for it."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+from robosc.files.resources import locate
+from robosc.m2t.models import TraceTest
+from robosc.node_tests.shapes import nested
+from robosc.node_tests.walk import Walk, parameters
+from robosc.ros_types import Interfaces
+from robosc.semantics.roles import event_name
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+    from os import PathLike
+
+    from robosc.configuration import Configuration
+    from robosc.metamodel import rosgraph, sct
+    from robosc.node_tests.samples import Incoming
+
+_SEED = 1
+#: How often something comes in: for the topics, and for each service and action.
+_STIMULI = (60, 40)
+
+
+def trace_test(
+    graph: rosgraph.RosGraph,
+    configuration: Configuration,
+    version: int,
+    interface_paths: Iterable[str | PathLike[str]] = (),
+) -> TraceTest:
+    """The test of the controller of a graph whose model has a supervisor, as a node of ROS 1 or 2 (`version`).
+
+    ROS types are looked up as `check` does; of a type that is unknown, numbers are tried that all of its kind hold.
+    The same call gives the same test.
+    """
+    edition = next(each for each in Interfaces(interface_paths).editions if each.name == f"ROS {version}")
+    walk = Walk(graph, configuration, edition, _SEED)
+    stimuli = _STIMULI[0] + _STIMULI[1] * len([*graph.serviceClients, *graph.actionClients])
+    trace = "".join(f"{line}\n" for line in walk.go(stimuli))
+    started = parameters(graph, configuration)
+    described = json.dumps(_connections(graph, configuration, started, walk.incoming), indent=1) + "\n"
+    player = locate("node_tests/trace_player.py").read_text(encoding="utf-8")
+    files = {"connections.json": described, "trace_player.py": player, "traces/random_walk.jsonl": trace}
+    return TraceTest(started, files)
+
+
+def _connections(
+    graph: rosgraph.RosGraph,
+    configuration: Configuration,
+    started: Mapping[str, bool | int],
+    incoming: Mapping[sct.Event, Incoming],
+) -> dict[str, Any]:
+    """What the player has to know of the node."""
+    return {
+        "node": configuration.package_name(graph),
+        "managed": configuration.lifecycle,
+        "period": started["period_ms"] / 1000,
+        "subscriptions": [
+            {"topic": each.topic, "type": _type(each.interface), **_described(incoming[each.receptions[0].event])}
+            for each in graph.subscriptions
+        ],
+        "publishers": [
+            {
+                "topic": each.topic,
+                "type": _type(each.interface),
+                "best_effort": _is_best_effort(each.topic, configuration),
+                "events": [event_name(sending.event) for sending in each.sendings],
+            }
+            for each in graph.publishers
+        ],
+        "services": [
+            {
+                "name": each.identifier,
+                "type": _type(each.interface),
+                "trigger": event_name(each.request.event),
+                "error": event_name(each.error),
+                "reset": event_name(each.reset),
+                "timeout": started["service_timeout_ms"] / 1000,
+                "retry": started["retry_ms"] / 1000,
+                "response": _described(incoming[each.response.event]),
+            }
+            for each in graph.serviceClients
+        ],
+        "actions": [
+            {
+                "name": each.identifier,
+                "type": _type(each.interface),
+                "trigger": event_name(each.request.event),
+                "cancel": event_name(each.cancel),
+                "error": event_name(each.error),
+                "reset": event_name(each.reset),
+                "retry": started["retry_ms"] / 1000,
+                "feedback": _described(incoming[each.feedback.event]),
+                "response": _described(incoming[each.response.event]),
+            }
+            for each in graph.actionClients
+        ],
+    }
+
+
+def _described(kind: Incoming) -> dict[str, Any]:
+    return {
+        "events": [
+            {
+                "event": event,
+                **({"unreadable": True} if event in kind.unreadable else {}),
+                "reads": [{"path": list(each.path), "converted": each.conversion is not None} for each in shown],
+            }
+            for event, shown in kind.events
+        ],
+        "samples": [
+            {"literals": list(literals), "message": nested(found[0])}
+            for literals, found in kind.samples.items()
+            if literals
+        ],
+    }
+
+
+def _type(interface: rosgraph.Interface) -> str:
+    return f"{interface.package}/{interface.type}"
+
+
+def _is_best_effort(topic: str, configuration: Configuration) -> bool:
+    chosen = configuration.qos.get(topic.removeprefix("/"))
+    return chosen is not None and chosen.reliability == "best_effort"

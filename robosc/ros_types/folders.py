@@ -1,0 +1,123 @@
+"""Definitions in folders: the user's own packages and those of a ROS installation."""
+
+from __future__ import annotations
+
+import os
+import re
+from contextlib import suppress
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from robosc.files import reading as files
+from robosc.ros_types.wire import FOLDERS, DefinitionError, Fields, Part
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+_SECTIONS = {"message": 1, "service": 2, "action": 3}
+_NAME = re.compile(r"<name>\s*([A-Za-z][\w-]*)\s*</name>")
+#: What the manifest of a package for one of the two ROS mentions; one that mentions both, or none, is for both.
+_BUILT_FOR = {"ROS 1": re.compile(r"catkin|message_generation"), "ROS 2": re.compile(r"ament_|rosidl_")}
+#: Build tools pass over a folder that holds one of these.
+_IGNORED = {"AMENT_IGNORE", "CATKIN_IGNORE", "COLCON_IGNORE"}
+
+
+class Share:
+    """A folder that holds nothing but installed packages, each in a folder with its name."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._read: dict[Path, list[Fields]] = {}
+
+    def fields(self, package: str, name: str, part: Part) -> Fields | None:
+        """The fields of a part of a type; None where the folder has no such type. Raises DefinitionError."""
+        folder = FOLDERS[part.kind]
+        for home in self.homes(package):
+            path = home / folder / f"{name}.{folder}"
+            if path not in self._read:
+                if not path.exists():
+                    continue
+                self._read[path] = _sections(path, package, part)
+            return self._read[path][part.section]
+        return None
+
+    def names(self, package: str, kind: str) -> list[str]:
+        """The names of all types of a kind that a package defines."""
+        folder = FOLDERS[kind]
+        return sorted(path.stem for home in self.homes(package) for path in (home / folder).glob(f"*.{folder}"))
+
+    def packages(self) -> list[str]:
+        """The names of all packages that define types."""
+        if not self._folder.is_dir():
+            return []
+        return [
+            path.name for path in self._folder.iterdir() if any((path / each).is_dir() for each in FOLDERS.values())
+        ]
+
+    def homes(self, package: str) -> list[Path]:
+        """The folders of a package."""
+        return [self._folder / package] if (self._folder / package).is_dir() else []
+
+
+class Workspace(Share):
+    """A folder with packages somewhere below it, or the folder of a single one, as they are for one of the two ROS.
+
+    A package's name is that in its `package.xml`, else that of its folder.
+    """
+
+    def __init__(self, folder: Path, ros: str) -> None:
+        super().__init__(folder)
+        self._ros = ros
+
+    def homes(self, package: str) -> list[Path]:
+        """The folders of a package, in the order of their paths."""
+        return self._homes.get(package, [])
+
+    def packages(self) -> list[str]:
+        """The names of all packages."""
+        return list(self._homes)
+
+    @cached_property
+    def _homes(self) -> dict[str, list[Path]]:
+        packages: dict[str, list[Path]] = {}
+        for name, home in self._found():
+            packages.setdefault(name, []).append(home)
+        return packages
+
+    def _found(self) -> Iterator[tuple[str, Path]]:
+        for folder, below, names in os.walk(self._folder):
+            home = Path(folder)
+            if _IGNORED.intersection(names):
+                below.clear()
+            elif "package.xml" in names:
+                below.clear()  # packages do not nest
+                manifest = ""
+                with suppress(OSError):
+                    manifest = _text(home / "package.xml")
+                named = _NAME.search(manifest)
+                if self._fits(manifest):
+                    yield named[1] if named else home.resolve().name, home
+            else:
+                if set(FOLDERS.values()).intersection(below):
+                    yield home.resolve().name, home
+                below[:] = sorted(each for each in below if not each.startswith("."))
+
+    def _fits(self, manifest: str) -> bool:
+        meant = [ros for ros, words in _BUILT_FOR.items() if words.search(manifest)]
+        return self._ros in (meant or _BUILT_FOR)
+
+
+def _sections(path: Path, package: str, part: Part) -> list[Fields]:
+    from robosc.ros_types.definition_texts import sections  # loads rosbags
+
+    try:
+        return sections(_text(path), package, _SECTIONS[part.kind])
+    except OSError as error:
+        raise DefinitionError(f"{path}: {error.strerror}") from None
+    except DefinitionError as fault:
+        raise DefinitionError(f"{path}: {fault}") from None
+
+
+def _text(path: Path) -> str:
+    return files.read(path).decode("utf-8", errors="replace")

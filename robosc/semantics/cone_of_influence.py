@@ -1,0 +1,165 @@
+"""Data elimination: which variables and which incoming data the supervisor needs (thesis 5.2.4, made transitive)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from robosc.metamodel import expression as ex
+from robosc.metamodel import robosc
+from robosc.semantics.typing import received_data
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from robosc.semantics.instances import Instance, Instances, InstanceVariable, Occurrence
+
+#: A comparison of doubles is tabulated over the integers that it is computed from, up to so many valuations: a larger
+#: table would be larger than any model that it is part of.
+LARGEST_TABLE = 1 << 16
+
+
+@dataclass(frozen=True)
+class Data:
+    """A part of what an event carries: the properties on the way from the whole to it; none: the whole."""
+
+    occurrence: Occurrence
+    result_type: robosc.ResultType
+    path: tuple[robosc.ObjectProperty, ...]
+
+
+@dataclass(frozen=True)
+class Assigned:
+    """An assignment where it stands: in which instance, in which transition, to which variable (None: to none)."""
+
+    instance: Instance
+    transition: robosc.Transition
+    assignment: robosc.Assignment
+    variable: InstanceVariable | None
+
+
+@dataclass(frozen=True)
+class Need:
+    """Why something is needed: what reads it, in the text of which instance (None: the robot's), to compute what.
+
+    `variable` is None where the supervisor itself evaluates what reads it.
+    """
+
+    access: robosc.Access
+    within: Instance | None
+    variable: InstanceVariable | None
+
+
+@dataclass(frozen=True)
+class Needed:
+    """What the supervisor needs, each with the first reason, in the order in which it was found.
+
+    `computations` are the assignments that it performs.
+    """
+
+    variables: dict[InstanceVariable, Need]
+    data: dict[Data, Need]
+    computations: list[Assigned]
+
+
+def needed(instances: Instances) -> Needed:
+    """What guards, requirements and conditions of provided data read, and what that was computed from."""
+    assignments: dict[InstanceVariable, list[Assigned]] = {}
+    for assigned in all_assignments(instances):
+        if assigned.variable is not None:
+            assignments.setdefault(assigned.variable, []).append(assigned)
+    result = Needed({}, {}, [])
+    queue: list[InstanceVariable] = []
+
+    def read(expression: ex.Expression | None, within: Instance | None, computed: InstanceVariable | None) -> None:
+        for access in accesses(expression):
+            variable = instances.variable(access, within)
+            if variable is not None and variable not in result.variables:
+                result.variables[variable] = Need(access, within, computed)
+                queue.append(variable)
+
+    for condition, within in conditions(instances):
+        read(condition, within, None)
+    while queue:
+        for assigned in assignments.get(queue.pop(0), ()):
+            result.computations.append(assigned)
+            read(assigned.assignment.value, assigned.instance, assigned.variable)
+            _read_data(instances, assigned, result)
+    return result
+
+
+def conditions(instances: Instances) -> Iterator[tuple[ex.Expression | None, Instance | None]]:
+    """Every expression that the supervisor itself evaluates, with the instance whose text it is."""
+    for instance in instances:
+        for transition, _ in transitions(instance):
+            if isinstance(transition, robosc.TauTransition):
+                yield transition.guard, instance
+    for definition in instances.base.definitions:
+        if isinstance(definition, (robosc.Requirement, robosc.ProvideStatement)):
+            yield definition.condition, None
+
+
+def transitions(instance: Instance) -> Iterator[tuple[robosc.Transition, robosc.State | None]]:
+    """The transitions of an instance in the order of the text, each with its state; None: every state has it."""
+    for definition in instance.automaton.definitions if instance.automaton else ():
+        if isinstance(definition, robosc.State):
+            for transition in definition.transitions:
+                yield transition, definition
+        elif isinstance(definition, robosc.Transition):
+            yield definition, None
+
+
+def all_assignments(instances: Instances) -> Iterator[Assigned]:
+    """Every assignment of every instance, in the order of the text."""
+    for instance in instances:
+        for transition, _ in transitions(instance):
+            for assignment in transition.assignments:
+                variable = instances.variable(assignment.item, instance) if assignment.item else None
+                yield Assigned(instance, transition, assignment, variable)
+
+
+def accesses(expression: ex.Expression | None) -> Iterator[robosc.Access]:
+    """Every access in an expression, from left to right."""
+    pending = [expression]
+    while pending:
+        match pending.pop():
+            case robosc.Access() as access:
+                yield access
+            case ex.BinaryExpression() as operator:
+                pending += [operator.right, operator.left]
+            case ex.UnaryExpression() as operator:
+                pending.append(operator.operand)
+            case robosc.ObjectValue() as value:
+                pending += [each.value for each in reversed(value.properties)]
+
+
+def property_path(access: robosc.Access) -> tuple[robosc.ObjectProperty, ...] | None:
+    """The properties that an access to `value` follows; None where it reads an array or is not resolved."""
+    segments = list(access.segments)
+    if not all(isinstance(each, robosc.PropertySegment) and each.property is not None for each in segments):
+        return None
+    return tuple(each.property for each in segments if isinstance(each, robosc.PropertySegment))
+
+
+def read_type(assigned: Assigned, access: robosc.Access) -> robosc.DataType | None:
+    """The declared type of what an assignment reads of its event's data; None where that is not known."""
+    segments = list(access.segments)
+    if not segments:
+        transition = assigned.transition
+        if not isinstance(transition, robosc.ResultTransition) or transition.communicationType is None:
+            return None
+        return received_data(transition.communicationType.communicationType, transition.resultType)
+    last = segments[-1]
+    return last.property.type if isinstance(last, robosc.PropertySegment) and last.property else None
+
+
+def _read_data(instances: Instances, assigned: Assigned, result: Needed) -> None:
+    transition = assigned.transition
+    if not isinstance(transition, robosc.ResultTransition):
+        return
+    occurrence = instances.occurrence(transition.communicationType, assigned.instance)
+    for access in accesses(assigned.assignment.value):
+        path = property_path(access)
+        if access.value and occurrence is not None and path is not None:
+            data = Data(occurrence, transition.resultType, path)
+            result.data.setdefault(data, Need(access, assigned.instance, assigned.variable))

@@ -1,0 +1,107 @@
+"""Why synthesis forbids something stands on the supervisor, and is told wherever that matters."""
+
+import json
+from pathlib import Path
+
+import pytest
+from jsonschema import Draft202012Validator
+
+import robosc
+from robosc.configuration import Configuration
+from robosc.files.resources import locate
+from robosc.m2t.models import Models
+from robosc.metamodel import rosgraph, xmi
+from robosc.runtime.core.agenda import Agenda
+from robosc.runtime.core.layer import Layer
+from robosc.runtime.core.settings import Settings, layer_parameters
+from robosc.semantics.roles import event_name
+from robosc.simulation import Simulation
+from robosc.simulation.session import Session
+from tests.runtime.fake import FakePort, supervised
+
+PORTER = Path(__file__).parent / "porter.rscd"
+WHY = (
+    "after request to `Door.open`, then request to `Base.enter`, response from `Door.closed` can't be prevented, and"
+    " then `Base` can't get back to a marked state"
+)
+
+
+@pytest.fixture
+def porter() -> rosgraph.RosGraph:
+    return supervised(PORTER)
+
+
+def test_the_supervisor_knows(porter: rosgraph.RosGraph) -> None:
+    guards = {event_name(each.event): each for each in porter.model.supervisor.guards}
+    assert {name for name, each in guards.items() if each.explanation} == {"message_enter.c_trigger"}
+    assert guards["message_enter.c_trigger"].explanation == WHY
+    # What no requirement ever forbids is not among those behind a guard.
+    behind = {name: [each.text for each in guard.requirements] for name, guard in guards.items()}
+    assert behind == {
+        "message_open.c_trigger": [],
+        "message_hold.c_trigger": [],
+        "message_release.c_trigger": ["requirement release needs Base.lobby"],
+        "message_enter.c_trigger": ["requirement enter needs Door.ajar or Door.held"],
+        "message_leave.c_trigger": [],
+    }
+
+
+def test_a_saved_supervisor_knows_it_still(porter: rosgraph.RosGraph, tmp_path: Path) -> None:
+    for name, text in robosc.generate("xmi", Models(porter.model, porter)).items():
+        (tmp_path / name).write_text(text)
+    read = xmi.load(str(tmp_path / "Porter.sct.xmi"))
+    guards = [(each.explanation, [own.text for own in each.requirements]) for each in read.supervisor.guards]
+    assert guards == [
+        (each.explanation, [own.text for own in each.requirements]) for each in porter.model.supervisor.guards
+    ]
+
+
+def flowing(text: str) -> str:
+    """A text without the line breaks and signs of comments."""
+    return " ".join(text.replace("//", " ").replace("*", " ").replace("-", " ").split())
+
+
+@pytest.mark.parametrize(
+    ("target", "file"),
+    [
+        ("supervisor", "porter_supervisor.c"),
+        ("supervisor", "porter_supervisor.h"),
+        ("ros1", "src/porter_controller_node.cpp"),
+        ("ros2", "src/porter_controller_node.cpp"),
+    ],
+)
+def test_generated_code_says_it_in_comments(porter: rosgraph.RosGraph, target: str, file: str) -> None:
+    text = flowing(robosc.generate(target, Models(porter.model, porter))[file])
+    assert text.count(flowing(f"synthesis prevents this: {WHY}")) == 1
+
+
+@pytest.mark.parametrize("target", ["ros1-layer", "ros2-layer"])
+def test_a_generated_layer_says_it_when_it_blocks(porter: rosgraph.RosGraph, target: str) -> None:
+    text = robosc.generate(target, Models(porter.model, porter))["src/porter_layer_node.cpp"]
+    [literal] = [line.strip() for line in text.splitlines() if "add_consequence" in line]
+    assert literal == f'reasons.add_consequence("{WHY}");'
+    entering = text.partition("bool pass_message_enter()")[2].partition("\n  }\n\n")[0]
+    assert literal in entering
+
+
+def test_so_does_a_layer_that_runs(porter: rosgraph.RosGraph, tmp_path: Path) -> None:
+    port, configuration = FakePort(), Configuration()
+    values = {each.name: each.default for each in layer_parameters(porter, configuration, str(tmp_path / "log"))}
+    layer = Layer(porter, Settings(values, configuration), port, Agenda(lambda: port.time))
+    layer.start()
+    sendings = {each.name: each for publisher in porter.publishers for each in publisher.sendings}
+    assert layer.passes(sendings["open"])
+    assert not layer.passes(sendings["enter"])
+    [report] = [json.loads(text) for what, text in port.told if what == "blocked"]
+    assert (report["name"], report["reason"], report["because"]) == ("Base.enter", "synthesis", [WHY])
+    schema = json.loads(locate("schemas/blocked.schema.json").read_text(encoding="utf-8"))
+    Draft202012Validator(schema).validate(report)
+    layer.close()
+
+
+def test_and_a_simulation(porter: rosgraph.RosGraph) -> None:
+    session = Session(Simulation(porter.model, porter), seed=0)
+    session.do("message_open.c_trigger")
+    assert session.do("message_enter.c_trigger") == (
+        f"message_enter.c_trigger: forbidden by synthesis, which asks for component_Door.held; otherwise, {WHY}"
+    )

@@ -1,0 +1,134 @@
+"""A controller as a node without ROS: the player plays traces against it as it does against a real one."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from robosc.node_tests.robot import Robot, RunningGoal
+from robosc.node_tests.shapes import message
+from robosc.node_tests.trace_player import START, Port, cancelled, leaves
+from robosc.node_tests.walk import Walk, parameters
+from robosc.ros_types import Interfaces
+from robosc.runtime.core.agenda import Agenda
+from robosc.runtime.core.controller import Controller
+from robosc.runtime.core.port import Outcome
+from robosc.runtime.core.settings import Settings, controller_parameters
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from robosc.configuration import Configuration
+    from robosc.metamodel import rosgraph, sct
+    from robosc.ros_types import Edition
+    from robosc.runtime.core.port import CallHandlers, GoalHandlers
+
+_OUTCOMES = {"succeeded": Outcome.SUCCEEDED, "aborted": Outcome.ABORTED, "canceled": Outcome.CANCELLED}
+
+
+class _Goal(RunningGoal):
+    asked: Callable[[], None]
+
+    def cancel(self) -> None:
+        super().cancel()
+        self.asked()
+
+
+class _Robot(Robot):
+    """Everything that is sent goes to the player."""
+
+    port: Port
+
+    def publish(self, publisher: rosgraph.Publisher, message: Any) -> None:
+        self.port.sent[publisher.topic].put(message)
+
+    def call(self, client: rosgraph.ServiceClient, request: Any, handlers: CallHandlers) -> None:
+        super().call(client, request, handlers)
+        self.port.sent[client.identifier].put(request)
+
+    def send_goal(self, client: rosgraph.ActionClient, goal: Any, handlers: GoalHandlers) -> RunningGoal:
+        made = _Goal(handlers)
+        made.asked = lambda: self.port.sent[cancelled(client.identifier)].put(None)
+        self.goals[client] = made
+        handlers.accepted()
+        self.port.sent[client.identifier].put(goal)
+        return made
+
+
+class _AtOnce:
+    """Writes a line of a log to the file before anything else happens."""
+
+    def __init__(self, path: Path) -> None:
+        self._file = path.open("a", encoding="utf-8", buffering=1)
+
+    def write(self, line: str) -> None:
+        self._file.write(line)
+
+    def lost(self) -> int:
+        return 0
+
+    def flush(self) -> None:
+        self._file.flush()
+
+    def close(self) -> None:
+        self._file.close()
+
+
+class InProcessNode(Port):
+    """The node of a graph, which writes its event log to a file."""
+
+    def __init__(
+        self, connections: dict[str, Any], graph: rosgraph.RosGraph, configuration: Configuration, log: Path
+    ) -> None:
+        super().__init__(connections)
+        edition: Edition = Interfaces().editions[0]
+        self._now = START * connections["period"]
+        self._graph = graph
+        self._incoming = Walk(graph, configuration, edition, 1).incoming
+        self._robot = _Robot(graph, edition, lambda: self._now)
+        self._robot.port = self
+        self._agenda = Agenda(lambda: self._now)
+        values = {each.name: each.default for each in controller_parameters(graph, configuration, "")}
+        settings = Settings(values | parameters(graph, configuration), configuration)
+        self._controller = Controller(graph, settings, self._robot, self._agenda)
+        self._controller.log_to(_AtOnce(log))
+
+    def connect(self) -> None:
+        self._controller.start()
+
+    def set_time(self, seconds: float) -> None:
+        self._now = seconds
+        self._work()
+
+    def publish(self, topic: str, fields: dict[str, Any]) -> None:
+        subscription = next(each for each in self._graph.subscriptions if each.topic == topic)
+        self._controller.receive(subscription, self._made(subscription.receptions[0].event, fields))
+        self._work()
+
+    def answer(self, service: str, fields: dict[str, Any]) -> None:
+        client, (_, handlers) = next(each for each in self._robot.calls.items() if each[0].identifier == service)
+        handlers.answered(self._made(client.response.event, fields))
+        self._work()
+
+    def fail(self, service: str) -> None:
+        """As in ROS 2 it is not answered."""
+
+    def feed_back(self, action: str, fields: dict[str, Any]) -> None:
+        client, goal = self._goal(action)
+        goal.handlers.feedback(self._made(client.feedback.event, fields))
+        self._work()
+
+    def end(self, action: str, outcome: str, fields: dict[str, Any]) -> None:
+        client, goal = self._goal(action)
+        goal.handlers.ended(_OUTCOMES[outcome], self._made(client.response.event, fields), "")
+        self._work()
+
+    def _goal(self, action: str) -> tuple[rosgraph.ActionClient, RunningGoal]:
+        return next(each for each in self._robot.goals.items() if each[0].identifier == action)
+
+    def _made(self, event: sct.Event, fields: dict[str, Any]) -> Any:
+        return message(self._incoming[event].fields, dict(leaves(fields)) if fields else {})
+
+    def _work(self) -> None:
+        while self._agenda.work() == 0:
+            pass

@@ -1,0 +1,292 @@
+"""Random walks, and the player that plays them: against the same controller, and against some that are not the same."""
+
+from __future__ import annotations
+
+import ast
+import json
+import re
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+from jsonschema import Draft202012Validator
+
+import robosc
+from robosc import configuration as config
+from robosc.engine import Engine
+from robosc.files.resources import locate
+from robosc.metamodel import expression as ex
+from robosc.node_tests import trace_player
+from robosc.node_tests.shapes import Field, message
+from robosc.node_tests.trace_player import Log, Player, TraceError, read_trace
+from robosc.node_tests.trace_test import trace_test
+from robosc.node_tests.walk import Walk
+from robosc.ros_types import Interfaces
+from robosc.runtime.core.node_data import NodeData
+from robosc.semantics.edges import edges_from
+from robosc.semantics.roles import event_name
+
+from .in_process_node import InProcessNode
+
+ROOT = Path(__file__).parents[2]
+CPP = ROOT / "tests" / "m2t" / "cpp"
+MODELS = {
+    "line_follower": ROOT / "examples" / "line_follower" / "line_follower.rscd",
+    "maze_solver": ROOT / "examples" / "maze_solver" / "maze_solver.rscd",
+    "simple_navigation": ROOT / "examples" / "simple_navigation" / "simple_navigation.rscd",
+    "courier": CPP / "courier.rscd",
+    "porter": CPP / "porter.rscd",
+    "scout": ROOT / "tests" / "ros" / "faults" / "scout.rscd",
+    "mission": ROOT / "tests" / "runtime" / "mission.rscd",
+}
+SETTINGS = {"porter": CPP / "porter-config.json"}
+
+
+class Case:
+    """A robot and its test. The graph is a new one each time: tests may break it."""
+
+    def __init__(self, name: str, folder: Path) -> None:
+        robot = robosc.load(MODELS[name])
+        model = robosc.to_sct(robot)
+        robosc.synthesize(model)
+        self.graph = robosc.to_rosgraph(robot)
+        self.configuration = config.read(SETTINGS[name]) if name in SETTINGS else robosc.Configuration()
+        self.files = trace_test(self.graph, self.configuration, 2).files
+        self.connections: dict[str, Any] = json.loads(self.files["connections.json"])
+        self.trace = [json.loads(line) for line in self.files["traces/random_walk.jsonl"].splitlines()]
+        self._folder = folder
+
+    def play(self) -> None:
+        """Plays the trace, as it is now, against the graph, as it is now."""
+        trace, log = self._folder / "trace.jsonl", self._folder / "events.jsonl"
+        trace.write_text("".join(f"{json.dumps(line)}\n" for line in self.trace))
+        log.unlink(missing_ok=True)
+        node = InProcessNode(self.connections, self.graph, self.configuration, log)
+        Player(self.connections, node, Log(str(log))).play(read_trace(str(trace)))
+
+
+def be_impatient(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The node without ROS does at once what it does."""
+    for name, seconds in {"SETTLED": 0.0, "REACTION": 0.0, "ANSWER": 0.0, "PATIENCE": 0.05}.items():
+        monkeypatch.setattr(trace_player, name, seconds)
+
+
+@pytest.fixture
+def case(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Case:
+    be_impatient(monkeypatch)
+    return Case(getattr(request, "param", "line_follower"), tmp_path)
+
+
+every_model = pytest.mark.parametrize("case", MODELS, indirect=True)
+
+
+@every_model
+def test_a_controller_follows_its_own_walk(case: Case) -> None:
+    case.play()
+
+
+@every_model
+def test_a_walk_is_an_event_log(case: Case) -> None:
+    validator = Draft202012Validator(json.loads(locate("schemas/event-log.schema.json").read_text()))
+    for line in case.trace:
+        validator.validate(line)
+    times = [line["time"] for line in case.trace]
+    assert times == sorted(times)
+
+
+@pytest.mark.parametrize("case", ["line_follower", "porter"], indirect=True)
+def test_a_walk_sees_every_event(case: Case) -> None:
+    assert {line["event"] for line in case.trace} == {
+        event_name(each)
+        for plant in case.graph.model.plants
+        for each in plant.events
+        if each.name != "c_none"  # a provide statement always holds
+    }
+
+
+@pytest.mark.parametrize("case", ["porter"], indirect=True)
+def test_the_same_call_gives_the_same_test(case: Case) -> None:
+    assert trace_test(case.graph, case.configuration, 2).files == case.files
+    other = Walk(case.graph, case.configuration, Interfaces().editions[0], seed=2)
+    assert [json.loads(line) for line in other.go(50)] != case.trace[:50]
+
+
+# Logs of robots
+
+
+@pytest.mark.parametrize("case", ["line_follower", "maze_solver", "porter", "courier", "scout"], indirect=True)
+def test_a_log_without_messages_is_played(case: Case) -> None:
+    """What the node read is enough to make messages that it reads like that."""
+    for line in case.trace:
+        line.pop("message", None)
+    case.play()
+
+
+@pytest.mark.parametrize("case", ["mission"], indirect=True)
+def test_a_walk_brings_data_that_can_not_be_read(case: Case) -> None:
+    events = [line["event"] for line in case.trace]
+    assert events.count("message_length.u_response") > events.count("message_route.u_response") > 0
+    unread = {line["event"] for line in case.trace if line["event"].endswith(".u_error") and "data" in line}
+    assert "service_plan.u_error" in unread
+
+
+def test_what_can_not_be_played_is_said(case: Case) -> None:
+    number = next(number for number, line in enumerate(case.trace, 1) if line["event"] == "message_scan.u_response")
+    line = case.trace[number - 1]
+    del line["message"]
+    line["data"]["value"] = "foggy"
+    with pytest.raises(TraceError, match=f"line {number} can't be played: no message is known .* as foggy"):
+        case.play()
+
+
+@pytest.mark.parametrize("message", [{"no_such_field": 1}, {"ranges": 10**400}, {"ranges": "x"}], ids=str)
+def test_a_message_that_can_not_be_sent_is_said(case: Case, message: dict[str, Any]) -> None:
+    number = next(number for number, line in enumerate(case.trace, 1) if line["event"] == "message_scan.u_response")
+    case.trace[number - 1]["message"] = message
+    with pytest.raises(TraceError, match=f"line {number}: "):
+        case.play()
+
+
+def test_a_stopped_node_ends_a_trace(case: Case) -> None:
+    case.trace[20:] = [case.trace[0] | {"direction": "outside"}, {"nonsense": 1}]
+    case.play()
+
+
+def test_a_log_of_a_layer_is_refused(case: Case) -> None:
+    case.trace[3]["direction"] = "blocked"
+    with pytest.raises(TraceError, match="line 4 is of a supervisory layer"):
+        case.play()
+
+
+def test_a_trace_of_another_robot_is_refused(case: Case) -> None:
+    next(line for line in case.trace if line["direction"] == "in")["event"] = "message_other.u_response"
+    with pytest.raises(TraceError, match=r"knows no message_other.u_response"):
+        case.play()
+
+
+@pytest.mark.parametrize("case", ["maze_solver"], indirect=True)
+def test_half_a_message_is_refused(case: Case) -> None:
+    del case.trace[next(n for n, line in enumerate(case.trace) if line["event"] == "message_scan_right.u_response")]
+    with pytest.raises(TraceError, match=r"one message makes message_scan_front.u_response, message_scan_right"):
+        case.play()
+
+
+def test_the_log_of_a_drive_is_played(case: Case, tmp_path: Path) -> None:
+    """In it messages come before the first tick, and at the very time of others."""
+    log = tmp_path / "drive.jsonl"
+    command = [sys.executable, ROOT / "examples" / "simulator", "--scenario", "line_follower", "--until", "9"]
+    subprocess.run([*command, "--log", log], check=False, capture_output=True)  # it does not get to its goal
+    case.trace = [json.loads(line) for line in log.read_text().splitlines()]
+    assert [line["direction"] for line in case.trace[:3]] == ["internal", "internal", "in"]
+    assert {"message_halt.c_trigger", "message_move.c_trigger"} <= {line["event"] for line in case.trace}
+    case.play()
+
+
+# Nodes that are not what they should be
+
+
+def requirements() -> list[str]:
+    names = {}
+    for name in ("line_follower", "porter"):
+        text = MODELS[name].read_text(encoding="utf-8")
+        names[name] = re.findall(r"^  requirement (\w+) needs", text, re.MULTILINE)
+    return [f"{name}:{each}" for name, found in names.items() for each in found]
+
+
+@pytest.mark.parametrize("fault", requirements())
+def test_a_dropped_requirement_is_noticed(fault: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    name, event = fault.split(":")
+    be_impatient(monkeypatch)
+    case = Case(name, tmp_path)
+    assert case.graph.model.supervisor is not None
+    guards = [
+        each
+        for each in case.graph.model.supervisor.guards
+        if event_name(each.event).endswith(f"_{event}.c_trigger") and each.requirement is not None
+    ]
+    assert len(guards) == 1
+    guards[0].requirement = None
+    with pytest.raises(TraceError, match=r"but the node did|has sent something"):
+        case.play()
+
+
+def test_wrong_data_is_noticed(case: Case) -> None:
+    move = next(each for each in case.graph.publishers[0].sendings if each.name == "move")
+    speed = move.alternatives[0].fields[0].value
+    assert isinstance(speed, ex.DoubleLiteral)
+    speed.value = 0.25
+    with pytest.raises(TraceError, match=r"says out message_move.c_trigger .*0\.2.* but the node sent .*0\.25"):
+        case.play()
+
+
+def test_data_that_changes_on_its_way_is_noticed(case: Case, monkeypatch: pytest.MonkeyPatch) -> None:
+    put = case.connections["publishers"][0]
+    whole = InProcessNode.connect
+
+    def connect(node: InProcessNode) -> None:
+        whole(node)
+        node.sent[put["topic"]].put = lambda _: None  # type: ignore[method-assign]
+
+    monkeypatch.setattr(InProcessNode, "connect", connect)
+    with pytest.raises(TraceError, match=r"the node logs out message_halt.c_trigger .* but nothing arrives"):
+        case.play()
+
+
+def test_a_node_that_forgets_is_noticed(case: Case) -> None:
+    lidar = next(each for each in case.graph.model.plants if each.origin == "Lidar" and each.variables)
+    for location in lidar.locations:
+        for edge in edges_from(location):
+            edge.updates.clear()
+    with pytest.raises(TraceError, match=r"does not do what the trace says|but the node did"):
+        case.play()
+
+
+# What is sent
+
+
+@every_model
+def test_samples_mean_what_they_say(case: Case) -> None:
+    data = NodeData(case.graph, Engine(case.graph.model))
+    known = Walk(case.graph, case.configuration, Interfaces().editions[0], 1).incoming
+    for kind in {id(each): each for each in known.values()}.values():
+        for literals, found in kind.samples.items():
+            for values in found:
+                made = message(kind.fields, values)
+                for read, literal in zip(kind.conversions, literals, strict=True):
+                    argument = made
+                    for step in read.path:
+                        argument = getattr(argument, step)
+                    assert read.conversion is not None
+                    assert data.convert(read.conversion, argument).name == literal
+
+
+@pytest.mark.parametrize("case", ["maze_solver"], indirect=True)
+def test_all_literals_that_can_meet_are_found(case: Case) -> None:
+    (scan,) = [each for each in case.connections["subscriptions"] if each["topic"] == "/scan"]
+    assert len({tuple(each["literals"]) for each in scan["samples"]}) == 3 * 2 * 2
+
+
+# The files
+
+
+def test_the_player_runs_where_ros_1_does() -> None:
+    """Python 3.8, without anything but the standard library."""
+    text = locate("node_tests/trace_player.py").read_text(encoding="utf-8")
+    tree = ast.parse(text, feature_version=(3, 8))
+    names = {
+        each.names[0].name if isinstance(each, ast.Import) else str(each.module)
+        for each in tree.body
+        if isinstance(each, (ast.Import, ast.ImportFrom))
+    }
+    assert not any(name.startswith("robosc") for name in names)
+
+
+def test_a_walk_makes_no_array_without_end() -> None:
+    fields = {
+        ("ranges", "2147483647"): Field(ex.DoubleType(), "float32"),
+        ("ranges", "1"): Field(ex.DoubleType(), None),
+    }
+    made = message(fields, {("ranges", "2147483647"): 1.5, ("ranges", "1"): 0.5})
+    assert made.ranges == [0.0, 0.5]
