@@ -18,8 +18,7 @@ import pytest
 from robosc.files import reading as files
 from robosc.files import writing as output
 from robosc.files.writing import OutputError, open_log, temporary_folder, write, write_file
-
-from .interruptions import CHANGES, interrupted, interruptions
+from tests.interruptions import CHANGES, interrupted, interruptions
 
 
 def tree(folder: Path) -> dict[str, str]:

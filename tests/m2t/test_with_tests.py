@@ -46,7 +46,7 @@ def test_what_is_added(
     assert set(plain) < set(files)
     assert {path for path in plain if path in new} == {"CMakeLists.txt", "package.xml"}
     player = new.pop("test/trace_player.py")
-    assert player == (Path(robosc.__file__).parent / "traces" / "trace_player.py").read_text(encoding="utf-8")
+    assert player == (Path(robosc.__file__).parent / "node_tests" / "trace_player.py").read_text(encoding="utf-8")
     # Neither pytest nor the linters of this house shall take the scripts for their own.
     new = {f"{path}.golden" if path.endswith(".py") else path: text for path, text in new.items()}
     for path, text in new.items():

@@ -5,12 +5,12 @@ from unittest.mock import patch
 import pytest
 from hypothesis import HealthCheck, assume, event, given, settings
 from hypothesis import strategies as st
-from tests.verification.explicit import Explicit
 
 from robosc.analysis.verification import Outcome, Verdict, verify_system
 from robosc.analysis.verification.properties.requirement import requirement_name
 from robosc.metamodel import sct
 from robosc.synthesis import encoding, leaps, synthesize
+from tests.analysis.verification.explicit import Explicit
 from tests.random_sct import sct_models
 from tests.sct_models import edge, model, plant
 from tests.synthesis.oracle import State
