@@ -86,9 +86,9 @@ def load(
         base = xmi.load(str(path))
     else:
         from robosc.language import read
-        from robosc.ros_types import Interfaces
+        from robosc.ros_types import RosTypes
 
-        reading = read(str(path), [str(each) for each in library_paths], Interfaces(interface_paths))
+        reading = read(str(path), [str(each) for each in library_paths], RosTypes(interface_paths))
         if reading.base is None or has_errors(reading.findings):
             raise ModelError(reading.findings)
         base = reading.base
@@ -104,9 +104,9 @@ def check(robot: Base, interface_paths: Sequence[str | PathLike[str]] = ()) -> l
     ROBOSC_INTERFACE_PATH, in the ROS installation and among the standard types.
     """
     from robosc.checks import check as checked
-    from robosc.ros_types import Interfaces
+    from robosc.ros_types import RosTypes
 
-    return checked(robot, (), Interfaces(interface_paths))
+    return checked(robot, (), RosTypes(interface_paths))
 
 
 def to_sct(robot: Robot) -> SupervisoryControlModel:
@@ -124,9 +124,9 @@ def to_rosgraph(robot: Robot, interface_paths: Sequence[str | PathLike[str]] = (
     ROS types are looked up as `check` does: the field of a basic value is the only one of its type, else `data`.
     """
     from robosc.m2m import robosc_to_rosgraph
-    from robosc.ros_types import Interfaces
+    from robosc.ros_types import RosTypes
 
-    return robosc_to_rosgraph.transform(_plants(robot)[1], Interfaces(interface_paths))
+    return robosc_to_rosgraph.transform(_plants(robot)[1], RosTypes(interface_paths))
 
 
 def _plants(robot: Robot) -> tuple[SupervisoryControlModel, Trace]:

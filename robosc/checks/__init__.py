@@ -15,7 +15,7 @@ from robosc.checks.rule import RULES
 from robosc.diagnostics import Diagnostic, in_order
 from robosc.metamodel.files import path_of
 from robosc.metamodel.places import place
-from robosc.ros_types import Interfaces
+from robosc.ros_types import RosTypes
 from robosc.semantics.recursion import deep_recursion
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ for _module in iter_modules(__path__):
 
 @deep_recursion()
 def check(
-    base: rsc.Base | None, known: Iterable[Diagnostic] = (), interfaces: Interfaces | None = None
+    base: rsc.Base | None, known: Iterable[Diagnostic] = (), interfaces: RosTypes | None = None
 ) -> list[Diagnostic]:
     """All breaches of rules in a robot or library and in every library that its imports reach, in order.
 
@@ -44,14 +44,14 @@ def check(
     for each in known:
         unread.setdefault(each.file, []).append(each)
     findings: list[Diagnostic] = []
-    interfaces = interfaces or Interfaces()
+    interfaces = interfaces or RosTypes()
     with remembering():
         for each_base in [base, *reachable(base)]:
             findings += _findings(each_base, unread.get(path_of(each_base), []), interfaces)
     return in_order(findings)
 
 
-def _findings(base: rsc.Base, unread: Sequence[Diagnostic], interfaces: Interfaces) -> Iterator[Diagnostic]:
+def _findings(base: rsc.Base, unread: Sequence[Diagnostic], interfaces: RosTypes) -> Iterator[Diagnostic]:
     file = path_of(base)
     for rule in RULES.values():
         for each in rule.check(base, interfaces):

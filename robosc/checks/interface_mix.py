@@ -15,11 +15,11 @@ if TYPE_CHECKING:
 
     from robosc.checks.wire_data import Carried
     from robosc.metamodel import robosc as rsc
-    from robosc.ros_types import Interfaces
+    from robosc.ros_types import RosTypes
 
 
 @interface_rule("interface-mix", Severity.WARNING)
-def interface_mix(base: rsc.Base, interfaces: Interfaces) -> Iterator[Finding]:
+def interface_mix(base: rsc.Base, interfaces: RosTypes) -> Iterator[Finding]:
     """One of the two ROS fits all data of a model, as a controller runs in one of them."""
     communications = {occurrence.communication for occurrence in instances(base).occurrences()}
     homes = [base, *reachable(base, carries)]
@@ -28,7 +28,7 @@ def interface_mix(base: rsc.Base, interfaces: Interfaces) -> Iterator[Finding]:
     first: dict[str, tuple[rsc.Base, Carried]] = {}
     for home, data in present:
         reasons = misfits(data, interfaces, used.uses(data))
-        if len(reasons) == len(interfaces.editions):
+        if len(reasons) == len(interfaces.distributions):
             continue  # The matter of `interface-type`.
         for ros, reason in reasons.items():
             others = [each for each in first if each != ros]

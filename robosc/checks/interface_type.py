@@ -17,11 +17,11 @@ from robosc.ros_types.unknown import OWN_OBJECT, other_kinds
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from robosc.ros_types import Interfaces
+    from robosc.ros_types import RosTypes
 
 
 @interface_rule("interface-type")
-def interface_type(base: rsc.Base, interfaces: Interfaces) -> Iterator[Finding]:
+def interface_type(base: rsc.Base, interfaces: RosTypes) -> Iterator[Finding]:
     """What the model uses of data is in the ROS type, and fits it."""
     for element, message, hint, used in _faulty(base, interfaces):
         if used:
@@ -29,7 +29,7 @@ def interface_type(base: rsc.Base, interfaces: Interfaces) -> Iterator[Finding]:
 
 
 @interface_rule("interface-unused", Severity.WARNING)
-def interface_unused(base: rsc.Base, interfaces: Interfaces) -> Iterator[Finding]:
+def interface_unused(base: rsc.Base, interfaces: RosTypes) -> Iterator[Finding]:
     """What the model declares without using it is in the ROS type, too, and fits it."""
     for element, message, hint, used in _faulty(base, interfaces):
         if not used:
@@ -38,7 +38,7 @@ def interface_unused(base: rsc.Base, interfaces: Interfaces) -> Iterator[Finding
 
 
 @interface_rule("interface-unknown", Severity.WARNING)
-def interface_unknown(base: rsc.Base, interfaces: Interfaces) -> Iterator[Finding]:
+def interface_unknown(base: rsc.Base, interfaces: RosTypes) -> Iterator[Finding]:
     """The definitions of all ROS types that interfaces name are at hand."""
     reported: set[tuple[object, str]] = set()
     for data in carried(base):
@@ -64,12 +64,12 @@ def interface_unknown(base: rsc.Base, interfaces: Interfaces) -> Iterator[Findin
                 )
 
 
-def _unknown(data: Carried, interfaces: Interfaces) -> list[Fault] | list[Unknown]:
+def _unknown(data: Carried, interfaces: RosTypes) -> list[Fault] | list[Unknown]:
     found = faults(data, interfaces, {})
     return [found] if isinstance(found, Unknown) else [each for each in found if each.unknown]
 
 
-def _faulty(base: rsc.Base, interfaces: Interfaces) -> Iterator[tuple[ex.Located, str, str, bool]]:
+def _faulty(base: rsc.Base, interfaces: RosTypes) -> Iterator[tuple[ex.Located, str, str, bool]]:
     """Where the base's text must change, why, how, and whether the model uses what is faulty there."""
     found: dict[tuple[ex.Located, str, str], bool] = {}
     homes = {home: list(carried(home)) for home in [base, *reachable(base, carries)]}

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from robosc.diagnostics import Diagnostic, Span
     from robosc.metamodel import robosc as rsc
-    from robosc.ros_types import Interfaces
+    from robosc.ros_types import RosTypes
 
 
 @dataclass(frozen=True)
@@ -62,7 +62,7 @@ def _innermost(element: ex.Located, span: Span) -> ex.Located:
 
 
 Check: TypeAlias = "Callable[[rsc.Base], Iterator[Finding]]"
-InterfaceCheck: TypeAlias = "Callable[[rsc.Base, Interfaces], Iterator[Finding]]"
+InterfaceCheck: TypeAlias = "Callable[[rsc.Base, RosTypes], Iterator[Finding]]"
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, TypeAlias
 from robosc.checks.declarations import communications, sent_type
 from robosc.metamodel import robosc as rsc
 from robosc.metamodel.reflection import tree
-from robosc.ros_types.wire import Nested, Part
+from robosc.ros_types.wire import Nested, Section
 from robosc.semantics.cone_of_influence import accesses
 
 if TYPE_CHECKING:
@@ -18,13 +18,13 @@ if TYPE_CHECKING:
 
 #: The properties that a text touches, each with the first place that does.
 Uses: TypeAlias = "dict[rsc.ObjectProperty, ex.Located]"
-_PARTS: dict[tuple[type[rsc.CommunicationType], str], Part] = {
-    (rsc.Message, "response"): Part.MESSAGE,
-    (rsc.Service, "response"): Part.RESPONSE,
-    (rsc.Action, "response"): Part.RESULT,
-    (rsc.Action, "feedback"): Part.FEEDBACK,
+_PARTS: dict[tuple[type[rsc.CommunicationType], str], Section] = {
+    (rsc.Message, "response"): Section.MESSAGE,
+    (rsc.Service, "response"): Section.RESPONSE,
+    (rsc.Action, "response"): Section.RESULT,
+    (rsc.Action, "feedback"): Section.FEEDBACK,
 }
-_SENT = {rsc.Message: Part.MESSAGE, rsc.Service: Part.REQUEST, rsc.Action: Part.GOAL}
+_SENT = {rsc.Message: Section.MESSAGE, rsc.Service: Section.REQUEST, rsc.Action: Section.GOAL}
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ class Carried:
     communication: rsc.CommunicationType
     interface: rsc.Interface
     declared: rsc.DataType
-    part: Part
+    part: Section
 
     @property
     def is_received(self) -> bool:
@@ -62,17 +62,17 @@ def carries(base: rsc.Base) -> bool:
     return any(True for _ in carried(base))
 
 
-def _parts(communication: rsc.CommunicationType) -> list[tuple[rsc.DataType | None, Part]]:
+def _parts(communication: rsc.CommunicationType) -> list[tuple[rsc.DataType | None, Section]]:
     match communication:
         case rsc.Message():
-            return [(communication.type, Part.MESSAGE)]
+            return [(communication.type, Section.MESSAGE)]
         case rsc.Service():
-            return [(communication.requestType, Part.REQUEST), (communication.responseType, Part.RESPONSE)]
+            return [(communication.requestType, Section.REQUEST), (communication.responseType, Section.RESPONSE)]
         case rsc.Action():
             return [
-                (communication.requestType, Part.GOAL),
-                (communication.responseType, Part.RESULT),
-                (communication.feedbackType, Part.FEEDBACK),
+                (communication.requestType, Section.GOAL),
+                (communication.responseType, Section.RESULT),
+                (communication.feedbackType, Section.FEEDBACK),
             ]
     return []
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from robosc.metamodel import robosc as rsc
 from robosc.ros_types.unknown import MAKE_KNOWN, REPAIR, why_unknown
-from robosc.ros_types.wire import INTEGER_RANGES, Basic, DefinitionError, Fields, Nested, Part, Sequence, WireType
+from robosc.ros_types.wire import INTEGER_RANGES, Basic, DefinitionError, Fields, Nested, Section, Sequence, WireType
 from robosc.semantics.naming import written
 from robosc.semantics.typing import declared_type
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from robosc.checks.wire_data import Carried, Uses
-    from robosc.ros_types import Edition, Interfaces
+    from robosc.ros_types import RosDistribution, RosTypes
 
 _INTEGERS = frozenset(INTEGER_RANGES)
 #: The wire types that hold values of a type, and the type to write for them.
@@ -52,11 +52,11 @@ class Unknown:
     hint: str
 
 
-def faults(data: Carried, interfaces: Interfaces, uses: Uses) -> list[Fault] | Unknown:
+def faults(data: Carried, interfaces: RosTypes, uses: Uses) -> list[Fault] | Unknown:
     """What of some data does not fit its ROS type, in the one of the two ROS in which what is used fits best."""
     answers = []
     try:
-        for _, found in _by_edition(data, interfaces):
+        for _, found in _by_distribution(data, interfaces):
             if found == []:
                 return []
             if found is not None:
@@ -68,41 +68,44 @@ def faults(data: Carried, interfaces: Interfaces, uses: Uses) -> list[Fault] | U
     return min(answers, key=lambda each: (sum(fault.is_used(uses) for fault in each), len(each)))
 
 
-def misfits(data: Carried, interfaces: Interfaces, uses: Uses) -> dict[str, str]:
+def misfits(data: Carried, interfaces: RosTypes, uses: Uses) -> dict[str, str]:
     """Each of the two ROS in which what is used of some data does not fit, with the reason.
 
     Where nothing is known of the type's package it may fit.
     """
     found = {}
     try:
-        for edition, answer in _by_edition(data, interfaces):
+        for distribution, answer in _by_distribution(data, interfaces):
             if answer is not None:
                 reasons = [fault.message for fault in answer if fault.is_used(uses) and not fault.unknown]
-            elif edition.names(data.ros_type.package, data.part.kind):
+            elif distribution.names(data.ros_type.package, data.part.kind):
                 reasons = [f"there is no {data.ros_type}"]
             else:
                 reasons = []
             if reasons:
-                found[edition.name] = reasons[0]
+                found[distribution.name] = reasons[0]
     except DefinitionError:
         return {}
     return found
 
 
-def _by_edition(data: Carried, interfaces: Interfaces) -> Iterator[tuple[Edition, list[Fault] | None]]:
+def _by_distribution(data: Carried, interfaces: RosTypes) -> Iterator[tuple[RosDistribution, list[Fault] | None]]:
     """What does not fit in each of the two ROS; None where it has no such type. Raises DefinitionError."""
     ros_type, part = data.ros_type, data.part
-    for edition in interfaces.editions:
-        fields = edition.fields(ros_type.package, ros_type.name, part)
+    for distribution in interfaces.distributions:
+        fields = distribution.fields(ros_type.package, ros_type.name, part)
         if fields is None:
-            yield edition, None
+            yield distribution, None
         else:
-            yield edition, list(_Comparison(edition, data).whole(data.declared, fields, _name(ros_type, part)))
+            yield (
+                distribution,
+                list(_Comparison(distribution, data).whole(data.declared, fields, _name(ros_type, part))),
+            )
 
 
 class _Comparison:
-    def __init__(self, edition: Edition, data: Carried) -> None:
-        self._edition = edition
+    def __init__(self, distribution: RosDistribution, data: Carried) -> None:
+        self._distribution = distribution
         self._ros_type = data.ros_type
         self._is_received = data.is_received
         self._around: list[tuple[object, Nested]] = []
@@ -151,7 +154,7 @@ class _Comparison:
         if (definition, wire) in self._around:
             return  # A type that contains itself; ROS has none, and for models `data-type` says so.
         try:
-            fields = self._edition.fields(wire.package, wire.name, Part.MESSAGE)
+            fields = self._distribution.fields(wire.package, wire.name, Section.MESSAGE)
         except DefinitionError as fault:
             message = f"the definition of {wire}, the type of `{owner.name}`, can't be read: {fault}"
             yield Fault(owner, message, REPAIR, unknown=True)
@@ -170,8 +173,8 @@ class _Comparison:
         return wire.name in _FITTING[kind][0] or (self._is_received and wire.name in _CONVERTING.get(kind, ()))
 
 
-def _name(ros_type: Nested, part: Part) -> str:
-    return str(ros_type) if part is Part.MESSAGE else f"the {part.name.lower()} of {ros_type}"
+def _name(ros_type: Nested, part: Section) -> str:
+    return str(ros_type) if part is Section.MESSAGE else f"the {part.name.lower()} of {ros_type}"
 
 
 def wire_type(declared: rsc.DataType | None) -> rsc.DataType | None:

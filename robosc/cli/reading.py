@@ -14,7 +14,7 @@ from robosc.m2t.models import Models
 from robosc.metamodel import robosc as rsc
 from robosc.metamodel import rosgraph, sct
 from robosc.metamodel.files import set_locate
-from robosc.ros_types import Interfaces
+from robosc.ros_types import RosTypes
 from robosc.semantics.instances import libraries
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ def read(path: str, library_paths: Sequence[str], report: Report, interface_path
 
     None where so little could be read that there is none. Raises ModelError for an XMI file with faults.
     """
-    interfaces = Interfaces(interface_paths)
+    interfaces = RosTypes(interface_paths)
     if path.endswith(".xmi"):
         from robosc.metamodel import xmi
 

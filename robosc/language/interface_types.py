@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from robosc.metamodel import robosc as rsc
 from robosc.metamodel.reflection import contents, tree
-from robosc.ros_types import DefinitionError, Part
+from robosc.ros_types import DefinitionError, Section
 from robosc.ros_types.unknown import OWN_OBJECT, other_kinds, why_unknown
 from robosc.ros_types.wire import INTEGER_RANGES, Basic, Sequence
 
@@ -14,18 +14,18 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from robosc.metamodel import expression as ex
-    from robosc.ros_types import Edition, Fields, Interfaces, WireType
+    from robosc.ros_types import Fields, RosDistribution, RosTypes, WireType
 
 #: Small integers bring their range with them.
 _NARROW = ("int8", "uint8", "int16", "uint16")
 
 
-def declare(reference: rsc.InterfaceTypeReference, interfaces: Interfaces) -> tuple[str, str] | None:
+def declare(reference: rsc.InterfaceTypeReference, interfaces: RosTypes) -> tuple[str, str] | None:
     """Gives a reference the object that it stands for; a message and a hint where the ROS type is not known."""
     if next(_definitions(reference, interfaces), None) is None:
         part = _part(reference)
         message, hint = why_unknown(interfaces, reference.package, reference.rosType, part)
-        if part is Part.MESSAGE and other_kinds(interfaces, reference.package, reference.rosType, part.kind):
+        if part is Section.MESSAGE and other_kinds(interfaces, reference.package, reference.rosType, part.kind):
             hint = OWN_OBJECT
         return message, hint
     reference.definition = rsc.ObjectDataType(name=reference.rosType, source=reference.source)
@@ -51,14 +51,14 @@ def is_made(definition: rsc.ComplexDataType) -> bool:
     return isinstance(definition.eContainer(), rsc.InterfaceTypeReference)
 
 
-def ros_property(definition: rsc.ObjectDataType, name: str, interfaces: Interfaces) -> rsc.ObjectProperty | None:
+def ros_property(definition: rsc.ObjectDataType, name: str, interfaces: RosTypes) -> rsc.ObjectProperty | None:
     """The property for a field of such an object; None where there is no such field, or no data type for it."""
     for each in definition.properties:
         if each.name == name:
             return each
-    for edition, fields in _definitions(definition.eContainer(), interfaces):
+    for distribution, fields in _definitions(definition.eContainer(), interfaces):
         if name in fields:
-            found = _data_type(fields[name], edition)
+            found = _data_type(fields[name], distribution)
             if found is not None:
                 made = rsc.ObjectProperty(name=name, type=found)
                 for _, each in tree(made):
@@ -71,45 +71,49 @@ def ros_property(definition: rsc.ObjectDataType, name: str, interfaces: Interfac
     return None
 
 
-def ros_properties(definition: rsc.ObjectDataType, interfaces: Interfaces) -> list[str]:
+def ros_properties(definition: rsc.ObjectDataType, interfaces: RosTypes) -> list[str]:
     """The names of all properties that such an object can have, those of ROS 2 first."""
     known = _definitions(definition.eContainer(), interfaces)
-    fields = [(name, each, edition) for edition, fields in known for name, each in fields.items()]
-    return list(dict.fromkeys(name for name, each, edition in fields if _data_type(each, edition) is not None))
+    fields = [(name, each, distribution) for distribution, fields in known for name, each in fields.items()]
+    return list(
+        dict.fromkeys(name for name, each, distribution in fields if _data_type(each, distribution) is not None)
+    )
 
 
-def _definitions(reference: rsc.InterfaceTypeReference, interfaces: Interfaces) -> Iterator[tuple[Edition, Fields]]:
-    for edition in interfaces.editions:
+def _definitions(
+    reference: rsc.InterfaceTypeReference, interfaces: RosTypes
+) -> Iterator[tuple[RosDistribution, Fields]]:
+    for distribution in interfaces.distributions:
         try:
-            fields = edition.fields(reference.package, reference.rosType, _part(reference))
+            fields = distribution.fields(reference.package, reference.rosType, _part(reference))
         except DefinitionError:
             continue
         if fields is not None:
-            yield edition, fields
+            yield distribution, fields
 
 
-def _part(reference: rsc.InterfaceTypeReference) -> Part:
+def _part(reference: rsc.InterfaceTypeReference) -> Section:
     """Which part of its type a reference stands for: where it stands decides."""
     around: ex.Located = reference.eContainer()
     match around:
         case rsc.Service():
-            return Part.REQUEST if around.requestType is reference else Part.RESPONSE
+            return Section.REQUEST if around.requestType is reference else Section.RESPONSE
         case rsc.Action() if around.feedbackType is reference:
-            return Part.FEEDBACK
+            return Section.FEEDBACK
         case rsc.Action():
-            return Part.GOAL if around.requestType is reference else Part.RESULT
-    return Part.MESSAGE
+            return Section.GOAL if around.requestType is reference else Section.RESULT
+    return Section.MESSAGE
 
 
-def _data_type(wire: WireType, edition: Edition) -> rsc.DataType | None:
+def _data_type(wire: WireType, distribution: RosDistribution) -> rsc.DataType | None:
     match wire:
         case Sequence():
-            element = _data_type(wire.element, edition)
+            element = _data_type(wire.element, distribution)
             return None if element is None else rsc.Array(type=element)
         case Basic():
             return _basic(wire.name)
     try:
-        known = edition.fields(wire.package, wire.name, Part.MESSAGE) is not None
+        known = distribution.fields(wire.package, wire.name, Section.MESSAGE) is not None
     except DefinitionError:
         known = False
     return rsc.InterfaceTypeReference(package=wire.package, rosType=wire.name) if known else None

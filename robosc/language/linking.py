@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     from robosc.diagnostics import Diagnostic
     from robosc.language.building import Name
-    from robosc.ros_types import Interfaces
+    from robosc.ros_types import RosTypes
     from robosc.semantics.instances import Resolved
 
 _Element = TypeVar("_Element")
@@ -40,7 +40,7 @@ _FEW = 6
 OWN_MEMBERS = "a library's component speaks of its own members only"
 
 
-def link(file: File, interfaces: Interfaces, resolved: Resolved) -> list[Diagnostic]:
+def link(file: File, interfaces: RosTypes, resolved: Resolved) -> list[Diagnostic]:
     """Resolves the names of a file, whose libraries are read and linked; returns a finding for each that can't be.
 
     `interfaces` is what is known of the ROS types that take the place of objects, `resolved` what is known of the
@@ -58,7 +58,7 @@ def link(file: File, interfaces: Interfaces, resolved: Resolved) -> list[Diagnos
 
 
 class _Linker:
-    def __init__(self, file: File, interfaces: Interfaces) -> None:
+    def __init__(self, file: File, interfaces: RosTypes) -> None:
         self.findings: list[Diagnostic] = []
         self._interfaces = interfaces
         self._file = file

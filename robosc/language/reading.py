@@ -17,7 +17,7 @@ from robosc.language.scopes import File
 from robosc.language.text import decode
 from robosc.metamodel import robosc as rsc
 from robosc.metamodel.files import set_path
-from robosc.ros_types import Interfaces
+from robosc.ros_types import RosTypes
 from robosc.semantics.recursion import deep_recursion
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ class Reading:
 
 
 @deep_recursion()
-def read(path: Path | str, library_paths: Iterable[Path | str] = (), interfaces: Interfaces | None = None) -> Reading:
+def read(path: Path | str, library_paths: Iterable[Path | str] = (), interfaces: RosTypes | None = None) -> Reading:
     """Reads a robot or a library and all that it imports, and links its names.
 
     `library_paths` are searched after the file's own folder and before ROBOSC_PATH and the standard library.
@@ -51,7 +51,7 @@ def read(path: Path | str, library_paths: Iterable[Path | str] = (), interfaces:
     OSError where the file itself can't be read; all other faults are findings of the rules `syntax`,
     `unresolved-reference` and `import-cycle`.
     """
-    reader = _Reader(Path(path).parent.resolve(), library_paths, interfaces or Interfaces())
+    reader = _Reader(Path(path).parent.resolve(), library_paths, interfaces or RosTypes())
     file = reader.read(Path(path), str(path))
     return Reading(file.base, in_order(reader.findings), reader.texts)
 
@@ -62,7 +62,7 @@ class _Reader:
     No chain of imports is too long: files wait for their libraries in a list.
     """
 
-    def __init__(self, home: Path, library_paths: Iterable[Path | str], interfaces: Interfaces) -> None:
+    def __init__(self, home: Path, library_paths: Iterable[Path | str], interfaces: RosTypes) -> None:
         self._home = home
         self.findings: list[Diagnostic] = []
         self.texts: dict[str, str] = {}

@@ -12,7 +12,7 @@ from robosc.m2m.trace import EVENT_OF
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc, rosgraph, sct
 from robosc.metamodel.files import derive_paths
-from robosc.ros_types import Interfaces, Part
+from robosc.ros_types import RosTypes, Section
 from robosc.semantics.cone_of_influence import transitions
 from robosc.semantics.instances import Instance, InstanceVariable, Occurrence, libraries
 from robosc.semantics.naming import Names
@@ -40,22 +40,22 @@ class _Part(NamedTuple):
 
     occurrence: Occurrence
     type: robosc.DataType
-    part: Part
+    part: Section
 
 
 @deep_recursion()
-def transform(trace: Trace, interfaces: Interfaces | None = None) -> rosgraph.RosGraph:
+def transform(trace: Trace, interfaces: RosTypes | None = None) -> rosgraph.RosGraph:
     """The ROS graph of the robot whose transformation to the sct model left this trace.
 
     `interfaces` is what is known of ROS types; None: what is known without folders of the call.
     Topics, services and actions stand in the order of the text. All messages that one topic feeds with one ROS type
     are one subscription.
     """
-    return _Transformation(trace, interfaces or Interfaces()).run()
+    return _Transformation(trace, interfaces or RosTypes()).run()
 
 
 class _Transformation:
-    def __init__(self, trace: Trace, interfaces: Interfaces) -> None:
+    def __init__(self, trace: Trace, interfaces: RosTypes) -> None:
         self.trace = trace
         self.known = interfaces
         self.instances = trace.instances
@@ -369,24 +369,24 @@ def _steps(
 def _sent(occurrence: Occurrence) -> _Part:
     match occurrence.communication:
         case robosc.Message() as message:
-            return _Part(occurrence, message.type, Part.MESSAGE)
+            return _Part(occurrence, message.type, Section.MESSAGE)
         case robosc.Service() as service:
-            return _Part(occurrence, service.requestType, Part.REQUEST)
+            return _Part(occurrence, service.requestType, Section.REQUEST)
     assert isinstance(occurrence.communication, robosc.Action)
-    return _Part(occurrence, occurrence.communication.requestType, Part.GOAL)
+    return _Part(occurrence, occurrence.communication.requestType, Section.GOAL)
 
 
 def _received(occurrence: Occurrence, result_type: robosc.ResultType) -> _Part | None:
     """The data that an event of a communication brings; None for the events that bring none."""
     communication = occurrence.communication
     if result_type == robosc.ResultType.feedback and isinstance(communication, robosc.Action):
-        return _Part(occurrence, communication.feedbackType, Part.FEEDBACK)
+        return _Part(occurrence, communication.feedbackType, Section.FEEDBACK)
     if result_type != robosc.ResultType.response:
         return None
     match communication:
         case robosc.Message():
-            return _Part(occurrence, communication.type, Part.MESSAGE)
+            return _Part(occurrence, communication.type, Section.MESSAGE)
         case robosc.Service():
-            return _Part(occurrence, communication.responseType, Part.RESPONSE)
+            return _Part(occurrence, communication.responseType, Section.RESPONSE)
     assert isinstance(communication, robosc.Action)
-    return _Part(occurrence, communication.responseType, Part.RESULT)
+    return _Part(occurrence, communication.responseType, Section.RESULT)

@@ -6,17 +6,15 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from robosc.node_tests.shapes import Field, Path, message, wire_type
-from robosc.ros_types import Part as DefinedPart
-from robosc.runtime.core.port import Outcome, Part
+from robosc.ros_types import Section
+from robosc.runtime.core.port import Outcome
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from robosc.metamodel import rosgraph
-    from robosc.ros_types import Edition
+    from robosc.ros_types import RosDistribution
     from robosc.runtime.core.port import CallHandlers, Endpoint, GoalHandlers, Message
-
-_DEFINED = {Part.MESSAGE: DefinedPart.MESSAGE, Part.REQUEST: DefinedPart.REQUEST, Part.GOAL: DefinedPart.GOAL}
 
 
 @dataclass
@@ -34,32 +32,32 @@ class RunningGoal:
 class Robot:
     """A port (`robosc.runtime.core.port.Port`) whose servers are there and wait to be told what to answer."""
 
-    def __init__(self, graph: rosgraph.RosGraph, edition: Edition, clock: Callable[[], float]) -> None:
+    def __init__(self, graph: rosgraph.RosGraph, distribution: RosDistribution, clock: Callable[[], float]) -> None:
         self.now = clock
         #: The calls that wait, each since when.
         self.calls: dict[rosgraph.ServiceClient, tuple[float, CallHandlers]] = {}
         self.goals: dict[rosgraph.ActionClient, RunningGoal] = {}
-        self._edition = edition
-        self._fields: dict[tuple[rosgraph.Interface, Part], dict[Path, Field]] = {}
+        self._distribution = distribution
+        self._fields: dict[tuple[rosgraph.Interface, Section], dict[Path, Field]] = {}
         for publisher in graph.publishers:
             for sending in publisher.sendings:
-                self._note(publisher.interface, Part.MESSAGE, sending)
+                self._note(publisher.interface, Section.MESSAGE, sending)
         for service in graph.serviceClients:
-            self._note(service.interface, Part.REQUEST, service.request)
+            self._note(service.interface, Section.REQUEST, service.request)
         for action in graph.actionClients:
-            self._note(action.interface, Part.GOAL, action.request)
+            self._note(action.interface, Section.GOAL, action.request)
 
-    def _note(self, interface: rosgraph.Interface, part: Part, sending: rosgraph.Sending) -> None:
-        fields = self._fields.setdefault((interface, part), {})
+    def _note(self, interface: rosgraph.Interface, section: Section, sending: rosgraph.Sending) -> None:
+        fields = self._fields.setdefault((interface, section), {})
         for each in (field for alternative in sending.alternatives for field in alternative.fields):
             path = tuple(each.path)
-            fields[path] = Field(each.type, wire_type(self._edition, interface, _DEFINED[part], path))
+            fields[path] = Field(each.type, wire_type(self._distribution, interface, section, path))
 
     # What the controller asks
 
-    def create(self, interface: rosgraph.Interface, part: Part) -> Message:
+    def create(self, interface: rosgraph.Interface, section: Section) -> Message:
         """Data with the fields that the model sets."""
-        return message(self._fields[interface, part], {}) if self._fields[interface, part] else None
+        return message(self._fields[interface, section], {}) if self._fields[interface, section] else None
 
     def wire_types(self, owner: Message) -> Mapping[str, str]:
         """The types of the fields that the model sets."""

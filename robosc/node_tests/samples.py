@@ -19,7 +19,7 @@ from robosc.semantics.received import reads_elements
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
 
-    from robosc.ros_types import Edition, Part
+    from robosc.ros_types import RosDistribution, Section
     from robosc.runtime.core.node_data import NodeData
 
 #: So many messages are tried in vain before no more are looked for.
@@ -105,9 +105,9 @@ def _bounds(field: Field) -> tuple[int, int]:
 
 
 def incoming(
-    edition: Edition,
+    distribution: RosDistribution,
     interface: rosgraph.Interface,
-    part: Part,
+    part: Section,
     receptions: Sequence[tuple[str, Mapping[Path, ex.Expression], Collection[ex.Expression]]],
 ) -> Incoming:
     """What comes in as one message: for each event its name, what is shown of it, and the values that read it."""
@@ -118,7 +118,7 @@ def incoming(
         if any(map(reads_elements, values)):
             unreadable.add(event)
         for path, kind in reads(values):
-            fields.setdefault(path, Field(kind, wire_type(edition, interface, part, path)))
+            fields.setdefault(path, Field(kind, wire_type(distribution, interface, part, path)))
         found = [
             Read(path, each.conversion if isinstance(each, rosgraph.ConversionCall) else None)
             for path, each in shown.items()

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph
 from robosc.metamodel.reflection import tree
-from robosc.ros_types import DefinitionError, Edition, Part
+from robosc.ros_types import DefinitionError, RosDistribution, Section
 from robosc.ros_types.wire import Basic, Nested, Sequence
 
 if TYPE_CHECKING:
@@ -49,7 +49,7 @@ class Field:
         return self.wire or _DEFAULTS[type(self.type)][0]
 
 
-def wire_type(edition: Edition, interface: rosgraph.Interface, part: Part, path: Path) -> str | None:
+def wire_type(distribution: RosDistribution, interface: rosgraph.Interface, part: Section, path: Path) -> str | None:
     """The basic ROS type at the end of a path; None where it is unknown."""
     package, name = interface.package, interface.type
     found: object = None
@@ -58,12 +58,12 @@ def wire_type(edition: Edition, interface: rosgraph.Interface, part: Part, path:
             found = found.element if isinstance(found, Sequence) else None
         else:
             try:
-                fields = edition.fields(package, name, part)
+                fields = distribution.fields(package, name, part)
             except DefinitionError:
                 return None
             found = None if fields is None else fields.get(step)
         if isinstance(found, Nested):
-            package, name, part = found.package, found.name, Part.MESSAGE
+            package, name, part = found.package, found.name, Section.MESSAGE
     return found.name if isinstance(found, Basic) else None
 
 

@@ -9,7 +9,7 @@ from robosc.files.resources import locate
 from robosc.m2t.models import TraceTest
 from robosc.node_tests.shapes import nested
 from robosc.node_tests.walk import Walk, parameters
-from robosc.ros_types import Interfaces
+from robosc.ros_types import RosTypes
 from robosc.semantics.roles import event_name
 
 if TYPE_CHECKING:
@@ -36,8 +36,8 @@ def trace_test(
     ROS types are looked up as `check` does; of a type that is unknown, numbers are tried that all of its kind hold.
     The same call gives the same test.
     """
-    edition = next(each for each in Interfaces(interface_paths).editions if each.name == f"ROS {version}")
-    walk = Walk(graph, configuration, edition, _SEED)
+    distribution = next(each for each in RosTypes(interface_paths).distributions if each.name == f"ROS {version}")
+    walk = Walk(graph, configuration, distribution, _SEED)
     stimuli = _STIMULI[0] + _STIMULI[1] * len([*graph.serviceClients, *graph.actionClients])
     trace = "".join(f"{line}\n" for line in walk.go(stimuli))
     started = parameters(graph, configuration)

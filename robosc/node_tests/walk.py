@@ -12,7 +12,7 @@ from robosc.node_tests.robot import Robot
 from robosc.node_tests.samples import Incoming, Values, find_samples, incoming, shortened
 from robosc.node_tests.shapes import Leaf, message, nested
 from robosc.node_tests.trace_player import START, between, just_after
-from robosc.ros_types import Part
+from robosc.ros_types import Section
 from robosc.runtime.core.agenda import Agenda
 from robosc.runtime.core.controller import Controller
 from robosc.runtime.core.json_text import json_text
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from robosc.configuration import Configuration
     from robosc.metamodel import rosgraph, sct
-    from robosc.ros_types import Edition
+    from robosc.ros_types import RosDistribution
 
 _DAY = 24 * 3600 * 1000
 #: Of so many answers one is a failure.
@@ -79,9 +79,11 @@ class _Lines:
 class Walk:
     """One walk of one controller, from its start; `seed` decides where it goes."""
 
-    def __init__(self, graph: rosgraph.RosGraph, configuration: Configuration, edition: Edition, seed: int) -> None:
+    def __init__(
+        self, graph: rosgraph.RosGraph, configuration: Configuration, distribution: RosDistribution, seed: int
+    ) -> None:
         self._graph = graph
-        self._edition = edition
+        self._distribution = distribution
         self._configuration = configuration
         self._choice = random.Random(seed)  # noqa: S311  # the same each time
         self._parameters = parameters(graph, configuration)
@@ -98,7 +100,7 @@ class Walk:
         """The lines of the trace of so many stimuli."""
         declared = {each.name: each.default for each in controller_parameters(self._graph, self._configuration, "")}
         settings = Settings(declared | self._parameters, self._configuration)
-        robot = Robot(self._graph, self._edition, lambda: self._now)
+        robot = Robot(self._graph, self._distribution, lambda: self._now)
         agenda = Agenda(lambda: self._now)
         lines = _Lines()
         controller = Controller(self._graph, settings, robot, agenda)
@@ -208,19 +210,19 @@ class Walk:
             for each in receptions:
                 values = [assigned.value for assigned in each.inputs] + data.values_read(each.event)
                 described.append((event_name(each.event), ReceivedData(values).parts, values))
-            kind = incoming(self._edition, interface, part, described)
+            kind = incoming(self._distribution, interface, part, described)
             find_samples(kind, self._values, data, seed)
             known |= dict.fromkeys((each.event for each in receptions), kind)
         return known
 
-    def _receptions(self) -> Iterator[tuple[rosgraph.Interface, Part, Sequence[rosgraph.Reception]]]:
+    def _receptions(self) -> Iterator[tuple[rosgraph.Interface, Section, Sequence[rosgraph.Reception]]]:
         for topic in self._graph.subscriptions:
-            yield topic.interface, Part.MESSAGE, topic.receptions
+            yield topic.interface, Section.MESSAGE, topic.receptions
         for service in self._graph.serviceClients:
-            yield service.interface, Part.RESPONSE, [service.response]
+            yield service.interface, Section.RESPONSE, [service.response]
         for action in self._graph.actionClients:
-            yield action.interface, Part.FEEDBACK, [action.feedback]
-            yield action.interface, Part.RESULT, [action.response]
+            yield action.interface, Section.FEEDBACK, [action.feedback]
+            yield action.interface, Section.RESULT, [action.response]
 
 
 def _work(agenda: Agenda) -> None:

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robosc.files import reading as files
-from robosc.ros_types.wire import FOLDERS, DefinitionError, Fields, Part
+from robosc.ros_types.wire import FOLDERS, DefinitionError, Fields, Section
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -30,32 +30,32 @@ class Share:
         self._folder = folder
         self._read: dict[Path, list[Fields]] = {}
 
-    def fields(self, package: str, name: str, part: Part) -> Fields | None:
-        """The fields of a part of a type; None where the folder has no such type. Raises DefinitionError."""
-        folder = FOLDERS[part.kind]
-        for home in self.homes(package):
-            path = home / folder / f"{name}.{folder}"
+    def fields(self, package: str, name: str, section: Section) -> Fields | None:
+        """The fields of a section of a type; None where the folder has no such type. Raises DefinitionError."""
+        folder = FOLDERS[section.kind]
+        for root in self.roots(package):
+            path = root / folder / f"{name}.{folder}"
             if path not in self._read:
                 if not path.exists():
                     continue
-                self._read[path] = _sections(path, package, part)
-            return self._read[path][part.section]
+                self._read[path] = _sections(path, package, section)
+            return self._read[path][section.index]
         return None
 
     def names(self, package: str, kind: str) -> list[str]:
         """The names of all types of a kind that a package defines."""
         folder = FOLDERS[kind]
-        return sorted(path.stem for home in self.homes(package) for path in (home / folder).glob(f"*.{folder}"))
+        return sorted(path.stem for root in self.roots(package) for path in (root / folder).glob(f"*.{folder}"))
 
     def packages(self) -> list[str]:
         """The names of all packages that define types."""
         if not self._folder.is_dir():
             return []
         return [
-            path.name for path in self._folder.iterdir() if any((path / each).is_dir() for each in FOLDERS.values())
+            path.name for path in self._folder.iterdir() if any((path / folder).is_dir() for folder in FOLDERS.values())
         ]
 
-    def homes(self, package: str) -> list[Path]:
+    def roots(self, package: str) -> list[Path]:
         """The folders of a package."""
         return [self._folder / package] if (self._folder / package).is_dir() else []
 
@@ -70,49 +70,49 @@ class Workspace(Share):
         super().__init__(folder)
         self._ros = ros
 
-    def homes(self, package: str) -> list[Path]:
+    def roots(self, package: str) -> list[Path]:
         """The folders of a package, in the order of their paths."""
-        return self._homes.get(package, [])
+        return self._roots.get(package, [])
 
     def packages(self) -> list[str]:
         """The names of all packages."""
-        return list(self._homes)
+        return list(self._roots)
 
     @cached_property
-    def _homes(self) -> dict[str, list[Path]]:
+    def _roots(self) -> dict[str, list[Path]]:
         packages: dict[str, list[Path]] = {}
-        for name, home in self._found():
-            packages.setdefault(name, []).append(home)
+        for name, root in self._found():
+            packages.setdefault(name, []).append(root)
         return packages
 
     def _found(self) -> Iterator[tuple[str, Path]]:
         for folder, below, names in os.walk(self._folder):
-            home = Path(folder)
+            root = Path(folder)
             if _IGNORED.intersection(names):
                 below.clear()
             elif "package.xml" in names:
                 below.clear()  # packages do not nest
                 manifest = ""
                 with suppress(OSError):
-                    manifest = _text(home / "package.xml")
+                    manifest = _text(root / "package.xml")
                 named = _NAME.search(manifest)
                 if self._fits(manifest):
-                    yield named[1] if named else home.resolve().name, home
+                    yield named[1] if named else root.resolve().name, root
             else:
                 if set(FOLDERS.values()).intersection(below):
-                    yield home.resolve().name, home
-                below[:] = sorted(each for each in below if not each.startswith("."))
+                    yield root.resolve().name, root
+                below[:] = sorted(name for name in below if not name.startswith("."))
 
     def _fits(self, manifest: str) -> bool:
         meant = [ros for ros, words in _BUILT_FOR.items() if words.search(manifest)]
         return self._ros in (meant or _BUILT_FOR)
 
 
-def _sections(path: Path, package: str, part: Part) -> list[Fields]:
-    from robosc.ros_types.definition_texts import sections  # loads rosbags
+def _sections(path: Path, package: str, section: Section) -> list[Fields]:
+    from robosc.ros_types.rosbags_types import sections  # takes long to load
 
     try:
-        return sections(_text(path), package, _SECTIONS[part.kind])
+        return sections(_text(path), package, _SECTIONS[section.kind])
     except OSError as error:
         raise DefinitionError(f"{path}: {error.strerror}") from None
     except DefinitionError as fault:

@@ -1,4 +1,4 @@
-"""What the definition of a ROS type says: its parts, their fields, and the types of these."""
+"""What the definition of a ROS type says: its sections, their fields, and the types of these."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ class DefinitionError(ValueError):
     """The text of a definition can't be read; says what is wrong with which file."""
 
 
-class Part(Enum):
-    """What one ROS message of a type carries: the kind of the type, and which of the definition's sections it is."""
+class Section(Enum):
+    """A section of a definition, what one ROS message carries: the kind of its type, and its place."""
 
     MESSAGE = "message", 0
     REQUEST = "service", 0
@@ -28,7 +28,7 @@ class Part(Enum):
         return self.value[0]
 
     @property
-    def section(self) -> int:
+    def index(self) -> int:
         """Its place among the sections of the definition, from 0."""
         return self.value[1]
 
@@ -78,5 +78,5 @@ class Nested:
 
 
 WireType: TypeAlias = Basic | Sequence | Nested
-#: The fields of one part, in the order of its definition.
+#: The fields of one section, in the order of its definition.
 Fields: TypeAlias = Mapping[str, WireType]

@@ -11,7 +11,7 @@ from robosc.checks import check
 from robosc.checks.rule import RULES
 from robosc.diagnostics import Diagnostic, as_text
 from robosc.language import read
-from robosc.ros_types import Interfaces
+from robosc.ros_types import RosTypes
 
 HERE = Path(__file__).parent
 REJECTED = sorted((HERE / "rejected").glob("*/*.rscd"))
@@ -26,7 +26,7 @@ def name(model: Path) -> str:
 
 
 def findings(model: Path) -> tuple[list[Diagnostic], dict[str, str]]:
-    known = Interfaces([INTERFACES])
+    known = RosTypes([INTERFACES])
     reading = read(model, [HERE / "libraries"], known)
     found = check(reading.base, reading.findings, known)
     expected = [each for each in found if each.rule != UNKNOWN or model.parent.name == UNKNOWN]

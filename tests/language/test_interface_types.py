@@ -9,7 +9,7 @@ from robosc.language import read
 from robosc.m2m import robosc_to_rosgraph, robosc_to_sct
 from robosc.metamodel import robosc as rsc
 from robosc.metamodel.reflection import tree
-from robosc.ros_types import Interfaces
+from robosc.ros_types import RosTypes
 
 ROBOT = """
 robot Carrier {
@@ -48,16 +48,16 @@ robot Carrier {
 
 
 @pytest.fixture
-def interfaces(tmp_path: Path) -> Interfaces:
+def interfaces(tmp_path: Path) -> RosTypes:
     actions = tmp_path / "arm_msgs" / "action"
     actions.mkdir(parents=True)
     (actions / "Lift.action").write_text("float64 goal\n---\nbool reached\nwstring why\n---\nfloat64 height\n")
     (tmp_path / "arm_msgs" / "msg").mkdir()
     (tmp_path / "arm_msgs" / "msg" / "Pair.msg").write_text("lost_msgs/Thing thing\nwstring text\nint8 small\n")
-    return Interfaces([tmp_path])
+    return RosTypes([tmp_path])
 
 
-def findings(folder: Path, interfaces: Interfaces, *texts: str) -> list[tuple[str, str, str | None]]:
+def findings(folder: Path, interfaces: RosTypes, *texts: str) -> list[tuple[str, str, str | None]]:
     """Rules, messages and hints for the first of several files of one folder."""
     for number, text in enumerate(texts):
         (folder / f"model{number}.rscd").write_text(text)
@@ -70,11 +70,11 @@ def with_message(declared: str, rest: str = "") -> str:
     return f"robot R {{ component C {{ incoming message m with type: {declared} }} {rest} }}"
 
 
-def test_nothing_is_wrong(tmp_path: Path, interfaces: Interfaces) -> None:
+def test_nothing_is_wrong(tmp_path: Path, interfaces: RosTypes) -> None:
     assert findings(tmp_path, interfaces, ROBOT) == []
 
 
-def test_the_object_has_what_is_used(tmp_path: Path, interfaces: Interfaces) -> None:
+def test_the_object_has_what_is_used(tmp_path: Path, interfaces: RosTypes) -> None:
     path = tmp_path / "robot.rscd"
     path.write_text(ROBOT)
     base = read(path, interfaces=interfaces).base
@@ -104,7 +104,7 @@ def test_the_object_has_what_is_used(tmp_path: Path, interfaces: Interfaces) -> 
     assert small.maximum == 127
 
 
-def test_communication_has_the_interface_of_its_data(tmp_path: Path, interfaces: Interfaces) -> None:
+def test_communication_has_the_interface_of_its_data(tmp_path: Path, interfaces: RosTypes) -> None:
     path = tmp_path / "robot.rscd"
     path.write_text(ROBOT)
     base = read(path, interfaces=interfaces).base
@@ -123,7 +123,7 @@ def test_communication_has_the_interface_of_its_data(tmp_path: Path, interfaces:
     assert [list(each.path) for each in go.alternatives[0].fields] == [["linear", "x"], ["linear", "y"]]
 
 
-def test_objects_may_contain_ros_types(tmp_path: Path, interfaces: Interfaces) -> None:
+def test_objects_may_contain_ros_types(tmp_path: Path, interfaces: RosTypes) -> None:
     text = """
         robot R {
           interface stamped use PoseStamped from geometry_msgs
@@ -143,7 +143,7 @@ def test_objects_may_contain_ros_types(tmp_path: Path, interfaces: Interfaces) -
     ]
 
 
-def test_library_with_ros_types(tmp_path: Path, interfaces: Interfaces) -> None:
+def test_library_with_ros_types(tmp_path: Path, interfaces: RosTypes) -> None:
     robot = """
         robot R {
           component Base from BaseLibrary import Base
@@ -174,21 +174,19 @@ def test_library_with_ros_types(tmp_path: Path, interfaces: Interfaces) -> None:
         ("std_srvs/SetBool", "std_srvs/SetBool is of kind service, expected a type of kind message"),
     ],
 )
-def test_unknown_type_draws_nothing_further(
-    tmp_path: Path, interfaces: Interfaces, declared: str, message: str
-) -> None:
+def test_unknown_type_draws_nothing_further(tmp_path: Path, interfaces: RosTypes, declared: str, message: str) -> None:
     text = with_message(declared, "provide m with { linear: { x: 1.0 } }")
     assert [each[:2] for each in findings(tmp_path, interfaces, text)] == [("unresolved-reference", message)]
 
 
 @pytest.mark.parametrize("name", ["thing", "text", "nothing"])
-def test_fields_that_no_model_can_use(tmp_path: Path, interfaces: Interfaces, name: str) -> None:
+def test_fields_that_no_model_can_use(tmp_path: Path, interfaces: RosTypes, name: str) -> None:
     text = with_message("arm_msgs/Pair", f"provide m with {{ {name}: 1 }}")
     message = f"the ROS type `Pair` has no field that a model can use named `{name}`"
     assert [each[:2] for each in findings(tmp_path, interfaces, text)] == [("unresolved-reference", message)]
 
 
-def test_types_of_fields_count(tmp_path: Path, interfaces: Interfaces) -> None:
+def test_types_of_fields_count(tmp_path: Path, interfaces: RosTypes) -> None:
     text = with_message("arm_msgs/Pair", "provide m with { small: 0.5 } provide m with { small: 300 }")
     assert [each[0] for each in findings(tmp_path, interfaces, text)] == ["type", "integer-range"]
 
@@ -200,13 +198,13 @@ def test_types_of_fields_count(tmp_path: Path, interfaces: Interfaces) -> None:
         "service m with request: std_srvs/Trigger, response: std_srvs/SetBool",
     ],
 )
-def test_one_communication_has_one_type(tmp_path: Path, interfaces: Interfaces, parts: str) -> None:
+def test_one_communication_has_one_type(tmp_path: Path, interfaces: RosTypes, parts: str) -> None:
     direction = "" if parts.startswith("service") else "incoming "
     text = f"robot R {{ interface twist use Twist from geometry_msgs component C {{ {direction}{parts} }} }}"
     assert [each[0] for each in findings(tmp_path, interfaces, text)] == ["interface-type"]
 
 
-def test_needed_integers_without_range(tmp_path: Path, interfaces: Interfaces) -> None:
+def test_needed_integers_without_range(tmp_path: Path, interfaces: RosTypes) -> None:
     text = """
         robot R {
           component C {

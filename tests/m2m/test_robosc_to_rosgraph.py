@@ -8,7 +8,7 @@ import pytest
 from robosc.m2m import robosc_to_rosgraph, robosc_to_sct
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
-from robosc.ros_types import Interfaces
+from robosc.ros_types import RosTypes
 
 SCANNER = """
 robot R {
@@ -263,12 +263,12 @@ def test_linked_basic_data_goes_to_the_only_field(robot: Callable, tmp_path: Pat
         }
     """)
     _, trace = robosc_to_sct.transform(model)
-    graph = robosc_to_rosgraph.transform(trace, Interfaces([tmp_path]))
+    graph = robosc_to_rosgraph.transform(trace, RosTypes([tmp_path]))
     sent = [*(each for topic in graph.publishers for each in topic.sendings)]
     sent += [each.request for each in (*graph.serviceClients, *graph.actionClients)]
     assert [list(each.alternatives[0].fields[0].path) for each in sent] == [["level"], ["data"], ["height"], ["goal"]]
     read = [[step.name for step in each.assignments[0].value.steps] for each in graph.reactions]
     assert read == [["level"], ["done"], ["reached"], ["height"]]
     # Without the definitions it is a guess.
-    unknown = robosc_to_rosgraph.transform(trace, Interfaces())
+    unknown = robosc_to_rosgraph.transform(trace, RosTypes())
     assert {step.name for each in unknown.reactions for step in each.assignments[0].value.steps} == {"data"}

@@ -17,7 +17,7 @@ from robosc.m2t.models import Models
 from robosc.m2t.targets import TARGETS
 from robosc.metamodel import robosc as rsc
 from robosc.metamodel import rosgraph, xmi
-from robosc.ros_types import Interfaces
+from robosc.ros_types import RosTypes
 from robosc.simulation import Simulation
 from tests.fuzz.hostile_xmi import edits
 from tests.fuzz.trial import time_limit
@@ -106,7 +106,7 @@ def used(path: Path, target: str | None) -> None:
     """What commands do with a saved model; raises ModelError for what can't be done with this one."""
     root = xmi.load(path)
     if isinstance(root, rsc.Base):
-        found = check(root, [], Interfaces(()))
+        found = check(root, [], RosTypes(()))
         if has_errors(found) or isinstance(root, rsc.Library):
             raise ModelError(found)
         models = Models(robosc.to_sct(root), robosc.to_rosgraph(root), root)

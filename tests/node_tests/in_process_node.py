@@ -8,7 +8,7 @@ from robosc.node_tests.robot import Robot, RunningGoal
 from robosc.node_tests.shapes import message
 from robosc.node_tests.trace_player import START, Port, cancelled, leaves
 from robosc.node_tests.walk import Walk, parameters
-from robosc.ros_types import Interfaces
+from robosc.ros_types import RosTypes
 from robosc.runtime.core.agenda import Agenda
 from robosc.runtime.core.controller import Controller
 from robosc.runtime.core.port import Outcome
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from robosc.configuration import Configuration
     from robosc.metamodel import rosgraph, sct
-    from robosc.ros_types import Edition
+    from robosc.ros_types import RosDistribution
     from robosc.runtime.core.port import CallHandlers, GoalHandlers
 
 _OUTCOMES = {"succeeded": Outcome.SUCCEEDED, "aborted": Outcome.ABORTED, "canceled": Outcome.CANCELLED}
@@ -81,11 +81,11 @@ class InProcessNode(Port):
         self, connections: dict[str, Any], graph: rosgraph.RosGraph, configuration: Configuration, log: Path
     ) -> None:
         super().__init__(connections)
-        edition: Edition = Interfaces().editions[0]
+        distribution: RosDistribution = RosTypes().distributions[0]
         self._now = START * connections["period"]
         self._graph = graph
-        self._incoming = Walk(graph, configuration, edition, 1).incoming
-        self._robot = _Robot(graph, edition, lambda: self._now)
+        self._incoming = Walk(graph, configuration, distribution, 1).incoming
+        self._robot = _Robot(graph, distribution, lambda: self._now)
         self._robot.port = self
         self._agenda = Agenda(lambda: self._now)
         values = {each.name: each.default for each in controller_parameters(graph, configuration, "")}

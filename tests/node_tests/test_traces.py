@@ -23,7 +23,7 @@ from robosc.node_tests.shapes import Field, message
 from robosc.node_tests.trace_player import Log, Player, TraceError, read_trace
 from robosc.node_tests.trace_test import trace_test
 from robosc.node_tests.walk import Walk
-from robosc.ros_types import Interfaces
+from robosc.ros_types import RosTypes
 from robosc.runtime.core.node_data import NodeData
 from robosc.semantics.edges import edges_from
 from robosc.semantics.roles import event_name
@@ -109,7 +109,7 @@ def test_a_walk_sees_every_event(case: Case) -> None:
 @pytest.mark.parametrize("case", ["porter"], indirect=True)
 def test_the_same_call_gives_the_same_test(case: Case) -> None:
     assert trace_test(case.graph, case.configuration, 2).files == case.files
-    other = Walk(case.graph, case.configuration, Interfaces().editions[0], seed=2)
+    other = Walk(case.graph, case.configuration, RosTypes().distributions[0], seed=2)
     assert [json.loads(line) for line in other.go(50)] != case.trace[:50]
 
 
@@ -249,7 +249,7 @@ def test_a_node_that_forgets_is_noticed(case: Case) -> None:
 @every_model
 def test_samples_mean_what_they_say(case: Case) -> None:
     data = NodeData(case.graph, Engine(case.graph.model))
-    known = Walk(case.graph, case.configuration, Interfaces().editions[0], 1).incoming
+    known = Walk(case.graph, case.configuration, RosTypes().distributions[0], 1).incoming
     for kind in {id(each): each for each in known.values()}.values():
         for literals, found in kind.samples.items():
             for values in found:

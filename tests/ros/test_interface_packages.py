@@ -8,7 +8,7 @@ import pytest
 
 from robosc.checks import check
 from robosc.language import read
-from robosc.ros_types import Interfaces
+from robosc.ros_types import RosTypes
 from tests.ros.installations import find_ros1, find_ros2
 
 HERE = Path(__file__).parent
@@ -45,7 +45,7 @@ def test_packages_build(version: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize("model", EXAMPLES, ids=lambda each: each.stem)
 def test_examples_fit(model: Path) -> None:
     reading = read(model)
-    assert [*reading.findings, *check(reading.base, reading.findings, Interfaces([PACKAGES]))] == []
+    assert [*reading.findings, *check(reading.base, reading.findings, RosTypes([PACKAGES]))] == []
 
 
 @pytest.mark.skipif(not LISTINGS.is_dir(), reason="the printed listings are not beside the repository")
@@ -66,5 +66,5 @@ def test_examples_fit(model: Path) -> None:
 )
 def test_what_the_printed_listings_say_of_ros_types(name: str, expected: list[tuple[str, int]]) -> None:
     reading = read(LISTINGS / f"{name}.rscd")
-    found = check(reading.base, reading.findings, Interfaces([PACKAGES]))
+    found = check(reading.base, reading.findings, RosTypes([PACKAGES]))
     assert [(each.rule, each.span.line) for each in found if each.rule.startswith("interface-")] == expected

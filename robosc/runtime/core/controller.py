@@ -12,11 +12,11 @@ from robosc.engine import ControlLoop, Hooks
 from robosc.engine import Settings as LoopSettings
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
+from robosc.ros_types import Section
 from robosc.runtime.core.clients import ActionClient, Answers, ServiceClient
 from robosc.runtime.core.fields import NotFiniteError, fill
 from robosc.runtime.core.happenings import Happenings
 from robosc.runtime.core.node_data import NodeData, bounded
-from robosc.runtime.core.port import Part
 from robosc.runtime.core.reports import EventLog, nested
 from robosc.runtime.core.settings import SafeMessages, watchdog
 from robosc.runtime.core.state import StateReporter
@@ -47,7 +47,7 @@ class _Sender:
 
     sending: rosgraph.Sending
     interface: rosgraph.Interface
-    part: Part
+    section: Section
     frame: str
     send: Callable[[Message], None]
     client: ActionClient | None = None
@@ -111,19 +111,19 @@ class Controller:
     def _connect(self) -> None:
         for publisher in self._graph.publishers:
             for sending in publisher.sendings:
-                self._add_sender(publisher, publisher.topic, sending, Part.MESSAGE, self._publishing(publisher))
+                self._add_sender(publisher, publisher.topic, sending, Section.MESSAGE, self._publishing(publisher))
         for service in self._graph.serviceClients:
             answers = Answers(self._response(service), self._error(service))
             timeout = self._settings.seconds("service_timeout_ms")
             caller = ServiceClient(self._port, self._agenda, service, timeout, answers)
             self._add_client(service, caller)
-            self._add_sender(service, service.identifier, service.request, Part.REQUEST, caller.call)
+            self._add_sender(service, service.identifier, service.request, Section.REQUEST, caller.call)
         for action in self._graph.actionClients:
             answers = Answers(self._response(action), self._error(action), self._feedback(action), self._wake)
             timeout = self._settings.seconds("action_timeout_ms")
             starter = ActionClient(self._port, self._agenda, action, timeout, answers)
             self._add_client(action, starter)
-            self._add_sender(action, action.identifier, action.request, Part.GOAL, starter.start)
+            self._add_sender(action, action.identifier, action.request, Section.GOAL, starter.start)
             self._senders[action.request.event].client = starter
             self._cancels[action.cancel] = starter
 
@@ -135,11 +135,11 @@ class Controller:
         owner: rosgraph.Publisher | _Client,
         name: str,
         sending: rosgraph.Sending,
-        part: Part,
+        section: Section,
         send: Callable[[Message], None],
     ) -> None:
         frame = self._settings.configuration.frame_id.get(name.removeprefix("/"), "")
-        self._senders[sending.event] = _Sender(sending, owner.interface, part, frame, send)
+        self._senders[sending.event] = _Sender(sending, owner.interface, section, frame, send)
 
     def _publishing(self, publisher: rosgraph.Publisher) -> Callable[[Message], None]:
         return lambda message: self._port.publish(publisher, message)
@@ -331,7 +331,7 @@ class Controller:
 
     def _prepare(self, sender: _Sender) -> bool:
         """Makes the data of a trigger; False where it can't be sent."""
-        message = self._port.create(sender.interface, sender.part)
+        message = self._port.create(sender.interface, sender.section)
         for part in parts_with_headers(sender.sending):
             self._port.stamp(reduce(getattr, part, message), sender.frame)
         fields: dict[tuple[str, ...], Json] = {}

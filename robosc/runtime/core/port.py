@@ -10,17 +10,10 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from robosc.metamodel import rosgraph
+    from robosc.ros_types import Section
 
 #: Data of ROS: an object with fields as attributes; arrays can be indexed and have a length.
 Message: TypeAlias = Any
-
-
-class Part(StrEnum):
-    """What of a ROS type goes out."""
-
-    MESSAGE = "message"
-    REQUEST = "request"
-    GOAL = "goal"
 
 
 class Outcome(StrEnum):
@@ -109,7 +102,7 @@ class Calling(Protocol):
 class Port(Reporting, Calling, Protocol):
     """A node of some ROS. Elements of the graph name what is meant; their names are resolved as the node's are."""
 
-    def create(self, interface: rosgraph.Interface, part: Part) -> Message:
+    def create(self, interface: rosgraph.Interface, section: Section) -> Message:
         """Data with every field at its ROS default; a ROS 1 quaternion is one of length 1."""
 
     def stamp(self, message: Message, frame: str) -> None:

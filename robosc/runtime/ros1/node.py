@@ -11,8 +11,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from robosc.metamodel import rosgraph
+from robosc.ros_types import Section
 from robosc.runtime.core.agenda import Agenda
-from robosc.runtime.core.port import CallHandlers, Endpoint, GoalHandlers, Part
+from robosc.runtime.core.port import CallHandlers, Endpoint, GoalHandlers
 from robosc.runtime.core.settings import check
 from robosc.runtime.core.starting import StartError, ending_signals, interface_class
 
@@ -206,11 +207,11 @@ class Ros1Port(Ros1Node):
 
     # What the core asks
 
-    def create(self, interface: rosgraph.Interface, part: Part) -> Message:
+    def create(self, interface: rosgraph.Interface, section: Section) -> Message:
         kind = self._types[interface]
-        if part is Part.GOAL:
+        if section is Section.GOAL:
             made = kind["Goal"]()
-        elif part is Part.REQUEST:
+        elif section is Section.REQUEST:
             made = kind._request_class()  # noqa: SLF001  # there is no other way to it
         else:
             made = kind()

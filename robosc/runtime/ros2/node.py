@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any
 from uuid import uuid4
 
 from robosc.metamodel import rosgraph
+from robosc.ros_types import Section
 from robosc.runtime.core.agenda import Agenda
-from robosc.runtime.core.port import CallHandlers, Endpoint, GoalHandlers, Outcome, Part
+from robosc.runtime.core.port import CallHandlers, Endpoint, GoalHandlers, Outcome
 from robosc.runtime.core.settings import check
 from robosc.runtime.core.starting import StartError, ending_signals, interface_class
 
@@ -272,9 +273,10 @@ class Ros2Port(Ros2Node):
 
     # What the core asks
 
-    def create(self, interface: rosgraph.Interface, part: Part) -> Message:
+    def create(self, interface: rosgraph.Interface, section: Section) -> Message:
         kind = self._types[interface]
-        return {Part.MESSAGE: lambda: kind, Part.REQUEST: lambda: kind.Request, Part.GOAL: lambda: kind.Goal}[part]()()
+        made = {Section.REQUEST: "Request", Section.GOAL: "Goal"}.get(section)
+        return (getattr(kind, made) if made else kind)()
 
     def stamp(self, message: Message, frame: str) -> None:
         header: Any = getattr(message, "header", None)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from robosc.ros_types import DefinitionError, Interfaces, Part
+from robosc.ros_types import DefinitionError, RosTypes, Section
 
 HERE = Path(__file__).parent
 MINIMAL = HERE.parent / "ros" / "interfaces"
@@ -28,18 +28,20 @@ def write(folder: Path, **texts: str) -> Path:
     return folder
 
 
-def shown(interfaces: Interfaces, package: str, name: str, part: Part = Part.MESSAGE) -> list[dict[str, str] | None]:
+def shown(
+    interfaces: RosTypes, package: str, name: str, part: Section = Section.MESSAGE
+) -> list[dict[str, str] | None]:
     """The fields in ROS 2 and in ROS 1."""
-    found = [each.fields(package, name, part) for each in interfaces.editions]
+    found = [known.fields(package, name, part) for known in interfaces.distributions]
     return [None if each is None else {key: str(value) for key, value in each.items()} for each in found]
 
 
 def test_standard_types() -> None:
     twist = {"linear": "geometry_msgs/Vector3", "angular": "geometry_msgs/Vector3"}
-    assert shown(Interfaces(), "geometry_msgs", "Twist") == [twist, twist]
-    assert shown(Interfaces(), "std_msgs", "Empty") == [{}, {}]
-    assert shown(Interfaces(), "std_msgs", "Nothing") == [None, None]
-    assert shown(Interfaces(), "sensor_msgs", "Joy")[0] == {
+    assert shown(RosTypes(), "geometry_msgs", "Twist") == [twist, twist]
+    assert shown(RosTypes(), "std_msgs", "Empty") == [{}, {}]
+    assert shown(RosTypes(), "std_msgs", "Nothing") == [None, None]
+    assert shown(RosTypes(), "sensor_msgs", "Joy")[0] == {
         "header": "std_msgs/Header",
         "axes": "float32[]",
         "buttons": "int32[]",
@@ -47,11 +49,11 @@ def test_standard_types() -> None:
 
 
 def test_what_the_two_ros_define_differently() -> None:
-    two, one = shown(Interfaces(), "std_msgs", "Header")
+    two, one = shown(RosTypes(), "std_msgs", "Header")
     assert one is not None
     assert two is not None
     assert one.keys() - two.keys() == {"seq"}
-    two, one = shown(Interfaces(), "builtin_interfaces", "Time")
+    two, one = shown(RosTypes(), "builtin_interfaces", "Time")
     assert (two, one) == ({"sec": "int32", "nanosec": "uint32"}, {"sec": "uint32", "nsec": "uint32"})
 
 
@@ -64,26 +66,26 @@ def test_what_the_two_ros_define_differently() -> None:
     ],
 )
 def test_standard_services(name: str, request_fields: dict[str, str], response_fields: dict[str, str]) -> None:
-    assert shown(Interfaces(), "std_srvs", name, Part.REQUEST) == [request_fields] * 2
-    assert shown(Interfaces(), "std_srvs", name, Part.RESPONSE) == [response_fields] * 2
-    assert shown(Interfaces(), "std_srvs", name) == [None, None]
+    assert shown(RosTypes(), "std_srvs", name, Section.REQUEST) == [request_fields] * 2
+    assert shown(RosTypes(), "std_srvs", name, Section.RESPONSE) == [response_fields] * 2
+    assert shown(RosTypes(), "std_srvs", name) == [None, None]
 
 
 def test_definition_of_an_action(tmp_path: Path) -> None:
     text = "# ---\nLevel level  # of what\nint8 UP = 1\r\n--- \n\n---\nfloat32[<=4] done\nstring<=9 text 'a'\ntime t\n"
-    interfaces = Interfaces([write(tmp_path, arm_msgs__action__Lift__action=text)])
-    assert shown(interfaces, "arm_msgs", "Lift", Part.GOAL)[0] == {"level": "arm_msgs/Level"}
-    assert shown(interfaces, "arm_msgs", "Lift", Part.RESULT)[0] == {}
-    assert shown(interfaces, "arm_msgs", "Lift", Part.FEEDBACK)[0] == {
+    interfaces = RosTypes([write(tmp_path, arm_msgs__action__Lift__action=text)])
+    assert shown(interfaces, "arm_msgs", "Lift", Section.GOAL)[0] == {"level": "arm_msgs/Level"}
+    assert shown(interfaces, "arm_msgs", "Lift", Section.RESULT)[0] == {}
+    assert shown(interfaces, "arm_msgs", "Lift", Section.FEEDBACK)[0] == {
         "done": "float32[]",
         "text": "string",
         "t": "builtin_interfaces/Time",
     }
-    assert shown(interfaces, "arm_msgs", "Lift", Part.REQUEST) == [None, None]
+    assert shown(interfaces, "arm_msgs", "Lift", Section.REQUEST) == [None, None]
 
 
 def test_a_message_may_have_a_rule_in_its_comments(tmp_path: Path) -> None:
-    interfaces = Interfaces([write(tmp_path, a__msg__A__msg="#---\nint8 x\n#---\n")])
+    interfaces = RosTypes([write(tmp_path, a__msg__A__msg="#---\nint8 x\n#---\n")])
     assert shown(interfaces, "a", "A")[0] == {"x": "int8"}
 
 
@@ -97,23 +99,23 @@ def test_a_message_may_have_a_rule_in_its_comments(tmp_path: Path) -> None:
     ],
 )
 def test_damaged_definition(tmp_path: Path, path: str, text: str, message: str) -> None:
-    part = {"msg": Part.MESSAGE, "srv": Part.REQUEST, "action": Part.GOAL}[path.rpartition("__")[2]]
-    for edition in Interfaces([write(tmp_path, **{path: text})]).editions:
+    part = {"msg": Section.MESSAGE, "srv": Section.REQUEST, "action": Section.GOAL}[path.rpartition("__")[2]]
+    for distribution in RosTypes([write(tmp_path, **{path: text})]).distributions:
         with pytest.raises(DefinitionError, match=message):
-            edition.fields("a", "A", part)
-    assert Interfaces([tmp_path]).field_of_basic("a", "A", part) == "data"
+            distribution.fields("a", "A", part)
+    assert RosTypes([tmp_path]).field_of_basic("a", "A", part) == "data"
 
 
 @pytest.mark.parametrize("below", ["", "src", "src/a_msgs"])
 def test_a_folder_may_be_a_workspace_or_a_package(tmp_path: Path, below: str) -> None:
     write(tmp_path, src__a_msgs__msg__A__msg="int8 x\n")
-    assert shown(Interfaces([tmp_path / below]), "a_msgs", "A")[0] == {"x": "int8"}
+    assert shown(RosTypes([tmp_path / below]), "a_msgs", "A")[0] == {"x": "int8"}
 
 
 def test_a_package_has_the_name_in_its_manifest(tmp_path: Path) -> None:
     write(tmp_path, repository__package__xml="<package><name> a_msgs </name></package>")
     write(tmp_path, repository__msg__A__msg="int8 x\n", repository__test__b_msgs__msg__B__msg="int8 y\n")
-    interfaces = Interfaces([tmp_path])
+    interfaces = RosTypes([tmp_path])
     assert shown(interfaces, "a_msgs", "A")[0] == {"x": "int8"}
     assert shown(interfaces, "repository", "A")[0] is None
     assert shown(interfaces, "b_msgs", "B")[0] is None
@@ -130,14 +132,14 @@ def test_a_package_has_the_name_in_its_manifest(tmp_path: Path) -> None:
 )
 def test_a_package_is_for_the_ros_that_it_is_built_for(tmp_path: Path, manifest: str, expected: list[object]) -> None:
     write(tmp_path, a__package__xml=f"<package><name>a</name>{manifest}</package>", a__msg__A__msg="int8 x\n")
-    assert shown(Interfaces([tmp_path]), "a", "A") == expected
+    assert shown(RosTypes([tmp_path]), "a", "A") == expected
 
 
 @pytest.mark.parametrize("marker", ["AMENT_IGNORE", "CATKIN_IGNORE", "COLCON_IGNORE"])
 def test_ignored_folders(tmp_path: Path, marker: str) -> None:
     write(tmp_path, old__a__msg__A__msg="int8 x\n")
     (tmp_path / "old" / marker).touch()
-    assert shown(Interfaces([tmp_path]), "a", "A") == [None, None]
+    assert shown(RosTypes([tmp_path]), "a", "A") == [None, None]
 
 
 def test_the_first_folder_counts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -145,9 +147,9 @@ def test_the_first_folder_counts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
         write(tmp_path / name, a__msg__A__msg=f"int8 {name}\n")
     write(tmp_path / "third", a__msg__B__msg="int8 b\n", std_msgs__msg__Bool__msg="int8 own\n")
     monkeypatch.setenv("ROBOSC_INTERFACE_PATH", f"{tmp_path / 'second'}:{tmp_path / 'third'}")
-    interfaces = Interfaces([tmp_path / "first"])
+    interfaces = RosTypes([tmp_path / "first"])
     assert shown(interfaces, "a", "A") == [{"first": "int8"}] * 2
-    assert shown(Interfaces(), "a", "A") == [{"second": "int8"}] * 2
+    assert shown(RosTypes(), "a", "A") == [{"second": "int8"}] * 2
     assert shown(interfaces, "a", "B") == [{"b": "int8"}] * 2
     assert shown(interfaces, "std_msgs", "Bool") == [{"own": "int8"}] * 2
 
@@ -157,23 +159,23 @@ def test_installations(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     write(tmp_path / "one" / "stacks", a__msg__A__msg="int8 one\n")
     monkeypatch.setenv("AMENT_PREFIX_PATH", f"{tmp_path / 'nothing'}:{tmp_path / 'two'}")
     monkeypatch.setenv("ROS_PACKAGE_PATH", str(tmp_path / "one"))
-    assert shown(Interfaces(), "a", "A") == [{"two": "int8"}, {"one": "int8"}]
+    assert shown(RosTypes(), "a", "A") == [{"two": "int8"}, {"one": "int8"}]
 
 
 @pytest.mark.parametrize(("package", "name"), [("..", "A"), ("a/../a", "A"), ("a", "../msg/A"), ("/a", "A"), ("", "A")])
 def test_names_are_no_paths(tmp_path: Path, package: str, name: str) -> None:
     folder = write(tmp_path, a__msg__A__msg="int8 x\n") / "a"
-    assert shown(Interfaces([folder]), package, name) == [None, None]
+    assert shown(RosTypes([folder]), package, name) == [None, None]
 
 
 def test_names_of_types(tmp_path: Path) -> None:
     write(tmp_path, a__msg__B__msg="", a__msg__A__msg="", a__srv__C__srv="---\n", std_srvs__srv__Own__srv="---\n")
-    for edition in Interfaces([tmp_path]).editions:
-        assert edition.names("a", "message") == ["A", "B"]
-        assert edition.names("a", "service") == ["C"]
-        assert edition.names("a", "action") == []
-        assert {*edition.names("std_srvs", "service")} >= {"Empty", "Own", "SetBool", "Trigger"}
-        assert "Twist" in edition.names("geometry_msgs", "message")
+    for distribution in RosTypes([tmp_path]).distributions:
+        assert distribution.names("a", "message") == ["A", "B"]
+        assert distribution.names("a", "service") == ["C"]
+        assert distribution.names("a", "action") == []
+        assert {*distribution.names("std_srvs", "service")} >= {"Empty", "Own", "SetBool", "Trigger"}
+        assert "Twist" in distribution.names("geometry_msgs", "message")
 
 
 def test_field_of_a_basic_value(tmp_path: Path) -> None:
@@ -181,27 +183,27 @@ def test_field_of_a_basic_value(tmp_path: Path) -> None:
     write(tmp_path, a__srv__Set__srv="bool on\n---\n---\n")
     write(tmp_path / "old", b__package__xml="<name>b</name>catkin", b__msg__Old__msg="int8 old\n")
     write(tmp_path / "new", b__package__xml="<name>b</name>ament_cmake", b__msg__Old__msg="int8 new\nint8 more\n")
-    interfaces = Interfaces([tmp_path])
-    assert interfaces.field_of_basic("a", "Level", Part.MESSAGE) == "level"
-    assert interfaces.field_of_basic("a", "Two", Part.MESSAGE) == "data"
-    assert interfaces.field_of_basic("std_srvs", "SetBool", Part.REQUEST) == "data"
-    assert interfaces.field_of_basic("nowhere", "A", Part.MESSAGE) == "data"
-    assert interfaces.field_of_basic("a", "Set", Part.REQUEST) == "data"  # can't be read
-    assert interfaces.field_of_basic("b", "Old", Part.MESSAGE) == "old"
+    interfaces = RosTypes([tmp_path])
+    assert interfaces.field_of_basic("a", "Level", Section.MESSAGE) == "level"
+    assert interfaces.field_of_basic("a", "Two", Section.MESSAGE) == "data"
+    assert interfaces.field_of_basic("std_srvs", "SetBool", Section.REQUEST) == "data"
+    assert interfaces.field_of_basic("nowhere", "A", Section.MESSAGE) == "data"
+    assert interfaces.field_of_basic("a", "Set", Section.REQUEST) == "data"  # can't be read
+    assert interfaces.field_of_basic("b", "Old", Section.MESSAGE) == "old"
 
 
-@pytest.mark.parametrize(("ros", "edition"), [("ros1", 1), ("ros2", 0)])
-def test_minimal_packages_define_the_same_for_both_ros(ros: str, edition: int) -> None:
+@pytest.mark.parametrize(("ros", "distribution"), [("ros1", 1), ("ros2", 0)])
+def test_minimal_packages_define_the_same_for_both_ros(ros: str, distribution: int) -> None:
     definitions = sorted(path for path in (MINIMAL / ros).rglob("*.*") if path.suffix in {".msg", ".srv", ".action"})
     assert len(definitions) == 10
-    interfaces = Interfaces([MINIMAL])
-    kinds = {part: folder for part in Part for folder in ("msg", "srv", "action") if part.kind.startswith(folder[0])}
+    interfaces = RosTypes([MINIMAL])
+    kinds = {part: folder for part in Section for folder in ("msg", "srv", "action") if part.kind.startswith(folder[0])}
     for path in definitions:
         package = path.parents[1].name
         for part in (part for part, folder in kinds.items() if folder == path.parent.name):
-            fields = interfaces.editions[edition].fields(package, path.stem, part)
+            fields = interfaces.distributions[distribution].fields(package, path.stem, part)
             assert fields is not None
-            assert interfaces.editions[1 - edition].fields(package, path.stem, part) == fields
+            assert interfaces.distributions[1 - distribution].fields(package, path.stem, part) == fields
 
 
 @pytest.mark.parametrize(("links", "loaded"), [("", False), (" links number", True)])
