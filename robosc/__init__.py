@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from os import PathLike
 
-    from robosc.analysis.supervision import EmptySupervisorError
+    from robosc.analysis.supervise import EmptySupervisorError
     from robosc.configuration import Configuration
     from robosc.diagnostics import Diagnostic, ModelError
     from robosc.m2m.trace import Trace
@@ -49,7 +49,7 @@ __all__ = [
 _LOADED_WHEN_ASKED = {
     "Configuration": "robosc.configuration",
     "Diagnostic": "robosc.diagnostics",
-    "EmptySupervisorError": "robosc.analysis.supervision",
+    "EmptySupervisorError": "robosc.analysis.supervise",
     "ModelError": "robosc.diagnostics",
     "Models": "robosc.m2t.models",
 }
@@ -145,9 +145,9 @@ def synthesize(model: SupervisoryControlModel) -> Supervisor:
 
     Raises EmptySupervisorError, a ModelError that says why, where there is none; ModelError where an action would
     cancel itself; MemoryError where the decision diagrams would take more than 4 GB. What is merely doubtful about the
-    supervisor, `robosc.analysis.supervision.supervise` tells.
+    supervisor, `robosc.analysis.supervise.supervise` tells.
     """
-    from robosc.analysis.supervision import supervise
+    from robosc.analysis.supervise import supervise
     from robosc.diagnostics import ModelError, has_errors
 
     supervision = supervise(model)

@@ -158,7 +158,7 @@ OPENERS = {
     "runtime.ros2.interfaces",  # a tool of its own, whose files are made for the generators
     "runtime.core.reports",  # what `output` has opened
     "node_tests.trace_player",  # ships with generated packages, and sees nothing of ours
-    "analysis.verification.translation.c_validation",  # a temporary folder
+    "analysis.verify.c_validation",  # a temporary folder
 }
 
 

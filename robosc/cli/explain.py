@@ -7,14 +7,18 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from robosc.analysis.explanation import as_json
-from robosc.analysis.explanation.as_text import Teller
-from robosc.analysis.explanation.emptiness import emptiness
-from robosc.analysis.explanation.explaining import explain
-from robosc.analysis.explanation.names import NamingError, event_named, state_given
-from robosc.analysis.explanation.possibility import possibility
-from robosc.analysis.explanation.space import explored
-from robosc.analysis.supervision import supervise
+from robosc.analysis.explain import (
+    NamingError,
+    Renderer,
+    data_of,
+    emptiness,
+    event_named,
+    explain,
+    explored,
+    possibility,
+    state_given,
+)
+from robosc.analysis.supervise import supervise
 from robosc.cli import CallError
 from robosc.cli.options import interface_path, library_path, model
 from robosc.cli.progress import progress
@@ -27,8 +31,8 @@ from robosc.metamodel.places import place
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from robosc.analysis.explanation.answers import Explanation, Possibility
-    from robosc.analysis.explanation.space import Space
+    from robosc.analysis.explain import Explanation, Possibility
+    from robosc.analysis.system import SynthesizedSystem
     from robosc.metamodel import sct
 
 
@@ -83,25 +87,25 @@ def command(
         if told is None and not why_empty:
             supervise(plants)  # raises, and says why there is no supervisor
         elif as_data:
-            put(json.dumps(as_json.answer(told, _position), indent=2))
+            put(json.dumps(data_of(told, _position), indent=2))
         else:
-            say(Teller(plants, lambda each: visible("{file}:{line}:{column}".format(**_position(each)))).answer(told))
+            say(Renderer(plants, lambda each: visible("{file}:{line}:{column}".format(**_position(each)))).answer(told))
 
 
 def _question(
     model: sct.SupervisoryControlModel, event: str | None, state: str | None, why_never: str | None
-) -> Callable[[Space], Explanation | Possibility | None]:
-    """What is asked of a space; the answer is None where the supervisor is empty."""
+) -> Callable[[SynthesizedSystem], Explanation | Possibility | None]:
+    """What is asked of the system; the answer is None where the supervisor is empty."""
     try:
         asked = event_named(model, event or why_never or "")
         codes = {} if state is None else state_given(model, state)
     except NamingError as error:
         raise CallError(str(error)) from error
 
-    def answer(space: Space) -> Explanation | Possibility | None:
-        if not space.controlled.satisfiable():
+    def answer(system: SynthesizedSystem) -> Explanation | Possibility | None:
+        if not system.controlled.satisfiable():
             return None
-        return possibility(space, asked) if event is None else explain(space, asked, codes)
+        return possibility(system, asked) if event is None else explain(system, asked, codes)
 
     return answer
 

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from robosc.analysis.supervision import supervise
-from robosc.analysis.supervision.wording import with_words
+from robosc.analysis.supervise import supervise
+from robosc.analysis.wording import with_words
 from robosc.cli.options import FILE, interface_path, library_path, model
 from robosc.cli.progress import synthesizing
 from robosc.cli.reading import read_configuration, read_models

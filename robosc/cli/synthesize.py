@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from robosc.analysis.supervision import EmptySupervisorError, supervise
-from robosc.analysis.supervision.wording import change
+from robosc.analysis.supervise import EmptySupervisorError, supervise
+from robosc.analysis.wording import change
 from robosc.cli.options import interface_path, library_path, memory, model
 from robosc.cli.progress import synthesizing
 from robosc.cli.reading import read_models

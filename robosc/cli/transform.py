@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from robosc.analysis.supervision import supervise
+from robosc.analysis.supervise import supervise
 from robosc.cli import CallError, interruption
 from robosc.cli.options import FILE, findings_format, interface_path, library_path, memory, model
 from robosc.cli.progress import progress, synthesizing

@@ -9,8 +9,9 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from robosc.analysis.supervision import supervise
-from robosc.analysis.verification import Outcome, as_json, as_junit, as_text, verify
+from robosc.analysis.supervise import supervise
+from robosc.analysis.verify import Outcome, verify
+from robosc.analysis.verify.verdict import TRUSTED, as_json, as_junit, details, summary
 from robosc.cli import ERRORS_FOUND, interruption
 from robosc.cli.options import FILE, interface_path, library_path, model
 from robosc.cli.progress import progress
@@ -23,7 +24,7 @@ from robosc.files.writing import refuse, write_file
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from robosc.analysis.verification import Verdict
+    from robosc.analysis.verify import Verdict
     from robosc.metamodel import sct
 
 _STYLES = {
@@ -79,9 +80,9 @@ def command(
             verdicts = verify(models, configuration)
     if junit:
         interruption.check()
-        write_file(junit, as_junit.render(models.sct, verdicts, model))
+        write_file(junit, as_junit(models.sct, verdicts, model))
     if as_object:
-        put(as_json.render(models.sct.name, verdicts), nl=False)
+        put(as_json(models.sct.name, verdicts), nl=False)
     else:
         _show(models.sct, verdicts)
     if any(each.outcome is Outcome.REFUTED for each in verdicts):
@@ -101,7 +102,7 @@ def _show(model: sct.SupervisoryControlModel, verdicts: Sequence[Verdict]) -> No
         table.add_row(Text(each.property), verdict, Text(visible(each.evidence)), f"{each.seconds:.3f}")
     console.print(table)
     for each in verdicts:
-        said = as_text.details(each, model)
+        said = details(each, model)
         if said:
             say(f"\n{said}")
-    say(f"\n{as_text.TRUSTED}\n\n{model.name}: {as_text.summary(verdicts)}")
+    say(f"\n{TRUSTED}\n\n{model.name}: {summary(verdicts)}")

@@ -1,15 +1,22 @@
 """From plants and requirements to the supervisor, over decision diagrams.
 
-synthesis = synthesize(model)
-if synthesis.supervisor is None:
-    print(synthesis.reason.message)
-else:
-    model.supervisor = synthesis.supervisor
+    synthesis = synthesize(model)
+    if synthesis.supervisor is not None:
+        model.supervisor = synthesis.supervisor
+
+`solve` lets its caller look at the decision diagrams, too; `encoded` makes those of a model without synthesis. Why a
+supervisor is empty and what is doubtful about one is found by `robosc.analysis`. The modules, from the ground up: `bdd`
+wraps the library of decision diagrams; `order` puts variables in order; `arithmetic` computes with vectors of diagrams;
+`encoding` maps elements and expressions to diagrams, and `decoding` and `cover` back; `relation` is what an event does;
+`fixpoint` closes sets of states, in small steps or by `acceleration`; `guards` says in expressions what the fixpoint
+found, as seen from few elements by `projection`, and `simplification` makes requirements shorter; `run_to_completion`
+bounds internal events.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, TypeVar
 
 from robosc.diagnostics import Diagnostic, ModelError, Severity
 from robosc.metamodel import sct
@@ -18,37 +25,39 @@ from robosc.semantics.recursion import deep_recursion
 from robosc.semantics.roles import event_name
 from robosc.synthesis.bdd import Diagrams, with_enough_memory
 from robosc.synthesis.encoding import Encoding, Layout
-from robosc.synthesis.explanation import EmptySupervisor, Reason
-from robosc.synthesis.fixpoint import reachable, supervise
-from robosc.synthesis.guards import permission
-from robosc.synthesis.observations import Observations, Observer
-from robosc.synthesis.paths import TraceStep
+from robosc.synthesis.fixpoint import SupervisedStates, reachable, supervise
+from robosc.synthesis.guards import Permission, permission
 from robosc.synthesis.projection import Projection
-from robosc.synthesis.relation import event_relations
-from robosc.synthesis.settling import settling, silent_events
+from robosc.synthesis.relation import EventRelation, event_relations, plant_moves, required_moves, steps
+from robosc.synthesis.run_to_completion import completion, internal_events
 from robosc.synthesis.statistics import Phase, Statistics
 
-__all__ = ["Observations", "Phase", "Reason", "Statistics", "Synthesis", "TraceStep", "synthesize"]
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from robosc.synthesis.bdd import Diagram
+
+    T = TypeVar("T")
+
+__all__ = ["MEMORY", "Phase", "Solution", "Statistics", "Synthesis", "encoded", "solve", "synthesize"]
 
 #: How many bytes decision diagrams may take where nothing else is said.
 MEMORY = 4 << 30
-#: What may be spent on the bound on silent events, in nodes looked at: some tenths of a second.
-SETTLING_EFFORT = 2_000_000
+#: What may be spent on the bound on internal events, in nodes looked at: some tenths of a second.
+COMPLETION_EFFORT = 2_000_000
 
 
 @dataclass(frozen=True)
 class Synthesis:
     """The result of synthesis. All but the seconds is the same on every run.
 
-    Either `supervisor` and `observations` are there and `reason` is None, or the supervisor is empty, and `reason` says
-    why. A state is an assignment of locations and variables: `uncontrolled_states` counts those that the plants reach
-    without requirements, `controlled_states` those under the supervisor. `bdd_nodes` are the nodes of the diagrams of
-    the controlled states and of what says of each controllable event where it is allowed; `statistics`, what it cost.
+    `supervisor` is None where it is empty. A state is an assignment of locations and variables: `uncontrolled_states`
+    counts those that the plants reach without requirements, `controlled_states` those under the supervisor.
+    `bdd_nodes` are the nodes of the diagrams of the controlled states and of what says of each controllable event where
+    it is allowed; `statistics`, what it cost.
     """
 
     supervisor: sct.Supervisor | None
-    observations: Observations | None
-    reason: Reason | None
     uncontrolled_states: int
     controlled_states: int
     bdd_nodes: int
@@ -62,7 +71,23 @@ class Synthesis:
         return sum(self.statistics.seconds.values())
 
 
-@deep_recursion()
+@dataclass(frozen=True)
+class Solution:
+    """The result of synthesis with the decision diagrams that it was found with.
+
+    `relations` are those of all events, in the order of the plants, `permissions` those of the controllable ones: none
+    where the supervisor is empty. `states` is what the fixpoint found, `uncontrolled` what the plants reach without
+    requirements.
+    """
+
+    synthesis: Synthesis
+    encoding: Encoding
+    relations: Sequence[EventRelation]
+    permissions: Sequence[Permission]
+    states: SupervisedStates
+    uncontrolled: Diagram
+
+
 def synthesize(
     model: sct.SupervisoryControlModel, *, memory: int = MEMORY, statistics: Statistics | None = None
 ) -> Synthesis:
@@ -74,11 +99,36 @@ def synthesize(
     are handed in tell another thread how far it is. Raises ModelError,
     located, for what no synthesis can be made of: doubles, strings, and data that comes with a controllable event.
     """
+    return solve(model, lambda solution: solution.synthesis, memory=memory, statistics=statistics)
+
+
+@deep_recursion()
+def solve(
+    model: sct.SupervisoryControlModel,
+    look: Callable[[Solution], T],
+    *,
+    memory: int = MEMORY,
+    statistics: Statistics | None = None,
+) -> T:
+    """What `look` makes of the synthesis of a model; all else is as `synthesize` says.
+
+    `look` may run several times, with room for more nodes each time.
+    """
     _refuse_data_of_controllable_events(model)
     statistics = statistics or Statistics()
     with statistics.during(Phase.ORDER):
         layout = Layout(model)
-    return with_enough_memory(lambda capacity: _synthesize(model, layout, capacity, statistics), memory)
+    return with_enough_memory(lambda capacity: look(_solved(model, layout, capacity, statistics)), memory)
+
+
+@deep_recursion()
+def encoded(model: sct.SupervisoryControlModel, look: Callable[[Encoding], T], memory: int = MEMORY) -> T:
+    """What `look` makes of the decision diagrams of a model; it may run several times, with more room each time.
+
+    Raises MemoryError where the decision diagrams would take more than `memory` bytes.
+    """
+    layout = Layout(model)
+    return with_enough_memory(lambda capacity: look(Encoding(layout, Diagrams(layout.levels, capacity))), memory)
 
 
 def _refuse_data_of_controllable_events(model: sct.SupervisoryControlModel) -> None:
@@ -94,61 +144,49 @@ def _refuse_data_of_controllable_events(model: sct.SupervisoryControlModel) -> N
         )
 
 
-def _synthesize(model: sct.SupervisoryControlModel, layout: Layout, capacity: int, statistics: Statistics) -> Synthesis:
-    """The result, with room for so many nodes."""
+def _solved(model: sct.SupervisoryControlModel, layout: Layout, capacity: int, statistics: Statistics) -> Solution:
+    """The solution, with room for so many nodes."""
     statistics.begin_again()
     with statistics.during(Phase.ENCODE):
         diagrams = Diagrams(layout.levels, capacity, statistics)
         encoding = Encoding(layout, diagrams)
         relations = event_relations(model, encoding)
-        plant_moves = [(each, each.plant_step) for each in relations if each.plant_step is not None]
-        moves = [(each, each.step) for each in relations if each.step is not None]
+        plants, moves = steps(plant_moves(relations)), required_moves(relations)
     with statistics.during(Phase.FIXPOINT):
-        uncontrolled = reachable(diagrams, [step for _, step in plant_moves], encoding.initial, diagrams.true)
-        found = supervise(
-            encoding,
-            [step for _, step in moves],
-            [step for relation, step in moves if not relation.event.controllable],
-        )
+        uncontrolled = reachable(diagrams, plants, encoding.initial, diagrams.true)
+        found = supervise(encoding, moves)
+    all_states, nodes = encoding.count(uncontrolled), found.controlled.node_count()
     if not found.controlled.satisfiable():
-        with statistics.during(Phase.GUARDS):
-            reason = EmptySupervisor(encoding, moves, plant_moves, found).reason()
-        nodes = found.controlled.node_count()
-        return Synthesis(None, None, reason, encoding.count(uncontrolled), 0, nodes, statistics)
+        empty = Synthesis(None, all_states, 0, nodes, statistics)
+        return Solution(empty, encoding, relations, (), found, uncontrolled)
     with statistics.during(Phase.GUARDS):
         controlled = Projection(found.controlled, encoding)
         permissions = [
-            permission(each, controlled, encoding, restricts=len(found.rounds) > 1)
-            for each in relations
-            if each.event.controllable
+            permission(relation, controlled, encoding, restricts=len(found.rounds) > 1)
+            for relation in relations
+            if relation.event.controllable
         ]
-        permitted = {each.relation.event: each.where for each in permissions}
         supervisor = sct.Supervisor(
-            uncontrolledStates=encoding.count(uncontrolled),
+            uncontrolledStates=all_states,
             controlledStates=encoding.count(found.controlled),
-            bddNodes=found.controlled.node_count() + sum(each.where.node_count() for each in permissions),
-            guards=[each.guard for each in permissions],
+            bddNodes=nodes + sum(permission.where.node_count() for permission in permissions),
+            guards=[permission.guard for permission in permissions],
         )
         # Within the controlled states a step leads where its guard lets it, and nowhere else.
-        supervised = [(each, each.enabled & each.requirement, each.step) for each in relations]
-        silent = silent_events(supervised, supervisor.guards)
-        supervisor.settlingBound = settling(diagrams, silent, found.controlled, SETTLING_EFFORT).bound
-    with statistics.during(Phase.OBSERVE):
-        observations = Observer(model, encoding, moves, found, permissions).observations(uncontrolled)
+        supervised = [(relation, relation.enabled & relation.requirement, relation.step) for relation in relations]
+        internal = internal_events(supervised, supervisor.guards)
+        supervisor.settlingBound = completion(diagrams, internal, found.controlled, COMPLETION_EFFORT).bound
+        permitted = {permission.relation.event: permission.where for permission in permissions}
         possible = [
-            each.event
-            for each in relations
+            relation.event
+            for relation in relations
             if (
-                permitted[each.event] if each.event in permitted else controlled.onto(each.concerned) & each.enabled
+                permitted[relation.event]
+                if relation.event in permitted
+                else controlled.onto(relation.concerned) & relation.enabled
             ).satisfiable()
         ]
-    return Synthesis(
-        supervisor,
-        observations,
-        None,
-        supervisor.uncontrolledStates,
-        supervisor.controlledStates,
-        supervisor.bddNodes,
-        statistics,
-        tuple(possible),
+    synthesis = Synthesis(
+        supervisor, all_states, supervisor.controlledStates, supervisor.bddNodes, statistics, tuple(possible)
     )
+    return Solution(synthesis, encoding, relations, permissions, found, uncontrolled)

@@ -55,7 +55,7 @@ def multiply(left: Vector, right: Vector) -> Vector:
     false = _false(left)
     result: Vector = (false,)
     for place, bit in enumerate(right):
-        shifted = (*(false for _ in range(place)), *(bit & each for each in left))
+        shifted = (*(false for _ in range(place)), *(bit & other for other in left))
         result = add(result, shifted) if place < len(right) - 1 else subtract(result, shifted)
     return result
 

@@ -37,9 +37,9 @@ def separating_expression(
         _Cover(encoding, inside, outside, domains), _Cover(encoding, outside, inside, domains)
     )
     if positive is not None and (negative is None or _length(positive) <= _length(negative)):
-        result = disjunction(_product(each) for each in positive)
+        result = disjunction(_product(product) for product in positive)
     else:
-        result = conjunction(_denied(each) for each in negative or ())
+        result = conjunction(_denied(product) for product in negative or ())
     assert result is not None
     return result
 
@@ -51,7 +51,7 @@ class _Cover:
         self._encoding = encoding
         self._wanted = wanted
         self._spared = spared
-        self._cube = encoding.diagrams.cube(level for each in domains for level in each.levels)
+        self._cube = encoding.diagrams.cube(level for domain in domains for level in domain.levels)
         self._domains = sorted(domains, key=_telling)
 
     def products(self) -> Iterator[Product]:
@@ -66,7 +66,7 @@ class _Cover:
         """The products without those whose states the others cover too, each no wider than it reads well."""
         kept = list(products)
         for product in products:
-            index = next(index for index, each in enumerate(kept) if each is product)
+            index = next(index for index, other in enumerate(kept) if other is product)
             left = self._wanted
             for other in kept[:index] + kept[index + 1 :]:
                 left &= ~self._states(other)
@@ -77,12 +77,12 @@ class _Cover:
         """The product with values for each element that read best, between those of `states` and those it has."""
         return {
             domain: _readable(domain, self._values_in(states, domain), free)
-            for domain, free in sorted(product.items(), key=lambda each: each[0].rank)
+            for domain, free in sorted(product.items(), key=lambda item: item[0].rank)
         }
 
     def _grown(self, state: Mapping[Element, int]) -> Product:
         """The state's product without the elements that need not be spoken of."""
-        literals = [(each, [(state[each.element],) * 2]) for each in self._domains]
+        literals = [(domain, [(state[domain.element],) * 2]) for domain in self._domains]
         rest = [self._encoding.diagrams.true]
         for domain, ranges in reversed(literals):
             rest.append(rest[-1] & self._values(domain, ranges))
@@ -96,7 +96,7 @@ class _Cover:
     def _widened(self, product: Product) -> Product:
         """The product with all values for each element that the other elements leave free."""
         for domain in list(product):
-            others = {each: ranges for each, ranges in product.items() if each is not domain}
+            others = {other: ranges for other, ranges in product.items() if other is not domain}
             taken = self._values_in(self._states(others) & self._spared, domain)
             product[domain] = complement(taken, domain.size)
         return product
@@ -135,10 +135,12 @@ def _readable(domain: Domain, needed: Ranges, free: Ranges) -> Ranges:
     """Of all codes that hold the needed ones and are free those that are shortest to write; of equals the fewest."""
     candidates = [needed, free]
     for first, last in free:
-        within = [each for each in needed if first <= each[0] and each[1] <= last]
+        within = [span for span in needed if first <= span[0] and span[1] <= last]
         if within == needed:
             candidates += [[(first, needed[-1][1])], [(needed[0][0], last)], [(needed[0][0], needed[-1][1])]]
-    return min(candidates, key=lambda each: (cost(domain, each), sum(last - first for first, last in each)))
+    return min(
+        candidates, key=lambda candidate: (cost(domain, candidate), sum(last - first for first, last in candidate))
+    )
 
 
 def _shorter_covers(positive: _Cover, negative: _Cover) -> tuple[list[Product] | None, list[Product] | None]:

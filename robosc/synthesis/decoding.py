@@ -31,8 +31,8 @@ def pick(diagram: Diagram, domains: Iterable[Domain]) -> dict[Element, int]:
             true.add(diagram.node_level())
         diagram = low if low.satisfiable() else high
     return {
-        each.element: sum(1 << place for place, level in enumerate(reversed(each.levels)) if level in true)
-        for each in domains
+        domain.element: sum(1 << place for place, level in enumerate(reversed(domain.levels)) if level in true)
+        for domain in domains
     }
 
 
@@ -59,7 +59,7 @@ def _collect(diagram: Diagram, levels: Sequence[int], first: int, found: Ranges)
 
 def complement(ranges: Ranges, size: int) -> Ranges:
     """The codes 0 … size-1 that are in none of the ranges."""
-    edges = [-1, *(end for each in ranges for end in each), size]
+    edges = [-1, *(end for span in ranges for end in span), size]
     gaps = zip(edges[::2], edges[1::2], strict=True)
     return [(before + 1, after - 1) for before, after in gaps if before + 1 < after]
 
@@ -76,9 +76,9 @@ def value(element: Element, code: int) -> Value:
     return bool(code)
 
 
-def text(each: Value) -> str:
+def text(chosen: Value) -> str:
     """A value as expressions write it."""
-    return str(each).lower() if isinstance(each, bool) else str(each)
+    return str(chosen).lower() if isinstance(chosen, bool) else str(chosen)
 
 
 def is_one_of(domain: Domain, ranges: Ranges) -> ex.Expression:
@@ -87,8 +87,8 @@ def is_one_of(domain: Domain, ranges: Ranges) -> ex.Expression:
     if _is_integer(domain.element):
         if _size(rest) == 1:
             return _compared(ex.Inequation, domain.element, rest[0][0])
-        return _either(_in_range(domain.element, domain.size, *each) for each in ranges)
-    inside, outside = ([code for first, last in each for code in range(first, last + 1)] for each in (ranges, rest))
+        return _either(_in_range(domain.element, domain.size, *span) for span in ranges)
+    inside, outside = ([code for first, last in chosen for code in range(first, last + 1)] for chosen in (ranges, rest))
     if len(inside) <= len(outside):
         return _either(_is(domain.element, code) for code in inside)
     return _all(_is_not(domain.element, code) for code in outside)

@@ -57,23 +57,25 @@ class Layout:
     """
 
     def __init__(self, model: sct.SupervisoryControlModel) -> None:
-        elements = [each for plant in model.plants for each in _elements(plant)]
+        elements = [element for plant in model.plants for element in _elements(plant)]
         index = {element: vertex for vertex, element in enumerate(elements)}
-        order = variable_order(len(elements), [[index[each] for each in edge] for edge in _couplings(model, index)])
+        order = variable_order(
+            len(elements), [[index[element] for element in edge] for edge in _couplings(model, index)]
+        )
         self.plants = list(model.plants)
         self.domains: dict[Element, Domain] = {}
         self.levels = 0
         together = _groups_of_wide(model)
         self.wide: dict[Element, list[Element]] = {
-            each: [other for other in together.get(each, [each]) if not isinstance(other, sct.Input)]
-            for each in elements
-            if domain_size(each) >= _WIDE and not isinstance(each, sct.Input)
+            element: [other for other in together.get(element, [element]) if not isinstance(other, sct.Input)]
+            for element in elements
+            if domain_size(element) >= _WIDE and not isinstance(element, sct.Input)
         }
         for vertex in order:
             if elements[vertex] not in self.domains:
-                self._add([(each, index[each]) for each in together.get(elements[vertex], [elements[vertex]])])
+                self._add([(element, index[element]) for element in together.get(elements[vertex], [elements[vertex]])])
         #: The domains that make up the state, from the top.
-        self.state = [each for each in self.domains.values() if not isinstance(each.element, sct.Input)]
+        self.state = [domain for domain in self.domains.values() if not isinstance(domain.element, sct.Input)]
 
     def _add(self, elements: Sequence[tuple[Element, int]]) -> None:
         """Domains whose bits take turns, those of the same weight side by side."""
@@ -122,14 +124,14 @@ def smallest(element: Element) -> int:
 
 def referenced(expression: ex.Expression | None) -> Iterator[Element]:
     """The elements whose values the expression reads, once per reference."""
-    for _, each in tree(expression) if expression is not None else ():
-        match each:
+    for _, node in tree(expression) if expression is not None else ():
+        match node:
             case sct.LocationReference():
-                yield each.location.eContainer()
+                yield node.location.eContainer()
             case sct.VariableReference():
-                yield each.variable
+                yield node.variable
             case sct.InputReference():
-                yield each.input
+                yield node.input
 
 
 class Encoding:
@@ -222,7 +224,7 @@ class Encoding:
 
     def count(self, states: Diagram) -> int:
         """How many states there are in a set of them."""
-        return states.sat_count(sum(len(each.levels) for each in self.layout.state))
+        return states.sat_count(sum(len(domain.levels) for domain in self.layout.state))
 
     @cached_property
     def initial(self) -> Diagram:
@@ -234,18 +236,18 @@ class Encoding:
         """The states in which every plant is in a marked location."""
         result = self.diagrams.true
         # From the bottom: each conjunction makes the diagram above it anew.
-        for plant in sorted(self.layout.plants, key=lambda each: self.layout.domains[each].levels, reverse=True):
+        for plant in sorted(self.layout.plants, key=lambda plant: self.layout.domains[plant].levels, reverse=True):
             result &= self.marked(plant)
         return result
 
     @cached_property
     def initial_codes(self) -> dict[Element, int]:
         """The code of every element of the state in the initial state."""
-        return {each.element: self._initial_code(each.element) for each in self.layout.state}
+        return {domain.element: self._initial_code(domain.element) for domain in self.layout.state}
 
     def _initial_code(self, element: Element) -> int:
         if isinstance(element, sct.Plant):
-            return next(code for code, each in enumerate(element.locations) if each.initial)
+            return next(code for code, location in enumerate(element.locations) if location.initial)
         assert isinstance(element, sct.DiscreteVariable)
         code = arithmetic.value_of(self.code(element.initial, element))
         assert code is not None
@@ -349,7 +351,7 @@ class Encoding:
 
     def _place(self, element: ex.NamedElement, siblings: Iterable[ex.NamedElement]) -> int:
         if element not in self._places:
-            self._places.update({each: place for place, each in enumerate(siblings)})
+            self._places.update({sibling: place for place, sibling in enumerate(siblings)})
         return self._places[element]
 
 
@@ -372,25 +374,25 @@ def _couplings(model: sct.SupervisoryControlModel, index: Mapping[Element, int])
                 own.update(dict.fromkeys(referenced(update.value)))
     for requirement in model.requirements:
         touched.setdefault(requirement.event, {}).update(dict.fromkeys(referenced(requirement.condition)))
-    return [sorted(each, key=index.__getitem__) for each in touched.values()]
+    return [sorted(elements, key=index.__getitem__) for elements in touched.values()]
 
 
 def _groups_of_wide(model: sct.SupervisoryControlModel) -> dict[Element, list[Element]]:
     """The wide integers that are compared or computed together, directly or through others, for each of them."""
     groups: dict[Element, list[Element]] = {}
     for together in _computations(model):
-        wide = dict.fromkeys(each for each in together if domain_size(each) >= _WIDE)
-        merged = list(dict.fromkeys(member for each in wide for member in groups.get(each, [each])))
+        wide = dict.fromkeys(element for element in together if domain_size(element) >= _WIDE)
+        merged = list(dict.fromkeys(member for element in wide for member in groups.get(element, [element])))
         groups |= dict.fromkeys(merged, merged)
     return groups
 
 
 def _computations(model: sct.SupervisoryControlModel) -> Iterator[list[Element]]:
     """What each comparison reads, what each assignment reads and writes, and what each edge counts."""
-    for _, each in tree(model):
-        if isinstance(each, sct.Update):
-            yield [each.variable, *referenced(each.value)]
-        elif isinstance(each, sct.Edge):
-            yield [update.variable for update in each.updates if update.variable in referenced(update.value)]
-        elif isinstance(each, _COMPARISONS):
-            yield list(referenced(each))
+    for _, node in tree(model):
+        if isinstance(node, sct.Update):
+            yield [node.variable, *referenced(node.value)]
+        elif isinstance(node, sct.Edge):
+            yield [update.variable for update in node.updates if update.variable in referenced(update.value)]
+        elif isinstance(node, _COMPARISONS):
+            yield list(referenced(node))

@@ -17,14 +17,14 @@ from itertools import count, groupby
 from typing import TYPE_CHECKING
 
 from robosc.semantics.recursion import deep_recursion
+from robosc.synthesis.acceleration import Acceleration
 from robosc.synthesis.bdd import Diagram, Diagrams, split
-from robosc.synthesis.leaps import Leaps
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from robosc.synthesis.encoding import Encoding
-    from robosc.synthesis.relation import Step
+    from robosc.synthesis.relation import Move, Step
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ class _Saturation:
     def __init__(self, diagrams: Diagrams, steps: Sequence[Step], *, forwards: bool) -> None:
         self._diagrams = diagrams
         self._forwards = forwards
-        self._leaps = Leaps(steps, forwards=forwards)
+        self._acceleration = Acceleration(steps, forwards=forwards)
         by_level = sorted(steps, key=lambda step: step.level)
         self._groups = [(level, list(group)) for level, group in groupby(by_level, key=lambda step: step.level)]
         self._known: dict[tuple[Diagram, Diagram, int], Diagram] = {}
@@ -84,10 +84,10 @@ class _Saturation:
                 states |= self._fire(step, states) & within
             if states == closed:
                 break
-            if self._leaps.due(turn):
+            if self._acceleration.due(turn):
                 below = [step for _, steps in self._groups[group + 1 :] for step in steps]
-                for leap in self._leaps.over(here, below, turn, within):
-                    states |= self._fire(leap, states)
+                for accelerated in self._acceleration.over(here, below, turn, within):
+                    states |= self._fire(accelerated, states)
         return states
 
     def _fire(self, step: Step, states: Diagram) -> Diagram:
@@ -106,11 +106,13 @@ def coreachable(diagrams: Diagrams, steps: Sequence[Step], states: Diagram, with
     return _Saturation(diagrams, steps, forwards=False).closure(states, within)
 
 
-def supervise(encoding: Encoding, steps: Sequence[Step], uncontrollable: Sequence[Step]) -> SupervisedStates:
+def supervise(encoding: Encoding, moves: Sequence[Move]) -> SupervisedStates:
     """The states of the maximally permissive, controllable, non-blocking supervisor.
 
-    `steps` are all events under the requirements, `uncontrollable` those of them that no supervisor can forbid.
+    `moves` are all events under the requirements.
     """
+    steps = [step for _, step in moves]
+    uncontrollable = [step for relation, step in moves if not relation.event.controllable]
     diagrams, initial, marked = encoding.diagrams, encoding.initial, encoding.all_marked
     statistics = diagrams.statistics
     good = reachable(diagrams, steps, initial, diagrams.true)

@@ -55,10 +55,12 @@ def permission(relation: EventRelation, controlled: Projection, encoding: Encodi
     allowed = required if step is None else required & step.preimage(states)
     guard = sct.EventGuard(event=relation.event, everEnabled=allowed.satisfiable())
     if enabled != required:
-        asked = conjunction(_condition(each) for each in relation.requirements)
+        asked = conjunction(_condition(requirement) for requirement in relation.requirements)
         assert asked is not None
         guard.requirement = simplified(asked, enabled, encoding)
-        guard.requirements.extend(each for each, holds in relation.asked.items() if (enabled & ~holds).satisfiable())
+        guard.requirements.extend(
+            requirement for requirement, holds in relation.asked.items() if (enabled & ~holds).satisfiable()
+        )
     if allowed != required:
         guard.synthesis = (
             separating_expression(encoding, allowed, required & ~allowed, domains)

@@ -27,7 +27,7 @@ def variable_order(size: int, edges: Sequence[Sequence[int]]) -> list[int]:
     """An order of the vertices 0 … size-1 of a hypergraph with a small total span; the same for the same input."""
     edges = [edge for edge in edges if len(edge) > 1]
     starts = list(range(size)), _by_breadth(size, edges)
-    candidates = [each for start in starts for each in (start, _force(start, edges))]
+    candidates = [candidate for start in starts for candidate in (start, _force(start, edges))]
     return _slide(min(candidates, key=lambda order: total_span(order, edges)), edges)
 
 
@@ -54,7 +54,7 @@ def _incidence(size: int, edges: Sequence[Sequence[int]]) -> list[list[int]]:
 def _by_breadth(size: int, edges: Sequence[Sequence[int]]) -> list[int]:
     """Layer by layer from one end of each connected part to the other."""
     edges_of = _incidence(size, edges)
-    degree = [sum(len(edges[edge]) for edge in each) for each in edges_of]
+    degree = [sum(len(edges[edge]) for edge in incident) for incident in edges_of]
     order: list[int] = []
     placed = [False] * size
     for vertex in sorted(range(size), key=degree.__getitem__):
@@ -62,8 +62,8 @@ def _by_breadth(size: int, edges: Sequence[Sequence[int]]) -> list[int]:
             far_end = _layers(vertex, edges, edges_of, degree)[-1]
             part = _layers(far_end, edges, edges_of, degree)
             order += part
-            for each in part:
-                placed[each] = True
+            for member in part:
+                placed[member] = True
     return order
 
 
@@ -76,7 +76,7 @@ def _layers(
     for vertex in order:
         fresh = [edge for edge in edges_of[vertex] if edge not in seen_edges]
         seen_edges.update(fresh)
-        neighbours = dict.fromkeys(each for edge in fresh for each in edges[edge] if each not in seen)
+        neighbours = dict.fromkeys(neighbour for edge in fresh for neighbour in edges[edge] if neighbour not in seen)
         seen.update(neighbours)
         order += sorted(neighbours, key=degree.__getitem__)
     return order

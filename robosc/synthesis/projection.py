@@ -33,7 +33,7 @@ class Projection:
         self.states = states
         self._encoding = encoding
         self._domains = encoding.layout.state
-        self._levels = sorted(level for each in self._domains for level in each.levels)
+        self._levels = sorted(level for domain in self._domains for level in domain.levels)
 
     def onto(self, elements: Iterable[Element]) -> Diagram:
         """A superset of the states that has the same values of the given elements, and of those between them."""
@@ -54,22 +54,24 @@ class Projection:
 
     def _range(self, elements: Iterable[Element]) -> tuple[int, int]:
         """The first level of the elements and the one after their last."""
-        ranges = [self._ranges[each] for each in elements if each in self._ranges]
+        ranges = [self._ranges[element] for element in elements if element in self._ranges]
         return min((first for first, _ in ranges), default=0), max((last for _, last in ranges), default=0)
 
     @cached_property
     def _ranges(self) -> dict[Element, tuple[int, int]]:
         number = {level: index for index, level in enumerate(self._levels)}
         return {
-            each.element: (number[each.levels[0]], number[each.levels[-1]] + 1) for each in self._domains if each.levels
+            domain.element: (number[domain.levels[0]], number[domain.levels[-1]] + 1)
+            for domain in self._domains
+            if domain.levels
         }
 
     @cached_property
     def _starts(self) -> list[int]:
         """The first level of each domain, in ascending order: of one without levels that of the one before."""
         starts = [0]
-        for each in self._domains:
-            starts.append(self._ranges.get(each.element, (starts[-1],))[0])
+        for domain in self._domains:
+            starts.append(self._ranges.get(domain.element, (starts[-1],))[0])
         return sorted(starts[1:])
 
     @cached_property
@@ -79,7 +81,7 @@ class Projection:
         frontier: tuple[Diagram, ...] = (self.states,)
         for level in self._levels:
             frontiers.append(frontier)
-            parts = dict.fromkeys(part for each in frontier for part in split(each, level))
+            parts = dict.fromkeys(part for diagram in frontier for part in split(diagram, level))
             frontier = tuple(part for part in parts if part.satisfiable())
             if len(frontier) > _WIDEST:
                 break
@@ -91,8 +93,8 @@ class Projection:
         rests = []
         for frontier in self._frontiers:
             rest = frontier[0]
-            for each in frontier[1:]:
-                rest |= each
+            for diagram in frontier[1:]:
+                rest |= diagram
             rests.append(rest)
         return rests or [self.states]
 

@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from robosc.metamodel import sct
-from robosc.semantics.edges import edges_of
+from robosc.semantics.edges import edges_by_event
 from robosc.synthesis import arithmetic
 from robosc.synthesis.bdd import Diagram, and_exists
 from robosc.synthesis.encoding import referenced
@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from robosc.synthesis.encoding import Element, Encoding
+
+    Move = tuple["EventRelation", "Step"]
 
 
 @dataclass(frozen=True)
@@ -64,18 +66,18 @@ class EventRelation:
         self.requirements = requirements
         self._encoding = encoding
         self._edges = edges
-        changed = [each for edges in self._edges for each in _changed(edges)]
-        self.changed = tuple(each for each in changed if encoding.layout.domains[each].size > 1)
+        changed = [element for edges in self._edges for element in _changed(edges)]
+        self.changed = tuple(element for element in changed if encoding.layout.domains[element].size > 1)
         self.enabled_by = {edges[0].target.eContainer(): self._enabled(edges) for edges in self._edges}
         self.enabled = self._conjunction(self.enabled_by.values())
-        self.asked = {each: self._asked(each) for each in requirements}
+        self.asked = {requirement: self._asked(requirement) for requirement in requirements}
         self.requirement = self._conjunction(self.asked.values())
 
     def with_inputs(self) -> Diagram:
         """The relation of present, inputs and next values, without the requirements."""
         return self._conjunction(
             [
-                *(self._encoding.in_domain(each) for each in self.event.inputs),
+                *(self._encoding.in_domain(parameter) for parameter in self.event.inputs),
                 *(self._moves(edges) for edges in self._edges),
             ]
         )
@@ -84,10 +86,10 @@ class EventRelation:
         """The values of the event's inputs with which it leads from one state to another, given by their codes."""
         encoding = self._encoding
         result = self.with_inputs() & encoding.state(before)
-        for each in self.changed:
-            result &= encoding.becomes(each, arithmetic.constant(encoding.diagrams, after[each]))
+        for element in self.changed:
+            result &= encoding.becomes(element, arithmetic.constant(encoding.diagrams, after[element]))
         domains = encoding.layout.state
-        levels = [level for each in domains for level in (*each.levels, *each.next_levels)]
+        levels = [level for domain in domains for level in (*domain.levels, *domain.next_levels)]
         return result.exists(encoding.diagrams.cube(levels))
 
     def may_lead_to(self, codes: Mapping[Element, int]) -> bool:
@@ -125,7 +127,7 @@ class EventRelation:
     @cached_property
     def concerned(self) -> frozenset[Element]:
         """The same, and what its requirements read."""
-        return self.touched.union(*(referenced(each.condition) for each in self.requirements))
+        return self.touched.union(*(referenced(requirement.condition) for requirement in self.requirements))
 
     def step_where(self, condition: Diagram) -> Step | None:
         """What the event does where the plants enable it and the condition holds; None where it changes nothing."""
@@ -133,19 +135,19 @@ class EventRelation:
             return None
         domains = self._encoding.layout.domains
         diagrams = self._encoding.diagrams
-        inputs = diagrams.cube(level for each in self.event.inputs for level in domains[each].levels)
+        inputs = diagrams.cube(level for parameter in self.event.inputs for level in domains[parameter].levels)
         relation = and_exists(self.with_inputs(), condition, inputs)
-        present = [level for each in self.changed for level in domains[each].levels]
-        following = [level for each in self.changed for level in domains[each].next_levels]
+        present = [level for element in self.changed for level in domains[element].levels]
+        following = [level for element in self.changed for level in domains[element].next_levels]
         return Step(
             level=min([*present, *_support_top(relation)]),
             relation=relation,
             present=diagrams.cube(present),
             following=diagrams.cube(following),
-            same=self._conjunction(self._encoding.keeps(each) for each in self.changed),
+            same=self._conjunction(self._encoding.keeps(element) for element in self.changed),
             encoding=self._encoding,
             changed=self.changed,
-            touched=tuple(sorted(self.touched, key=lambda each: domains[each].rank))
+            touched=tuple(sorted(self.touched, key=lambda element: domains[element].rank))
             if self._encoding.layout.wide
             else (),
         )
@@ -188,21 +190,35 @@ class EventRelation:
 
 def event_relations(model: sct.SupervisoryControlModel, encoding: Encoding) -> list[EventRelation]:
     """The relations of all events, in the order of the plants."""
-    edges: dict[sct.Event, list[list[sct.Edge]]] = {}
-    for plant in model.plants:
-        own: dict[sct.Event, list[sct.Edge]] = {}
-        for edge in edges_of(plant):
-            own.setdefault(edge.event, []).append(edge)
-        for event, each in own.items():
-            edges.setdefault(event, []).append(each)
-    requirements: dict[sct.Event, list[sct.Requirement]] = {}
-    for requirement in model.requirements:
-        requirements.setdefault(requirement.event, []).append(requirement)
+    edges, requirements = edges_by_event(model.plants), requirements_by_event(model.requirements)
     return [
-        EventRelation(event, edges.get(event, []), requirements.get(event, []), encoding)
+        EventRelation(event, list(edges.get(event, {}).values()), requirements.get(event, []), encoding)
         for plant in model.plants
         for event in plant.events
     ]
+
+
+def requirements_by_event(requirements: Iterable[sct.Requirement]) -> dict[sct.Event, list[sct.Requirement]]:
+    """The requirements on each event that has any."""
+    found: dict[sct.Event, list[sct.Requirement]] = {}
+    for requirement in requirements:
+        found.setdefault(requirement.event, []).append(requirement)
+    return found
+
+
+def plant_moves(relations: Iterable[EventRelation]) -> list[Move]:
+    """The events that change something, with what they do where the plants enable them."""
+    return [(relation, relation.plant_step) for relation in relations if relation.plant_step is not None]
+
+
+def required_moves(relations: Iterable[EventRelation]) -> list[Move]:
+    """The events that change something, with what they do where the requirements allow them too."""
+    return [(relation, relation.step) for relation in relations if relation.step is not None]
+
+
+def steps(moves: Iterable[Move]) -> list[Step]:
+    """What the events do."""
+    return [step for _, step in moves]
 
 
 def _changed(edges: Sequence[sct.Edge]) -> list[Element]:

@@ -6,8 +6,8 @@ from xml.etree import ElementTree
 
 import pytest
 
-from robosc.analysis.verification import Outcome, Verdict
-from robosc.synthesis import TraceStep
+from robosc.analysis.paths import TraceStep
+from robosc.analysis.verify import Outcome, Verdict
 
 from .conftest import Run
 
@@ -49,7 +49,7 @@ def lock(tmp_path: Path) -> Path:
 def translated(monkeypatch: pytest.MonkeyPatch) -> None:
     """What is generated is compared with the model elsewhere: here it takes too long."""
     found = [Verdict("c-translation", Outcome.SKIPPED, "", "no C compiler is here")]
-    monkeypatch.setattr("robosc.analysis.verification.validate", lambda *_: found)
+    monkeypatch.setattr("robosc.analysis.verify.validate", lambda *_: found)
 
 
 def test_a_table_and_a_count(run: Run, door: Path) -> None:
@@ -136,7 +136,7 @@ def test_as_junit(run: Run, lock: Path, tmp_path: Path) -> None:
 def test_inputs_are_in_the_traces(run: Run, door: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     step = TraceStep("message_open.c_trigger", {"i_response": 3})
     found = [Verdict("c-translation", Outcome.REFUTED, "", "it differs", (step,))]
-    monkeypatch.setattr("robosc.analysis.verification.validate", lambda *_: found)
+    monkeypatch.setattr("robosc.analysis.verify.validate", lambda *_: found)
     answer = run("verify", door, "--json")
     assert answer.exit_code == 1
     trace = json.loads(answer.stdout)["properties"][-1]["trace"]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from robosc import configuration as config
-from robosc.analysis.explanation.names import NamingError, state_given
+from robosc.analysis.explain.names import NamingError, state_given
 from robosc.diagnostics import ModelError, Span
 from robosc.diagnostics.visible import HIDDEN
 from robosc.files.json_reading import JsonError, json_value

@@ -8,7 +8,7 @@ from random import Random
 from typing import TYPE_CHECKING
 
 import robosc
-from robosc.analysis.supervision import supervise
+from robosc.analysis.supervise import supervise
 from robosc.m2t import xmi
 from robosc.m2t.models import Models
 from tests.fuzz.mutants import EDGES, HOSTILE, LIBRARIES, ROOT

@@ -14,7 +14,7 @@ from click.testing import CliRunner
 
 import robosc
 from robosc import cli
-from robosc.analysis.supervision import EmptySupervisorError, supervise
+from robosc.analysis.supervise import EmptySupervisorError, supervise
 from robosc.checks import check
 from robosc.configuration import FILE_NAME
 from robosc.diagnostics import START, Diagnostic, ModelError, as_json, as_sarif, as_text, has_errors

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 import robosc
-from robosc.analysis.supervision import supervise
+from robosc.analysis.supervise import supervise
 from robosc.checks import check
 from robosc.diagnostics import ModelError, has_errors
 from robosc.m2t.models import Models

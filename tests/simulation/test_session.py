@@ -6,7 +6,7 @@ import pytest
 from click.testing import CliRunner
 
 import robosc
-from robosc.analysis.supervision import supervise
+from robosc.analysis.supervise import supervise
 from robosc.cli import main
 from robosc.simulation import Simulation
 from robosc.simulation.session import Session

@@ -41,10 +41,10 @@ def preconditions(models: Models, _configuration: Configuration) -> list[Diagnos
         hint = "give it a component with a message, a service, an action or a behaviour"
         return [_finding(models.sct, reason, hint)]
     elements = [element for _, element in tree(models.sct)]
-    declared = [fault for each in elements for fault in _declaration_faults(each)]
+    declared = [fault for element in elements for fault in _declaration_faults(element)]
     # What is computed from numbers that are too large is too large, too.
-    computed = [] if declared else [fault for each in elements for fault in _expression_faults(each)]
-    return [_finding(*each) for each in [*declared, *computed]]
+    computed = [] if declared else [fault for element in elements for fault in _expression_faults(element)]
+    return [_finding(*fault) for fault in [*declared, *computed]]
 
 
 def generate(models: Models, _configuration: Configuration) -> dict[str, str]:

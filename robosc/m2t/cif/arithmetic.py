@@ -72,16 +72,18 @@ def assigned(variable: sct.DiscreteVariable, value: ex.Expression) -> ex.Express
         if low <= least and greatest <= high:
             return copied(value)
     guards = [guard for guard, _ in pieces]
-    parts = [_saturated(each + Linear(shift(variable)), low, high, value) for _, each in pieces]
-    minuend = _first(zip(guards, (each for each, _ in parts), strict=True))
-    subtrahends = [each for _, each in parts]
-    if not any(each.factors or each.constant for each in subtrahends):
+    parts = [_saturated(piece + Linear(shift(variable)), low, high, value) for _, piece in pieces]
+    minuend = _first(zip(guards, (kept for kept, _ in parts), strict=True))
+    subtrahends = [subtracted for _, subtracted in parts]
+    if not any(subtrahend.factors or subtrahend.constant for subtrahend in subtrahends):
         return minuend
-    if all(each == subtrahends[0] for each in subtrahends):
+    if all(subtrahend == subtrahends[0] for subtrahend in subtrahends):
         return ex.Subtraction(left=minuend, right=_written(subtrahends[0], value))
     return ex.Subtraction(
         left=minuend,
-        right=_first((guard, _written(each, value)) for guard, each in zip(guards, subtrahends, strict=True)),
+        right=_first(
+            (guard, _written(subtrahend, value)) for guard, subtrahend in zip(guards, subtrahends, strict=True)
+        ),
     )
 
 
@@ -119,7 +121,7 @@ def _comparison(expression: ex.BinaryExpression) -> ex.Expression:
     if _is_plain(expression.left) and _is_plain(expression.right):
         return copied(expression)
     pieces = _sum(expression, _linear(expression.left), _scaled(_linear(expression.right), -1))
-    return _first((guard, _against_zero(type(expression), each, expression)) for guard, each in pieces)
+    return _first((guard, _against_zero(type(expression), piece, expression)) for guard, piece in pieces)
 
 
 def _against_zero(operator: _Comparison, value: Linear, origin: ex.Expression) -> ex.Expression:
@@ -192,13 +194,13 @@ def _linear(expression: ex.Expression) -> _Pieces:
         case ex.Multiplication():
             return _product(expression)
         case ex.Conditional():
-            then = [(_both(condition(expression.condition), guard), each) for guard, each in _linear(expression.then)]
+            then = [(_both(condition(expression.condition), guard), piece) for guard, piece in _linear(expression.then)]
             return _limited(expression, [*then, *_linear(expression.otherwise)])
     raise Unsupported(expression, f"CIF has no {type(expression).__name__}")
 
 
 def _scaled(pieces: _Pieces, factor: int) -> _Pieces:
-    return [(guard, each.times(factor)) for guard, each in pieces]
+    return [(guard, piece.times(factor)) for guard, piece in pieces]
 
 
 def _sum(origin: ex.Expression, left: _Pieces, right: _Pieces) -> _Pieces:
@@ -208,19 +210,19 @@ def _sum(origin: ex.Expression, left: _Pieces, right: _Pieces) -> _Pieces:
 
 def _product(expression: ex.Multiplication) -> _Pieces:
     """Split by the values of the factor that has fewer."""
-    factors = [(each, _linear(each)) for each in (expression.left, expression.right)]
-    factors.sort(key=lambda each: _values(each[1]))
+    factors = [(factor, _linear(factor)) for factor in (expression.left, expression.right)]
+    factors.sort(key=lambda factor: _values(factor[1]))
     (split, pieces), (_, others) = factors
     _limit(expression, _values(pieces) * len(others))
     made: _Pieces = []
-    low = min(each.range()[0] for _, each in pieces)
-    high = max(each.range()[1] for _, each in pieces)
+    low = min(piece.range()[0] for _, piece in pieces)
+    high = max(piece.range()[1] for _, piece in pieces)
     for value in range(low, high + 1):
         guard = None
         if value < high:
             equal = ex.Equation(left=copied(split), right=_number(value))
             guard = condition(equal)
-        made += [(_both(guard, other), each.times(value)) for other, each in others]
+        made += [(_both(guard, other), piece.times(value)) for other, piece in others]
     return made
 
 
@@ -230,13 +232,13 @@ def _number(value: int) -> ex.Expression:
 
 
 def _values(pieces: _Pieces) -> int:
-    ranges = [each.range() for _, each in pieces]
+    ranges = [piece.range() for _, piece in pieces]
     return max(high for _, high in ranges) - min(low for low, _ in ranges) + 1
 
 
 def _both(one: ex.Expression | None, other: ex.Expression | None) -> ex.Expression | None:
     """The conjunction of two conditions, either of which may be missing, in a tree of its own."""
-    parts = [copied(each) for each in (one, other) if each is not None]
+    parts = [copied(part) for part in (one, other) if part is not None]
     return ex.Conjunction(left=parts[0], right=parts[1]) if len(parts) == 2 else next(iter(parts), None)
 
 

@@ -39,7 +39,7 @@ class CifPrinter(ExpressionPrinter):
     def binary(self, expression: ex.BinaryExpression) -> str:
         """As everywhere, but that CIF has no chains of implications."""
         if isinstance(expression, ex.Implication):
-            sides = (self.operand(expression, each, chain=False) for each in (expression.left, expression.right))
+            sides = (self.operand(expression, side, chain=False) for side in (expression.left, expression.right))
             return " => ".join(sides)
         return super().binary(expression)
 

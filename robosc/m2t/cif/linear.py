@@ -66,7 +66,7 @@ class Linear:
         """The sum multiplied by a constant."""
         if not factor:
             return Linear(0)
-        return Linear(self.constant * factor, {cell: each * factor for cell, each in self.factors.items()})
+        return Linear(self.constant * factor, {cell: own * factor for cell, own in self.factors.items()})
 
     def range(self) -> tuple[int, int]:
         """The least and the greatest value."""

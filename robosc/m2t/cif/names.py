@@ -22,8 +22,8 @@ def is_numbered(plant: sct.Plant) -> bool:
         plant.kind == sct.PlantKind.data
         and len(plant.locations) > 1
         and bool(plant.edges)
-        and not any(each.edges for each in plant.locations)
-        and len({each.marked for each in plant.locations}) == 1
+        and not any(location.edges for location in plant.locations)
+        and len({location.marked for location in plant.locations}) == 1
     )
 
 
@@ -50,7 +50,7 @@ class CifNames:
             if is_numbered(plant):
                 self._numbers[plant] = inner.fresh("choice")
             else:
-                self._names.update({each: inner.fresh(each.name) for each in plant.locations})
+                self._names.update({location: inner.fresh(location.name) for location in plant.locations})
 
     @staticmethod
     def _outer(model: sct.SupervisoryControlModel) -> list[ex.NamedElement]:

@@ -125,40 +125,51 @@ class Writer:
         self._impossible = impossible(model)
         self._meanings = {**_transitions(model), **_choices(model)}
         #: Of all locations, the number in their plant.
-        self._numbers = {each: number for plant in model.plants for number, each in enumerate(plant.locations)}
-        self._referred = {each.location for _, each in tree(model) if isinstance(each, sct.LocationReference)}
+        self._numbers = {location: number for plant in model.plants for number, location in enumerate(plant.locations)}
+        self._referred = {
+            reference.location for _, reference in tree(model) if isinstance(reference, sct.LocationReference)
+        }
 
     def specification(self) -> Specification:
         """All of it."""
         model, supervisor = self._model, self._model.supervisor
-        guards = [each for each in supervisor.guards if each.event not in self._impossible] if supervisor else []
+        guards = [guard for guard in supervisor.guards if guard.event not in self._impossible] if supervisor else []
         return Specification(
             docs=[quoted(f"The plants and requirements of {model.name}.")],
             supervised_docs=self._counted(),
-            added_docs=[quoted("What synthesis added." if any(each.synthesis for each in guards) else _NOTHING_ADDED)],
-            enumerations=[
-                Enumeration(self._names.declared(each), [self._names.declared(literal) for literal in each.literals])
-                for each in model.enumerations
+            added_docs=[
+                quoted("What synthesis added." if any(guard.synthesis for guard in guards) else _NOTHING_ADDED)
             ],
-            plants=[self.plant(each) for each in model.plants],
+            enumerations=[
+                Enumeration(
+                    self._names.declared(enumeration),
+                    [self._names.declared(literal) for literal in enumeration.literals],
+                )
+                for enumeration in model.enumerations
+            ],
+            plants=[self.plant(plant) for plant in model.plants],
             requirements=self.requirements(),
             kept=[
-                Restriction(self._names.used(each.event, None), "needs", self._condition(each.requirement), ())
-                for each in guards
-                if each.requirement is not None
+                Restriction(self._names.used(guard.event, None), "needs", self._condition(guard.requirement), ())
+                for guard in guards
+                if guard.requirement is not None
             ],
             supervisor=self._names.supervisor,
             edges=[
-                Edge(self._names.used(each.event, None), self._condition(each.synthesis), (), "") for each in guards
+                Edge(self._names.used(guard.event, None), self._condition(guard.synthesis), (), "") for guard in guards
             ],
         )
 
     def requirements(self) -> list[Restriction]:
         """The requirements of the model; what several of them ask of an event alike stands there once."""
         texts: dict[tuple[str, str, str], list[str]] = {}
-        for each in self._model.requirements:
-            said = self._names.used(each.event, None), str(each.kind), self._condition(each.condition)
-            texts.setdefault(said, []).append(each.text or "")
+        for requirement in self._model.requirements:
+            said = (
+                self._names.used(requirement.event, None),
+                str(requirement.kind),
+                self._condition(requirement.condition),
+            )
+            texts.setdefault(said, []).append(requirement.text or "")
         return [
             Restriction(*said, list(map(quoted, dict.fromkeys(filter(None, found))))) for said, found in texts.items()
         ]
@@ -169,19 +180,19 @@ class Writer:
         return Plant(
             name=self._names.declared(plant),
             events=[
-                Events(controllable, docs, [self._names.declared(each) for each in events])
+                Events(controllable, docs, [self._names.declared(event) for event in events])
                 for (controllable, docs), events in groupby(
-                    self._possible(plant), key=lambda each: (each.controllable, self._meanings.get(each, ()))
+                    self._possible(plant), key=lambda event: (event.controllable, self._meanings.get(event, ()))
                 )
             ],
-            inputs=[self._variable(each, "") for each in plant.inputs],
+            inputs=[self._variable(parameter, "") for parameter in plant.inputs],
             variables=[
-                *(self._variable(each, printer(held(each))) for each in plant.variables),
+                *(self._variable(variable, printer(held(variable))) for variable in plant.variables),
                 *self._number(plant),
             ],
             locations=[
-                self._location(each, plant, printer)
-                for each in (plant.locations[:1] if is_numbered(plant) else plant.locations)
+                self._location(location, plant, printer)
+                for location in (plant.locations[:1] if is_numbered(plant) else plant.locations)
             ],
         )
 
@@ -190,7 +201,7 @@ class Writer:
         supervisor = self._model.supervisor
         if supervisor is None:
             return []
-        inputs = prod(_values(each) for plant in self._model.plants for each in plant.inputs)
+        inputs = prod(_values(parameter) for plant in self._model.plants for parameter in plant.inputs)
         left, all_of = supervisor.controlledStates, supervisor.uncontrolledStates
         name = self._model.name
         if left is None or all_of is None:  # A supervisor of a saved model need not have been counted.
@@ -203,7 +214,7 @@ class Writer:
         return list(map(quoted, told))
 
     def _possible(self, plant: sct.Plant) -> list[sct.Event]:
-        return [each for each in plant.events if each not in self._impossible]
+        return [event for event in plant.events if event not in self._impossible]
 
     def _condition(self, expression: ex.Expression | None) -> str:
         return "" if expression is None else self._outside(condition(expression))
@@ -223,7 +234,7 @@ class Writer:
     def _number(self, plant: sct.Plant) -> Iterator[Variable]:
         name = self._names.number(plant)
         if name is not None:
-            initial = next(str(number) for number, each in enumerate(plant.locations) if each.initial)
+            initial = next(str(number) for number, location in enumerate(plant.locations) if location.initial)
             docs = [quoted("The number of the provide statement that is chosen, 0 for none.")]
             yield Variable(f"int[0..{len(plant.locations) - 1}]", name, initial, docs)
 
@@ -235,17 +246,17 @@ class Writer:
             initial=location.initial or is_numbered(plant),
             marked=location.marked,
             edges=[
-                self._edge(each, location, plant, printer)
-                for each in edges_from(location)
-                if each.event not in self._impossible
+                self._edge(edge, location, plant, printer)
+                for edge in edges_from(location)
+                if edge.event not in self._impossible
             ],
         )
 
     def _edge(self, edge: sct.Edge, location: sct.Location, plant: sct.Plant, printer: CifPrinter) -> Edge:
         number = self._names.number(plant)
         updates = [
-            f"{self._names.declared(each.variable)} := {printer(assigned(each.variable, each.value))}"
-            for each in edge.updates
+            f"{self._names.declared(update.variable)} := {printer(assigned(update.variable, update.value))}"
+            for update in edge.updates
         ]
         if number is not None:
             updates.append(f"{number} := {self._numbers[edge.target]}")
@@ -263,7 +274,7 @@ def impossible(model: sct.SupervisoryControlModel) -> set[sct.Event]:
     So it is with `c_none` where a provide statement has no condition. CIF warns of an event that can never happen.
     """
     found = {event for plant in model.plants for event in plant.events}
-    found -= {each.event for each in model.requirements}
+    found -= {requirement.event for requirement in model.requirements}
     for plant in model.plants:
         for edge in edges_of(plant):
             never = isinstance(edge.guard, ex.BooleanLiteral) and not edge.guard.value
@@ -275,9 +286,9 @@ def impossible(model: sct.SupervisoryControlModel) -> set[sct.Event]:
 def quoted(text: str) -> str:
     """A text as a string of CIF, in plain ASCII; a long one as a sum of strings, which can stand in several lines."""
     shown = " ".join(text.split()).encode("ascii", "backslashreplace").decode()
-    shown = "".join(each if each.isprintable() else f"\\x{ord(each):02x}" for each in shown)
+    shown = "".join(character if character.isprintable() else f"\\x{ord(character):02x}" for character in shown)
     parts = wrap(shown, _WIDTH - 10, drop_whitespace=False, break_on_hyphens=False)
-    return " + ".join('"' + each.replace("\\", "\\\\").replace('"', '\\"') + '"' for each in parts)
+    return " + ".join('"' + part.replace("\\", "\\\\").replace('"', '\\"') + '"' for part in parts)
 
 
 def folded(text: str) -> str:
@@ -309,15 +320,15 @@ def _transitions(model: sct.SupervisoryControlModel) -> dict[sct.Event, tuple[st
             here, there = edge.eContainer().name, edge.target.name
             steps.setdefault(edge.event, {})[f"in {here}" if here == there else f"from {here} to {there}"] = None
     return {
-        event: (quoted(f"A transition of {event.eContainer().origin or event.eContainer().name} {', '.join(each)}."),)
-        for event, each in steps.items()
+        event: (quoted(f"A transition of {event.eContainer().origin or event.eContainer().name} {', '.join(steps)}."),)
+        for event, steps in steps.items()
     }
 
 
 def _choices(model: sct.SupervisoryControlModel) -> dict[sct.Event, tuple[str, ...]]:
     """Which statement of the model each choice of data stands for."""
-    plants = (each for each in model.plants if each.kind == sct.PlantKind.data)
-    numbers = {event: number for each in plants for event, number in provide_numbers(each).items()}
+    plants = (plant for plant in model.plants if plant.kind == sct.PlantKind.data)
+    numbers = {event: number for plant in plants for event, number in provide_numbers(plant).items()}
     return {
         event: (quoted(f"The choice of provide {number} for {event.eContainer().origin or event.eContainer().name}."),)
         for event, number in numbers.items()

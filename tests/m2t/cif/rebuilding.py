@@ -3,7 +3,7 @@
 import re
 from typing import Any
 
-from robosc.analysis.verification.cif_reading import read
+from robosc.analysis.verify.cif_reading import read
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 from robosc.metamodel.reflection import tree

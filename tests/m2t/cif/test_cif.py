@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from hypothesis import given, settings
 
-from robosc.analysis.verification.cif_reading import read as read_cif
+from robosc.analysis.verify.cif_reading import read as read_cif
 from robosc.checks import check
 from robosc.configuration import Configuration
 from robosc.diagnostics import Severity, Span

@@ -1,0 +1,212 @@
+"""Why a supervisor is empty, and what a supervisor guards against: ways to where no marked state can be reached."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+from robosc.analysis.paths import Path, TraceStep, deciding, shortest_path
+from robosc.semantics.roles import event_name
+from robosc.synthesis.decoding import Value, pick, value
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from robosc.analysis.system import Codes, SynthesizedSystem
+    from robosc.metamodel import sct
+    from robosc.synthesis.bdd import Diagram
+    from robosc.synthesis.encoding import Element
+    from robosc.synthesis.relation import EventRelation, Move
+
+#: How many plants a sentence names.
+_NAMED = 4
+
+
+@dataclass(frozen=True)
+class Reason:
+    """Why a supervisor is empty.
+
+    `message` says it in a sentence. `event` is at fault: an uncontrollable event that no supervisor can prevent, or a
+    controllable one whose requirement stands between the robot and its marked states; None where the plants alone reach
+    no marked state. `unmarked` are the plants that can't be in a marked location any more once the event happened, or
+    at all; none if all can be but never at once. `trace` is a shortest one from the initial state, the event last;
+    `state` is where it ends, before an event that a requirement forbids: the location of every plant with several of
+    them, and the value of every variable. `codes` are those of that state. `requirements` forbid the event at fault
+    there, or else something from there on.
+    """
+
+    message: str
+    event: sct.Event | None
+    unmarked: tuple[sct.Plant, ...]
+    trace: tuple[TraceStep, ...]
+    state: Mapping[str, Value]
+    codes: Mapping[Element, int] = field(repr=False)
+    requirements: tuple[sct.Requirement, ...] = ()
+
+
+def reason_of_emptiness(system: SynthesizedSystem) -> Reason:
+    """What keeps the initial state of a system without controlled states from being controlled."""
+    blocked = not (system.encoding.initial & system.found.alive[0]).satisfiable()
+    return _blocked_from_the_start(system) if blocked else _uncontrollable(system)
+
+
+def _uncontrollable(system: SynthesizedSystem) -> Reason:
+    encoding, found = system.encoding, system.found
+    before = encoding.state(unavoidable(system, encoding.initial_codes).states[-2])
+    blocked = found.rounds[0] & ~found.alive[0]
+    first = _path(system, system.moves, encoding.initial, before)
+    last = _path(system, _uncontrollable_moves(system), before, blocked)
+    event = last.moves[0][0].event
+    reason = _described(
+        system,
+        f"{event_name(event)} can't be prevented, and after it no marked state can be reached",
+        system.never_marked(last.states[-1]),
+        [*system.trace(first), *system.trace(last)],
+        last.states[-1],
+    )
+    changing = {relation.event for relation, _ in system.plant_moves}
+    at_fault = [one for one in forbidden_from(system, last.states[-1]) if one.event in changing]
+    return replace(reason, event=event, requirements=tuple(at_fault))
+
+
+def _blocked_from_the_start(system: SynthesizedSystem) -> Reason:
+    encoding = system.encoding
+    path = shortest_path(encoding, system.plant_moves, encoding.initial, encoding.all_marked, system.diagrams.true)
+    unmarked = system.never_marked(encoding.initial_codes)
+    problem = "no marked state can be reached"
+    if path is None:
+        return _described(system, f"{problem} at all", unmarked, [], encoding.initial_codes)
+    steps = system.trace(path)
+    for index, ((relation, _), codes) in enumerate(zip(path.moves, path.states, strict=False)):
+        if not system.is_in(codes, relation.requirement):
+            problem += f": the shortest way to one needs {event_name(relation.event)} where its requirement forbids it"
+            reason = _described(system, problem, unmarked, steps[: index + 1], codes)
+            at_fault = [one for one, asked in relation.asked.items() if not system.is_in(codes, asked)]
+            return replace(reason, event=relation.event, requirements=tuple(at_fault))
+    raise AssertionError("the requirements forbid nothing on the way")
+
+
+def _described(
+    system: SynthesizedSystem, problem: str, unmarked: Sequence[sct.Plant], steps: Sequence[TraceStep], codes: Codes
+) -> Reason:
+    """A reason without its event, its sentence completed by who is in the way, and the state by name."""
+    named = [
+        f"{plant.name} (in {plant.locations[codes[plant]].name})" if len(plant.locations) > 1 else plant.name
+        for plant in unmarked[:_NAMED]
+    ]
+    if len(unmarked) > _NAMED:
+        named.append(f"and {len(unmarked) - _NAMED} more")
+    who = "each plant can be marked, but never all at once"
+    if named:
+        who = f"never in a marked location: {', '.join(named)}"
+    state: dict[str, Value] = {}
+    for plant in system.model.plants:
+        if len(plant.locations) > 1:
+            state[plant.name] = value(plant, codes[plant])
+        for variable in plant.variables:
+            state[f"{plant.name}.{variable.name}"] = value(variable, codes[variable])
+    return Reason(f"{problem}; {who}", None, tuple(unmarked), tuple(steps), state, codes)
+
+
+@dataclass(frozen=True)
+class BlockingCounterexample:
+    """What the supervisor prevents when it holds an event back that plants and requirements would allow.
+
+    `trace` is a shortest one from the initial state, or from the state asked about, that ends with the event so held
+    back. `onwards` is a way from there, under the requirements, to where no marked state can be reached any more, as
+    `unavoidable` finds it: its last event is the uncontrollable one that is guarded against; empty where none is
+    needed. `codes` are those of the state where it ends. `unmarked` are the plants that can't be in a marked location
+    from then on; none if all can be but never at once.
+    """
+
+    trace: tuple[TraceStep, ...]
+    onwards: tuple[TraceStep, ...]
+    codes: Mapping[Element, int]
+    unmarked: tuple[sct.Plant, ...]
+
+
+def blocking_counterexample(system: SynthesizedSystem, event: sct.Event, way: Path) -> BlockingCounterexample:
+    """What would happen if an event that only synthesis forbids were not held back at the end of a way."""
+    encoding, relation = system.encoding, system.relations[event]
+    step = relation.step
+    assert step is not None  # else the event would change nothing, and lead to no blocking
+    after = pick(step.image(system.last(way)), encoding.layout.state)
+    onwards = unavoidable(system, after)
+    end = onwards.states[-1]
+    unmarked = [plant for plant in system.model.plants if not plant.locations[end[plant]].marked]
+    return BlockingCounterexample(
+        system.trace(Path([*way.states, after], [*way.moves, (relation, step)])),
+        system.trace(onwards),
+        end,
+        tuple(system.never_marked(end, deciding(system.moves, unmarked))),
+    )
+
+
+def unavoidable(system: SynthesizedSystem, start: Codes) -> Path:
+    """A way from a state that was given up to where no marked state can be reached, because of what nothing prevents.
+
+    Round by round, backwards: uncontrollable events lead from the state to one that, without the states given up in
+    earlier rounds, reaches no marked state; its nearest way there leads through one of those, and so on. So the last
+    event is uncontrollable; there is none where already the start reaches no marked state.
+    """
+    uncontrollable = _uncontrollable_moves(system)
+    rounds, alive = system.found.rounds, system.found.alive
+    index = max(number for number, good in enumerate(rounds) if system.is_in(start, good))
+    whole = Path([dict(start)], [])
+
+    def go(possible: Sequence[Move], goal: Diagram, within: Diagram) -> None:
+        part = _path(system, possible, system.last(whole), goal, within)
+        whole.states.extend(part.states[1:])
+        whole.moves.extend(part.moves)
+
+    go(uncontrollable, rounds[index] & ~alive[index], rounds[index])
+    for earlier in reversed(range(index)):
+        go(system.moves, alive[earlier] & ~rounds[earlier + 1], alive[earlier])
+        go(uncontrollable, rounds[earlier] & ~alive[earlier], rounds[earlier])
+    return whole
+
+
+def forbidden_from(system: SynthesizedSystem, codes: Codes) -> list[sct.Requirement]:
+    """The requirements that forbid something which the plants would do from a state on, in the order of the events."""
+    onwards = system.onwards(codes)
+    return [
+        requirement
+        for relation in system.relations.values()
+        for requirement, asked in relation.asked.items()
+        if (onwards & relation.enabled & ~asked).satisfiable()
+    ]
+
+
+def forbidding(relation: EventRelation, states: Diagram) -> tuple[sct.Requirement, ...]:
+    """Of the requirements on an event, which allow it in none of these states, those at fault.
+
+    That are all that alone allow it in none; where there is none, some that do not together, and no fewer of them.
+    """
+    alone = [requirement for requirement, asked in relation.asked.items() if not (states & asked).satisfiable()]
+    if alone:
+        return tuple(alone)
+    together = dict(relation.asked)
+    for requirement in relation.asked:
+        rest = states
+        for other, asked in together.items():
+            rest = rest if other is requirement else rest & asked
+        if not rest.satisfiable():
+            del together[requirement]
+    return tuple(together)
+
+
+def never_ready(relation: EventRelation, states: Diagram) -> tuple[sct.Plant, ...]:
+    """The plants that enable an event in none of these states."""
+    return tuple(plant for plant, own in relation.enabled_by.items() if not (states & own).satisfiable())
+
+
+def _uncontrollable_moves(system: SynthesizedSystem) -> list[Move]:
+    return [move for move in system.moves if not move[0].event.controllable]
+
+
+def _path(
+    system: SynthesizedSystem, moves: Sequence[Move], start: Diagram, goal: Diagram, within: Diagram | None = None
+) -> Path:
+    path = shortest_path(system.encoding, moves, start, goal, system.diagrams.true if within is None else within)
+    assert path is not None
+    return path

@@ -1,0 +1,219 @@
+"""Answers as text for a person; `at` says where an element stands: `file:line:column`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, TypeAlias
+
+from robosc.analysis.explain.answers import Emptiness, Explanation, Possibility, Reach
+from robosc.analysis.wording import (
+    blocking,
+    counterexample_in_words,
+    in_words,
+    listed,
+    name,
+    way_out,
+    what_is,
+    words,
+)
+from robosc.engine import Blocked
+from robosc.metamodel import sct
+from robosc.semantics.roles import Roles, event_name
+from robosc.synthesis.decoding import value
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator
+    from typing import Any
+
+    from robosc.analysis.explain.answers import Answer, Loosening, Note, Situation
+    from robosc.analysis.paths import TraceStep
+    from robosc.synthesis.encoding import Element
+
+    At: TypeAlias = Callable[[Any], str]
+
+_BY = {
+    Blocked.PLANT: "the robot is not ready for it",
+    Blocked.REQUIREMENT: "its requirements forbid it",
+    Blocked.SYNTHESIS: "no requirement forbids it, but synthesis does, because of what could follow",
+}
+_ELSE = "Without requirements it would, after"
+
+
+class Renderer:
+    """Renders answers about one model as text."""
+
+    def __init__(self, model: sct.SupervisoryControlModel, at: At) -> None:
+        self._model = model
+        self._at = at
+        self._events = {event_name(event): event for event in Roles(model).events}
+
+    def answer(self, told: Answer | None) -> str:
+        """The text of an answer, without a line end; None answers why a supervisor is empty that is not."""
+        match told:
+            case Explanation():
+                lines = self._explained(told)
+            case Possibility():
+                lines = self._possible(told)
+            case Emptiness():
+                lines = self._empty(told)
+            case None:
+                return "The supervisor is not empty."
+        return "\n".join(lines)
+
+    # An event in a state
+
+    def _explained(self, told: Explanation) -> Iterator[str]:
+        event = words(told.event)
+        if told.allowed:
+            yield f"The {event} can happen here{'' if told.event.controllable else ', and nothing prevents it'}."
+        elif told.by is None:
+            yield f"Neither the robot nor a requirement forbids the {event} here, but the robot never gets here."
+        else:
+            yield f"The {event} can't happen here: {_BY[told.by]}."
+        yield from self._situation(told.situation)
+        yield from self._refused(told.refusal)
+        yield from self._obstacles(told)
+        if told.changes:
+            yield from self._section("What would make it possible at once:", self._notes(told.changes))
+        if told.situation.reach is Reach.SUPERVISED and not told.allowed:
+            yield from self._way(told)
+
+    def _situation(self, situation: Situation) -> Iterator[str]:
+        yield ""
+        trace = self._steps(situation.trace)
+        if situation.reach is Reach.NEVER:
+            yield "The robot never gets into this state, with or without requirements:"
+        elif situation.reach is Reach.UNSUPERVISED:
+            yield f"The supervisor never lets the robot get into this state. {_ELSE} {trace}:"
+        else:
+            yield f"The state after {trace}:" if trace else "The first state:"
+        yield from self._state(situation)
+
+    def _state(self, situation: Situation) -> Iterator[str]:
+        for plant in self._model.plants:
+            if plant.kind == sct.PlantKind.data:
+                continue
+            elements: list[Element] = [plant] if len(plant.locations) > 1 else []
+            elements += plant.variables
+            if elements:
+                yield f"  {listed([what_is(one, value(one, situation.codes[one])) for one in elements])}"
+
+    def _refused(self, refusal: Explanation | None) -> Iterator[str]:
+        if refusal is None:
+            return
+        after = self._steps(refusal.situation.trace)
+        because = _BY[refusal.by] if refusal.by else ""
+        yield from [
+            "",
+            f"On this way the {words(refusal.event)} can't happen{f' after {after}' if after else ''}: {because}.",
+        ]
+        yield from self._obstacles(refusal)
+
+    def _obstacles(self, told: Explanation) -> Iterator[str]:
+        if told.plants:
+            yield from self._section("The robot:", self._notes(told.plants))
+        if told.requirements:
+            yield from self._section("Requirements:", self._notes(told.requirements))
+        if told.counterexample:
+            lines = [f"{self._at(told.event)}: {counterexample_in_words(told.counterexample, self._model)}"]
+            if told.counterexample.onwards:
+                last = self._events[told.counterexample.onwards[-1].event]
+                lines.append(f"{self._at(last)}: the {words(last)} is what it guards against")
+            for plant in told.counterexample.unmarked:
+                here = plant.locations[told.counterexample.codes[plant]]
+                lines.append(f"{self._at(here)}: `{name(plant)}` is then in `{here.name}`")
+            yield from self._section("If it happened all the same:", lines)
+            if told.blamed:
+                yield from self._section("What requirements forbid from there on:", self._notes(told.blamed))
+            yield from ["", f"To allow it, {way_out(told.counterexample)}."]
+
+    def _way(self, told: Explanation) -> Iterator[str]:
+        yield ""
+        if told.way is None:
+            yield "From here the robot gets to no state where it can happen."
+        else:
+            yield f"A shortest way to where it can happen: {self._steps(told.way)}."
+
+    # An event that may never happen
+
+    def _possible(self, told: Possibility) -> Iterator[str]:
+        event, nearest = words(told.event), told.nearest
+        if told.possible and nearest:
+            after = self._steps(nearest.situation.trace)
+            yield f"The {event} can happen{f', first after {after}' if after else ' from the start'}."
+            yield from self._situation(nearest.situation)
+            return
+        yield f"The {event} can never happen."
+        if nearest is None:
+            yield from self._section(
+                "The robot is never ready for it, with or without requirements:", self._notes(told.plants)
+            )
+            return
+        yield from ["", *self._nearest(nearest)]
+        if told.beyond:
+            after = self._steps(told.beyond.situation.trace)
+            yield from ["", f"The supervisor lets the robot get to no state where they allow it. {_ELSE} {after}:"]
+            yield from self._state(told.beyond.situation)
+            yield from self._refused(told.beyond.refusal)
+        elif told.conflict:
+            all_of = "this allows it:" if len(told.conflict) == 1 else "all of these allow it:"
+            yield from self._section(
+                f"In no state that the robot could ever get to {all_of}", self._notes(told.conflict)
+            )
+        yield from self._loosened(told.loosenings)
+
+    def _nearest(self, nearest: Explanation) -> Iterator[str]:
+        after = self._steps(nearest.situation.trace)
+        where = f"after {after}" if after else "the first"
+        if nearest.situation.reach is Reach.UNSUPERVISED:
+            yield f"The supervisor lets the robot get to no state where it is ready for it. {_ELSE} {after}:"
+        elif nearest.by is Blocked.SYNTHESIS:
+            yield f"The nearest state where neither the robot nor a requirement forbids it, {where}:"
+        else:
+            yield f"The nearest state where the robot is ready for it, {where}:"
+        yield from self._state(nearest.situation)
+        yield from self._refused(nearest.refusal)
+        yield from self._obstacles(nearest)
+
+    # No supervisor
+
+    def _empty(self, told: Emptiness) -> Iterator[str]:
+        yield f"The supervisor is empty: {blocking(told.reason)}."
+        if told.reason.trace:
+            steps = [
+                f"{self._at(self._events[step.event])}: {in_words([step], self._model)}" for step in told.reason.trace
+            ]
+            yield from self._section("A shortest trace:", steps)
+        if told.stuck:
+            yield from self._section("Where it ends:", self._notes(told.stuck))
+        if told.blamed:
+            yield from self._section("What requirements forbid from there on:", self._notes(told.blamed))
+        yield from self._loosened(told.loosenings)
+
+    # What they share
+
+    def _loosened(self, loosenings: tuple[Loosening, ...] | None) -> Iterator[str]:
+        if loosenings is None:
+            yield from ["", "Without any requirement it would be the same: the components themselves have to change."]
+        elif not loosenings:
+            yield from ["", "To leave out one requirement would not be enough; to leave out all of them would."]
+        else:
+            lines = []
+            for loosening in loosenings:
+                first = loosening.requirements[0]
+                states = "state" if loosening.states == 1 else "states"
+                text = listed([own.text or "a requirement" for own in loosening.requirements])
+                lines.append(f"{self._at(first)}: {text} ({loosening.states} {states} without it)")
+            yield from self._section("It would help to loosen, or to leave out, one of these:", lines)
+
+    def _notes(self, notes: Iterable[Note]) -> Iterator[str]:
+        for note in notes:
+            yield f"{self._at(note.element)}: {note.text}"
+            yield from (f"  {detail}" for detail in note.details)
+
+    @staticmethod
+    def _section(heading: str, lines: Iterable[str]) -> Iterator[str]:
+        yield from ["", heading]
+        yield from (f"  {line}" for line in lines)
+
+    def _steps(self, steps: Iterable[TraceStep]) -> str:
+        return in_words(list(steps), self._model)

@@ -1,0 +1,273 @@
+"""Answers to: why can an event not happen in a state, or never, why has the robot no supervisor, what would help?
+
+The answer to each question is a function of the system that synthesis finds; none of them changes the model.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, TypeVar
+
+from robosc.analysis.blocking import blocking_counterexample, forbidden_from, forbidding, reason_of_emptiness
+from robosc.analysis.explain.answers import (
+    Emptiness,
+    Explanation,
+    Loosening,
+    Note,
+    Possibility,
+    Reach,
+    Situation,
+)
+from robosc.analysis.explain.obstacles import Obstacles
+from robosc.analysis.paths import Path, shortest_path
+from robosc.analysis.system import SynthesizedSystem, whole_state
+from robosc.analysis.wording import listed, name, words
+from robosc.engine import Blocked
+from robosc.semantics.edges import edges_from
+from robosc.synthesis import MEMORY, encoded
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Sequence
+
+    from robosc.analysis.blocking import BlockingCounterexample, Reason
+    from robosc.analysis.paths import TraceStep
+    from robosc.analysis.system import Codes
+    from robosc.metamodel import sct
+    from robosc.synthesis.bdd import Diagram
+    from robosc.synthesis.relation import EventRelation
+
+    T = TypeVar("T")
+
+#: How many requirements are tried: each takes as long as a synthesis.
+_TRIED = 24
+
+
+def explored(model: sct.SupervisoryControlModel, look: Callable[[SynthesizedSystem], T], memory: int = MEMORY) -> T:
+    """What `look` sees in the system that synthesis finds; it may run several times, with more memory each time.
+
+    Raises MemoryError where the decision diagrams would take more bytes than `memory`.
+    """
+    return encoded(model, lambda encoding: look(SynthesizedSystem(model, encoding)), memory)
+
+
+# An event in a state
+
+
+def explain(system: SynthesizedSystem, event: sct.Event, given: Codes) -> Explanation:
+    """Whether an event can happen in the nearest state that has these codes, and why not; the supervisor is not empty.
+
+    Where the supervisor lets the robot get to no such state, it is the nearest that the plants get to; where they get
+    to none either, the initial one with these codes.
+    """
+    encoding = system.encoding
+    goal = encoding.diagrams.true
+    for element, code in given.items():
+        goal &= encoding.has_code(element, code)
+    way = system.layers.path_to(goal & system.controlled)
+    if way is not None:
+        return explain_after(system, event, way)
+    way = shortest_path(encoding, system.plant_moves, encoding.initial, goal & system.uncontrolled, system.uncontrolled)
+    if way is not None:
+        return explain_beyond(system, event, way)
+    return _explained(system, event, _situation(system, {**encoding.initial_codes, **given}, Reach.NEVER))
+
+
+def explain_after(system: SynthesizedSystem, event: sct.Event, way: Path) -> Explanation:
+    """Whether the event can happen after a way through controlled states."""
+    return _explained(system, event, _situation(system, way.states[-1], Reach.SUPERVISED, system.trace(way)))
+
+
+def explain_beyond(system: SynthesizedSystem, event: sct.Event, way: Path) -> Explanation:
+    """Whether it could happen after a way of the plants that the supervisor does not let the robot go to its end."""
+    refused = next(
+        number
+        for number, ((relation, _), state) in enumerate(zip(way.moves, way.states, strict=False))
+        if relation.event.controllable and not system.is_in(state, system.allowed(relation.event))
+    )
+    before = Path(way.states[: refused + 1], way.moves[:refused])
+    refusal = explain_after(system, way.moves[refused][0].event, before)
+    situation = _situation(system, way.states[-1], Reach.UNSUPERVISED, system.trace(way))
+    return _explained(system, event, situation, refusal)
+
+
+def _situation(system: SynthesizedSystem, codes: Codes, reach: Reach, steps: Sequence[TraceStep] = ()) -> Situation:
+    return Situation(codes, whole_state(system.model, codes), reach, tuple(steps))
+
+
+def _explained(
+    system: SynthesizedSystem, event: sct.Event, situation: Situation, refusal: Explanation | None = None
+) -> Explanation:
+    codes, supervised = situation.codes, situation.reach is Reach.SUPERVISED
+    obstacles = Obstacles(system, event, codes)
+    plants, requirements = tuple(obstacles.plants()), tuple(obstacles.requirements())
+    allowed = system.allowed(event)
+    caught: BlockingCounterexample | None = None
+    blame: list[Note] = []
+    if supervised and not plants and not requirements and not system.is_in(codes, allowed):
+        caught = blocking_counterexample(system, event, Path([dict(codes)], []))
+        blame = blamed(system, caught.codes)
+    return Explanation(
+        event,
+        situation,
+        _first(plants, requirements, caught),
+        plants,
+        requirements,
+        caught,
+        tuple(blame),
+        tuple(obstacles.changes(allowed)) if supervised and not system.is_in(codes, allowed) else (),
+        _way(system, codes, allowed) if supervised else None,
+        refusal,
+    )
+
+
+def _first(
+    plants: tuple[Note, ...], requirements: tuple[Note, ...], caught: BlockingCounterexample | None
+) -> Blocked | None:
+    if plants:
+        return Blocked.PLANT
+    if requirements:
+        return Blocked.REQUIREMENT
+    return Blocked.SYNTHESIS if caught else None
+
+
+def _way(system: SynthesizedSystem, start: Codes, allowed: Diagram) -> tuple[TraceStep, ...] | None:
+    if not allowed.satisfiable():
+        return None
+    way = system.layers_from(start).path_to(allowed)
+    return None if way is None else system.trace(way)
+
+
+def blamed(system: SynthesizedSystem, end: Codes) -> list[Note]:
+    """The requirements that forbid something which the plants would do from a state on."""
+    return [
+        Note(one, one.text or "a requirement", (f"forbids the {words(one.event)}",))
+        for one in forbidden_from(system, end)
+    ]
+
+
+# An event that may never happen
+
+
+def possibility(system: SynthesizedSystem, event: sct.Event) -> Possibility:
+    """Whether the event can ever happen under the supervisor, which is not empty, and if not, why."""
+    relation, controlled = system.relations[event], system.controlled
+    goals = (
+        system.allowed(event),
+        controlled & relation.enabled & relation.requirement,
+        controlled & relation.enabled,
+    )
+    for goal in goals:
+        if goal.satisfiable():
+            way = system.layers.path_to(goal)
+            assert way is not None
+            nearest = explain_after(system, event, way)
+            if nearest.allowed:
+                return Possibility(event, nearest)
+            required = nearest.by is Blocked.REQUIREMENT
+            beyond = _beyond(system, event, relation.requirement) if required else None
+            conflict = _conflict(system, relation) if required and beyond is None else ()
+            return Possibility(event, nearest, (), beyond, _loosenings(system, event), conflict)
+    beyond = _beyond(system, event, system.encoding.diagrams.true)
+    if beyond is not None:
+        return Possibility(event, beyond, loosenings=_loosenings(system, event))
+    return Possibility(event, None, tuple(_never(system, event)))
+
+
+def _conflict(system: SynthesizedSystem, relation: EventRelation) -> tuple[Note, ...]:
+    """The requirements that allow an event in no state in which the plants do, with or without a supervisor."""
+    at_fault = forbidding(relation, system.uncontrolled & relation.enabled)
+    return tuple(Note(requirement, requirement.text or "a requirement") for requirement in at_fault)
+
+
+def _beyond(system: SynthesizedSystem, event: sct.Event, wanted: Diagram) -> Explanation | None:
+    """The nearest state in which the plants allow the event and this holds, out of reach under the supervisor."""
+    goal = system.uncontrolled & system.relations[event].enabled & wanted
+    way = shortest_path(system.encoding, system.plant_moves, system.encoding.initial, goal, system.uncontrolled)
+    return None if way is None else explain_beyond(system, event, way)
+
+
+def _loosenings(system: SynthesizedSystem, event: sct.Event) -> tuple[Loosening, ...] | None:
+    return loosenings(system, lambda other: other.allowed(event).satisfiable())
+
+
+def _never(system: SynthesizedSystem, event: sct.Event) -> list[Note]:
+    """Why the plants never let an event happen: those that never take part in it, else all that have to, at once."""
+    relation, reached = system.relations[event], system.uncontrolled
+    notes = []
+    for plant, where in relation.enabled_by.items():
+        if not (reached & where).satisfiable():
+            notes += _never_takes_part(system, plant, event)
+    if notes:
+        return notes
+    return [
+        Note(plant, f"`{name(plant)}` takes part in the {words(event)}, but never when all others do")
+        for plant in relation.enabled_by
+    ]
+
+
+def _never_takes_part(system: SynthesizedSystem, plant: sct.Plant, event: sct.Event) -> list[Note]:
+    notes = []
+    for location in plant.locations:
+        for edge in (edge for edge in edges_from(location) if edge.event is event):
+            is_reached = (system.uncontrolled & system.encoding.location(location)).satisfiable()
+            why = (
+                "is never reached"
+                if not is_reached
+                else "is reached, but the guard of its transition never holds there"
+            )
+            notes.append(Note(edge if is_reached else location, f"`{name(plant)}.{location.name}` {why}"))
+    return notes
+
+
+# No supervisor
+
+
+def emptiness(system: SynthesizedSystem) -> Emptiness | None:
+    """Why the supervisor is empty; None where it is not."""
+    if system.controlled.satisfiable():
+        return None
+    reason = reason_of_emptiness(system)
+    found = blamed(system, reason.codes)
+    helpful = loosenings(system, lambda other: other.controlled.satisfiable(), [note.element for note in found])
+    return Emptiness(reason, tuple(_stuck(reason)), tuple(found), helpful)
+
+
+def _stuck(reason: Reason) -> list[Note]:
+    notes = []
+    for plant in reason.unmarked:
+        here = plant.locations[reason.codes[plant]]
+        marked = listed([f"`{location.name}`" for location in plant.locations if location.marked])
+        goal = f"can't get back to {marked}" if marked else "has no marked state"
+        notes.append(Note(here, f"`{name(plant)}` is in `{here.name}`, and {goal}"))
+    return notes
+
+
+# Requirements left out
+
+
+def loosenings(
+    system: SynthesizedSystem, helps: Callable[[SynthesizedSystem], bool], first: Iterable[sct.Requirement] = ()
+) -> tuple[Loosening, ...] | None:
+    """The requirements of the text each of which helps if it alone is left out, those of `first` before the others.
+
+    None where it does not even help to leave out all of them.
+    """
+    texts = requirement_texts(system, first)
+    if not helps(system.without(frozenset(requirement for text in texts for requirement in text))):
+        return None
+    found = []
+    for text in texts[:_TRIED]:
+        other = system.without(frozenset(text))
+        if helps(other):
+            found.append(Loosening(text, system.encoding.count(other.controlled)))
+    return tuple(found)
+
+
+def requirement_texts(
+    system: SynthesizedSystem, first: Iterable[sct.Requirement] = ()
+) -> list[tuple[sct.Requirement, ...]]:
+    """The requirements by the place in the text that they come from; not those that say when an action is cancelled."""
+    own = [requirement for requirement in system.model.requirements if system.start_of(requirement.event) is None]
+    by_place: dict[object, list[sct.Requirement]] = {}
+    for requirement in dict.fromkeys([*(requirement for requirement in first if requirement in own), *own]):
+        by_place.setdefault(requirement.source or requirement, []).append(requirement)
+    return [tuple(requirements) for requirements in by_place.values()]

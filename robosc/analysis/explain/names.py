@@ -1,0 +1,194 @@
+"""Finds what a user names: events and states, by the names of the robot model or by those of its plants."""
+
+from __future__ import annotations
+
+import json
+import re
+from contextlib import suppress
+from difflib import get_close_matches
+from typing import TYPE_CHECKING, Any
+
+from robosc.files.json_reading import JsonError, json_value
+from robosc.metamodel import expression as ex
+from robosc.metamodel import sct
+from robosc.semantics.roles import Roles, event_name, plant_of
+from robosc.synthesis.decoding import text, value
+from robosc.synthesis.encoding import domain_size, smallest
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
+    from robosc.synthesis.encoding import Element
+
+#: The event that a communication's bare name means: what it is there for.
+_MEANT = (sct.EventKind.trigger, sct.EventKind.response)
+
+
+class NamingError(ValueError):
+    """A name that means nothing, or too much; `hint` says what could be meant."""
+
+    def __init__(self, message: str, hint: str) -> None:
+        super().__init__(f"{message}; {hint}" if hint else message)
+
+
+def event_named(model: sct.SupervisoryControlModel, name: str) -> sct.Event:
+    """The event of a name: `message_move.c_trigger`, `move`, `Platform.move`, `drive.cancel`, `Base.drive.cancel`.
+
+    Raises NamingError where there is none or the name fits several.
+    """
+    meant: dict[str, list[sct.Event]] = {}
+    for event in Roles(model).events:
+        for known_as in dict.fromkeys(_event_names(event)):
+            meant.setdefault(known_as, []).append(event)
+    found = [event for event in meant.get(name, ()) if event_name(event) == name] or meant.get(name, [])
+    if len(found) == 1:
+        return found[0]
+    if found:
+        listed = ", ".join(f"`{plant_of(event).origin or event_name(event)}`" for event in found)
+        raise NamingError(f"`{name}` can be several events", f"say which: {listed}")
+    raise NamingError(f"there is no event `{name}`", _close(name, meant, "`robosc synthesize --json` lists the events"))
+
+
+def _event_names(event: sct.Event) -> Iterator[str]:
+    plant = plant_of(event)
+    yield event_name(event)
+    if plant.kind == sct.PlantKind.data:
+        return
+    owners = [plant.name, *_plant_names(plant)]
+    kind = event.kind.name
+    suffixes = [event.name] if event.kind == sct.EventKind.tau else [event.name, kind]
+    if event.kind == sct.EventKind.trigger:
+        suffixes.append("request")
+    yield from (f"{owner}.{suffix}" for owner in owners for suffix in suffixes)
+    if event.kind == next(
+        (kind_meant for kind_meant in _MEANT if any(own.kind == kind_meant for own in plant.events)), None
+    ):
+        yield from owners
+
+
+def _plant_names(plant: sct.Plant) -> list[str]:
+    """What the robot model calls a plant: `Base`; `Base.drive` and `drive`."""
+    return [plant.origin, plant.origin.rpartition(".")[2]] if plant.origin else []
+
+
+def state_given(model: sct.SupervisoryControlModel, given: str) -> dict[Element, int]:
+    """The codes of the elements that a state names.
+
+    It is given as `Door=open,Gauge.level=3`, as JSON that `robosc simulate` prints, or as what a node tells on
+    `~/state` or `~/blocked`, bare or as ROS prints it. Raises NamingError where the text is nothing of that, or names
+    what is not there.
+    """
+    elements = _elements(model)
+    codes: dict[Element, int] = {}
+    for name, chosen in _pairs(model, _echoed(given)):
+        found = elements.get(name, [])
+        if not found:
+            raise NamingError(f"the state has no `{name}`", _close(name, elements, ""))
+        if len(found) > 1:
+            listed = ", ".join(f"`{_whole_name(element)}`" for element in found)
+            raise NamingError(f"`{name}` can be several parts of the state", f"say which: {listed}")
+        code = _code(found[0], chosen, name)
+        if codes.setdefault(found[0], code) != code:
+            raise NamingError(f"the state has two values for `{name}`", "leave one out")
+    return codes
+
+
+def _whole_name(element: Element) -> str:
+    if isinstance(element, sct.Plant):
+        return element.name
+    plant: sct.Plant = element.eContainer()
+    return f"{plant.origin or plant.name}.{element.name}"
+
+
+def _elements(model: sct.SupervisoryControlModel) -> dict[str, list[Element]]:
+    """The parts of the state by each of their names; a name of a plant goes before a shorter form of another."""
+    exact: dict[str, list[Element]] = {}
+    short: dict[str, list[Element]] = {}
+    for plant in model.plants:
+        exact.setdefault(plant.name, []).append(plant)
+        if plant.kind != sct.PlantKind.data and len(plant.locations) > 1:
+            for name in dict.fromkeys(_plant_names(plant)):
+                short.setdefault(name, []).append(plant)
+        for variable in plant.variables:
+            exact.setdefault(_whole_name(variable), []).append(variable)
+            short.setdefault(variable.name, []).append(variable)
+            short.setdefault(f"{plant.name}.{variable.name}", []).append(variable)
+    return short | exact
+
+
+def _echoed(given: str) -> str:
+    """The data of the last `std_msgs/String` that `ros2 topic echo` or `rostopic echo` printed; other text as it is."""
+    printed = [document.strip() for document in re.split(r"^---\s*$", given, flags=re.MULTILINE)]
+    last = next((document for document in reversed(printed) if document), "")
+    if last.startswith("data:"):
+        last = last.removeprefix("data:").strip()
+        if last.startswith("'"):
+            last = last[1:].removesuffix("'").replace("''", "'")
+        elif last.startswith('"'):
+            with suppress(ValueError):
+                last = str(json.loads(last, strict=False))
+    if last.startswith("{") and last.endswith("..."):
+        raise NamingError("the state was cut short", "`ros2 topic echo --full-length` prints it whole")
+    return last
+
+
+def _pairs(model: sct.SupervisoryControlModel, given: str) -> list[tuple[str, Any]]:
+    if given.startswith("{"):
+        try:
+            read = json_value(given)
+        except JsonError as error:
+            raise NamingError("the state can't be read", f"{error} (character {error.position + 1})") from None
+        if isinstance(read.get("components"), dict):
+            return list(_reported(model, read))
+        inner = read.get("state", read)
+        return list((inner if isinstance(inner, dict) else read).items())
+    pairs = []
+    for pair in given.split(","):
+        name, equals, chosen = pair.partition("=")
+        if not equals:
+            raise NamingError(f"`{pair.strip()}` is no part of a state", "write `Component=state,Component.variable=3`")
+        pairs.append((name.strip(), chosen.strip()))
+    return pairs
+
+
+def _reported(model: sct.SupervisoryControlModel, report: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
+    """What a node tells of its components; variables that only the node has say nothing of what can happen."""
+    robot = report.get("robot", model.name)
+    if robot != model.name:
+        raise NamingError(f"the state is one of the robot `{robot}`", f"the model is `{model.name}`")
+    components = {plant.origin or plant.name: plant for plant in model.plants if plant.kind == sct.PlantKind.behaviour}
+    for name, told in report["components"].items():
+        if name not in components:
+            raise NamingError(f"there is no component `{name}`", _close(name, components, ""))
+        if not (isinstance(told, dict) and "state" in told and isinstance(told.get("variables"), dict)):
+            raise NamingError(f"the state does not tell that of `{name}`", "it needs `state` and `variables`")
+        plant = components[name]
+        yield plant.name, told["state"]
+        known = {variable.name: _whole_name(variable) for variable in plant.variables}
+        yield from (
+            (known[known_name], chosen) for known_name, chosen in told["variables"].items() if known_name in known
+        )
+
+
+def _code(element: Element, given: Any, name: str) -> int:
+    """The code of a value, given as such or as text."""
+    size = domain_size(element)
+    if not isinstance(element, sct.Plant) and isinstance(element.type, ex.IntegerType):
+        last = smallest(element) + size - 1
+        try:
+            number = int(given) if isinstance(given, str) else given
+        except ValueError:
+            number = None
+        if isinstance(number, int) and not isinstance(number, bool) and smallest(element) <= number <= last:
+            return number - smallest(element)
+        raise NamingError(f"`{name}` can't be `{given}`", f"it is an integer from {smallest(element)} to {last}")
+    values = {text(value(element, code)): code for code in range(size)}
+    said = text(given) if isinstance(given, (bool, int, str)) else ""
+    if said in values:
+        return values[said]
+    raise NamingError(f"`{name}` can't be `{given}`", _close(said, values, f"it is one of {', '.join(values)}"))
+
+
+def _close(name: str, known: Iterable[str], otherwise: str) -> str:
+    close = get_close_matches(name, sorted(known), n=1)
+    return f"did you mean `{close[0]}`?" if close else otherwise

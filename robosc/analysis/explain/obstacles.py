@@ -1,0 +1,188 @@
+"""What plants and requirements have against an event in a state, and which events would make it possible."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from robosc.analysis.explain.answers import Note
+from robosc.analysis.paths import Path, trace
+from robosc.analysis.wording import in_words, listed, name, what_is, words
+from robosc.metamodel import expression as ex
+from robosc.metamodel import sct
+from robosc.semantics.edges import edges_from
+from robosc.semantics.printing import RobotPrinter
+from robosc.synthesis.decoding import pick, text, value
+from robosc.synthesis.encoding import referenced
+
+if TYPE_CHECKING:
+    from robosc.analysis.paths import Move
+    from robosc.analysis.system import Codes, SynthesizedSystem
+    from robosc.synthesis.bdd import Diagram
+    from robosc.synthesis.encoding import Element
+
+#: How many states a sentence names.
+_NAMED = 4
+_CALLS = (sct.PlantKind.service, sct.PlantKind.action)
+#: The locations that a service or action has (thesis, listings 5.2 and 5.3).
+_PHASES = {
+    "idle": "is not under way",
+    "wait_for_response": "still waits for its answer",
+    "executing": "is still under way",
+    "ready": "has ended, and is reset before it can start again",
+    "error": "has failed, and is reset after a while before it can start again",
+}
+_WAITING = {
+    sct.EventKind.trigger: "`on request to {}`",
+    sct.EventKind.response: "`on response from {}`",
+    sct.EventKind.error: "`on error from {}`",
+    sct.EventKind.feedback: "`on feedback from {}`",
+    sct.EventKind.cancel: "`on cancel from {}`",
+}
+
+
+class Obstacles:
+    """Of one event in one state."""
+
+    def __init__(self, system: SynthesizedSystem, event: sct.Event, codes: Codes) -> None:
+        self._system = system
+        self._event = event
+        self._codes = codes
+        self._print = RobotPrinter()
+
+    def plants(self) -> list[Note]:
+        """A note on each plant that can't take part in it: at its location, or at the transition whose guard fails."""
+        enabled = self._system.relations[self._event].enabled_by
+        return [self._plant(plant) for plant, where in enabled.items() if not self._system.is_in(self._codes, where)]
+
+    def requirements(self) -> list[Note]:
+        """A note on each requirement that forbids it, with the parts that fail."""
+        relation = self._system.relations[self._event]
+        return [
+            Note(
+                requirement,
+                requirement.text or "a requirement forbids it",
+                tuple(dict.fromkeys(map(self._said, self._parts(requirement)))),
+            )
+            for requirement, where in relation.asked.items()
+            if not self._system.is_in(self._codes, where)
+        ]
+
+    def changes(self, allowed: Diagram) -> list[Note]:
+        """What makes it possible at once: each event that can happen here and leads to one of the states `allowed`.
+
+        It is told at the transitions with which it changes what stands in the way.
+        """
+        encoding = self._system.encoding
+        here = encoding.state(self._codes)
+        found: list[Note] = []
+        for move in self._system.moves:
+            possible = move[1].image(here) & allowed
+            if possible.satisfiable():
+                after = pick(possible, encoding.layout.state)
+                found += self._changing(move, after)
+        return found
+
+    # Plants
+
+    def _here(self, plant: sct.Plant) -> sct.Location:
+        return plant.locations[self._codes[plant]]
+
+    def _edge(self, plant: sct.Plant) -> sct.Edge | None:
+        return next((edge for edge in edges_from(self._here(plant)) if edge.event is self._event), None)
+
+    def _plant(self, plant: sct.Plant) -> Note:
+        here = self._here(plant)
+        edge = self._edge(plant)
+        if edge is not None and edge.guard is not None:
+            parts = tuple(dict.fromkeys(map(self._said, self._failing(edge.guard, wanted=True))))
+            asked = f"{self._transition(plant)} asks for `{self._print(edge.guard)}`"
+            if plant.kind == sct.PlantKind.data:
+                return Note(self._event, asked, parts)
+            return Note(edge, f"`{name(plant)}` is in `{here.name}`, where {asked}", parts)
+        if plant.kind in _CALLS and here.name in _PHASES:
+            return Note(plant, f"`{name(plant)}` is in `{here.name}`: it {_PHASES[here.name]}")
+        others = [
+            f"`{location.name}`"
+            for location in plant.locations
+            if any(own.event is self._event for own in edges_from(location))
+        ]
+        elsewhere = (
+            f"it has one in {listed(others)}" if len(others) <= _NAMED else f"{len(others)} other states have one"
+        )
+        return Note(here, f"`{name(plant)}` is in `{here.name}`, without {self._transition(plant)}: {elsewhere}")
+
+    def _transition(self, plant: sct.Plant) -> str:
+        """What a component writes to take part in the event."""
+        owner: sct.Plant = self._event.eContainer()
+        if plant.kind == sct.PlantKind.data:
+            return "this `provide`"
+        if self._event.kind not in _WAITING:
+            return f"the {words(self._event)}"
+        own, _, short = name(owner).rpartition(".")
+        return _WAITING[self._event.kind].format(short if own == name(plant) else name(owner))
+
+    # Conditions
+
+    def _parts(self, requirement: sct.Requirement) -> list[tuple[ex.Expression, bool]]:
+        return self._failing(requirement.condition, wanted=requirement.kind == sct.RequirementKind.needs)
+
+    def _failing(self, condition: ex.Expression | None, *, wanted: bool) -> list[tuple[ex.Expression, bool]]:
+        """The smallest parts of a condition that would all have to change, each with the value that it should have."""
+        if condition is None or self._system.holds(condition, self._codes) == wanted:
+            return []
+        match condition:
+            case ex.Negation():
+                return self._failing(condition.operand, wanted=not wanted)
+            case ex.Conjunction() if wanted:
+                sides = (condition.left, condition.right)
+                return [part for side in sides for part in self._failing(side, wanted=True)]
+            case ex.Disjunction() if not wanted:
+                sides = (condition.left, condition.right)
+                return [part for side in sides for part in self._failing(side, wanted=False)]
+        return [(condition, wanted)]
+
+    def _said(self, part: tuple[ex.Expression, bool]) -> str:
+        condition, wanted = part
+        held = f"`{self._print(condition)}` {'does not hold' if wanted else 'holds'}"
+        told = not (isinstance(condition, sct.LocationReference) and not wanted)
+        values = [
+            what_is(element, value(element, self._codes[element])) for element in dict.fromkeys(referenced(condition))
+        ]
+        return f"{held}: {listed(values)}" if values and told else held
+
+    # Changes
+
+    def _changing(self, move: Move, after: Codes) -> list[Note]:
+        """The transitions of an event from here to the state `after` that change something of what is in the way."""
+        relation = move[0]
+        steps = trace(self._system.encoding, Path([dict(self._codes), dict(after)], [move]))
+        by = in_words(steps, self._system.model)
+        found = []
+        for plant in relation.enabled_by:
+            edge = next(edge for edge in edges_from(self._here(plant)) if edge.event is relation.event)
+            changed = [element for element in (plant, *plant.variables) if self._codes[element] != after[element]]
+            found += [(element, _change(element, edge, self._here(plant), after, by)) for element in changed]
+        return [note for element, note in found if element in self._in_the_way] or [note for _, note in found]
+
+    @cached_property
+    def _in_the_way(self) -> set[Element]:
+        """The plants that can't take part, and what the guards and requirements read that fail."""
+        found: set[Element] = set()
+        relation = self._system.relations[self._event]
+        for plant, where in relation.enabled_by.items():
+            if not self._system.is_in(self._codes, where):
+                edge = self._edge(plant)
+                found.update([plant] if edge is None else referenced(edge.guard))
+        for requirement, where in relation.asked.items():
+            if not self._system.is_in(self._codes, where):
+                found.update(element for part, _ in self._parts(requirement) for element in referenced(part))
+        return found
+
+
+def _change(element: Element, edge: sct.Edge, here: sct.Location, after: Codes, by: str) -> Note:
+    """What an edge, taken from here by an event, makes of its plant or of a variable."""
+    if isinstance(element, sct.Plant):
+        return Note(edge, f"`{name(element)}` goes from `{here.name}` to `{edge.target.name}` by {by}")
+    whole = f"`{name(element.eContainer())}.{element.name}`"
+    return Note(edge, f"{whole} becomes {text(value(element, after[element]))} by {by}")

@@ -1,0 +1,236 @@
+"""The rules that synthesis checks: from what it observed to findings in the words of the robot model."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from robosc.analysis.observations import Forbidden
+from robosc.analysis.wording import condition, counterexample_in_words, forbid, listed, name, way_out, words
+from robosc.diagnostics import Diagnostic, Severity, in_order
+from robosc.metamodel import sct
+from robosc.metamodel.places import place
+from robosc.semantics.edges import edges_from, edges_of
+from robosc.semantics.roles import plant_of
+from robosc.synthesis.encoding import referenced
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from robosc.analysis.observations import (
+        Example,
+        Hindrance,
+        NeverEnabled,
+        Observations,
+        ProvideGap,
+        SelfCancelling,
+        SharedTopicConflict,
+        SilentRestricted,
+        UnreachableState,
+    )
+    from robosc.synthesis.encoding import Element
+
+_DONE = {sct.PlantKind.service: "called", sct.PlantKind.action: "started"}
+_FOLLOWED = {sct.EventKind.reset: "the end of `{}`", sct.EventKind.cancel: "the cancelling of `{}`"}
+
+
+def findings_of(model: sct.SupervisoryControlModel, observations: Observations) -> list[Diagnostic]:
+    """The findings about a model, from what synthesis observed of it, in order.
+
+    Each stands at an element of the model: at the requirement, where one alone is at fault.
+    """
+    words_for = _Findings(model)
+    return in_order(
+        [
+            *map(words_for.never_enabled, observations.never_enabled),
+            *map(words_for.silent_restricted, observations.silent_restricted),
+            *map(words_for.self_cancelling, observations.self_cancelling),
+            *map(words_for.provide_gap, observations.provide_gaps),
+            *map(words_for.shared_topic_conflict, observations.shared_topic_conflicts),
+            *map(words_for.unrestricted_call, observations.unrestricted_calls),
+            *map(words_for.unreachable_state, observations.unreachable_states),
+        ]
+    )
+
+
+class _Findings:
+    def __init__(self, model: sct.SupervisoryControlModel) -> None:
+        self._model = model
+
+    def never_enabled(self, observed: NeverEnabled) -> Diagnostic:
+        event, plant = observed.event, plant_of(observed.event)
+        silent = event.kind == sct.EventKind.tau
+        subject = f"this transition of `{name(plant)}`" if silent else f"`{name(plant)}`"
+        done = "taken" if silent else _DONE.get(plant.kind, "sent")
+        if observed.forbidden is Forbidden.BY_REQUIREMENTS:
+            why, hint = f"wherever it could be, {forbid(observed.requirements, 'it')}", "loosen what it needs"
+        elif observed.counterexample is not None:
+            why, hint = counterexample_in_words(observed.counterexample, self._model), way_out(observed.counterexample)
+        elif observed.kept_away:
+            why = f"the supervisor lets the robot reach no state in which it could be {done}"
+            hint = "allow a way to such a state"
+        elif silent:
+            why, hint = _guard(event), "correct its guard or what leads to its state"
+        else:
+            why = _not_requested(observed)
+            hint = f"write `on request to {name(plant)}` in a state that can be reached"
+        return _finding(
+            _blamed(observed.requirements, event),
+            "never-enabled",
+            f"{subject} can never be {done}: {why}",
+            f"{hint}, or leave it out",
+        )
+
+    def silent_restricted(self, observed: SilentRestricted) -> Diagnostic:
+        plant = name(plant_of(observed.event))
+        what = _FOLLOWED.get(observed.event.kind, "this transition of `{}`").format(plant)
+        return _finding(
+            observed.event,
+            "silent-restricted",
+            f"the supervisor has to hold back {what}, so that the model may no longer follow the robot: otherwise, "
+            f"{counterexample_in_words(observed.counterexample, self._model)}",
+            way_out(observed.counterexample),
+        )
+
+    @staticmethod
+    def self_cancelling(observed: SelfCancelling) -> Diagnostic:
+        states = [f"`{name(plant)}.{state.name}`" for plant, state in _entered(observed.event)]
+        led = f"allow {listed(states)}, where its request leads" if states else "ask for less"
+        return _finding(
+            _blamed(observed.requirements, observed.event),
+            "self-cancelling",
+            f"`{name(plant_of(observed.event))}` is cancelled as soon as it has started: right after its start "
+            f"{forbid(observed.requirements, 'it')}",
+            f"what an action needs must hold while it runs, too: {led}",
+            Severity.ERROR,
+        )
+
+    def provide_gap(self, observed: ProvideGap) -> Diagnostic:
+        plant = plant_of(observed.event)
+        done = _DONE.get(plant.kind, "sent")
+        edges = edges_of(observed.data)
+        read = [element for edge in edges for element in referenced(edge.guard)]
+        return _finding(
+            observed.data,
+            "provide-gap",
+            f"`{name(plant)}` can be {done} where no condition of a `provide` for it holds, without data"
+            + _where(observed.example, [*read, *self._asking(observed.event)]),
+            f"add `provide {name(plant)} with ...` without a condition, or a requirement that excludes this",
+        )
+
+    def shared_topic_conflict(self, observed: SharedTopicConflict) -> Diagnostic:
+        first, second = observed.first, observed.second
+        requirements = [*self._requirements(first), *self._requirements(second)]
+        return _finding(
+            requirements[-1] if requirements else second,
+            "shared-topic-conflict",
+            f"`{name(plant_of(first))}` and `{name(plant_of(second))}` go to one topic, and both can be sent at the "
+            f"same time, so that they take turns"
+            + _where(observed.example, [*self._asking(first), *self._asking(second)]),
+            "let the requirements on the two exclude each other",
+        )
+
+    @staticmethod
+    def unrestricted_call(event: sct.Event) -> Diagnostic:
+        called = name(plant_of(event))
+        return _finding(
+            event,
+            "unrestricted-call",
+            f"`{called}` is {_DONE[plant_of(event).kind]} again and again, as soon as it has ended: no requirement "
+            "restricts it, and no component waits for its request",
+            f"add `requirement {called} needs ...`, or `on request to {called}` in the states that allow it",
+        )
+
+    def unreachable_state(self, observed: UnreachableState) -> Diagnostic:
+        state, plant = observed.location, observed.location.eContainer()
+        why = "; ".join(dict.fromkeys(map(self._hindrance, observed.hindrances))) or "no transition leads to it"
+        first = "allow a transition that leads to it" if observed.hindrances else f"write `goto {state.name}` somewhere"
+        return _finding(
+            state,
+            "unreachable-state",
+            f"`{name(plant)}` is never in `{state.name}`: {why}",
+            f"{first}, or leave the state out",
+        )
+
+    def _hindrance(self, observed: Hindrance) -> str:
+        """Why a transition never leads to a state."""
+        here: sct.Location = observed.edge.eContainer()
+        event, own = observed.edge.event, here.eContainer()
+        if observed.forbidden is None:
+            return f"a transition leads there from `{here.name}`, but it is never in that either"
+        if observed.forbidden is Forbidden.BY_REQUIREMENTS:
+            return f"in `{here.name}` {forbid(observed.requirements, f'the {words(event)}')}"
+        if observed.counterexample is not None:
+            held_back = f"in `{here.name}` the supervisor holds back the {words(event)}"
+            return f"{held_back}, since {counterexample_in_words(observed.counterexample, self._model)}"
+        if own in observed.plants:
+            return f"in `{here.name}` the guard of the {words(event)} never holds"
+        others = [f"`{name(plant)}`" for plant in observed.plants]
+        who = (
+            f"{listed(others)} never {'takes' if len(others) == 1 else 'take'} part" if others else "not all take part"
+        )
+        return f"in `{here.name}` the {words(event)} never happens: {who} in it then"
+
+    def _requirements(self, event: sct.Event) -> list[sct.Requirement]:
+        return [requirement for requirement in self._model.requirements if requirement.event is event]
+
+    def _asking(self, event: sct.Event) -> Iterable[Element]:
+        """What decides whether an event is allowed: the plants that take part in it and what requirements read."""
+        for plant in self._model.plants:
+            if any(edge.event is event for edge in edges_of(plant)):
+                yield plant
+        for requirement in self._requirements(event):
+            yield from referenced(requirement.condition)
+
+
+def _finding(element: Any, rule: str, message: str, hint: str, severity: Severity = Severity.WARNING) -> Diagnostic:
+    file, span = place(element)
+    return Diagnostic(file, span, severity, rule, message, hint)
+
+
+def _blamed(requirements: Sequence[sct.Requirement], event: sct.Event) -> Any:
+    return requirements[0] if len(requirements) == 1 else event
+
+
+def _guard(event: sct.Event) -> str:
+    """Why a transition is never taken that no requirement restricts."""
+    plant = plant_of(event)
+    locations = [location for location in plant.locations if any(edge.event is event for edge in edges_from(location))]
+    guarded = any(
+        edge.guard is not None for location in locations for edge in edges_from(location) if edge.event is event
+    )
+    if len(locations) == len(plant.locations):
+        return "its guard never holds"
+    state = f"`{name(plant)}.{locations[0].name}`"
+    return f"its guard never holds in {state}" if guarded else f"{state} is never reached"
+
+
+def _not_requested(observed: NeverEnabled) -> str:
+    waiting = [f"`{name(plant)}`" for plant in observed.plants]
+    if not waiting:
+        return "the components that wait for its request never do so at the same time"
+    return f"{listed(waiting)} can't reach a state that waits for its request"
+
+
+def _entered(event: sct.Event) -> Iterable[tuple[sct.Plant, sct.Location]]:
+    """The states of components to which an event leads from others."""
+    plants: Sequence[sct.Plant] = plant_of(event).eContainer().plants
+    targets = [
+        edge.target
+        for plant in plants
+        for location in plant.locations
+        for edge in edges_from(location)
+        if plant.kind == sct.PlantKind.behaviour and edge.event is event and edge.target is not location
+    ]
+    return [(target.eContainer(), target) for target in dict.fromkeys(targets)]
+
+
+def _where(example: Example, relevant: Iterable[Element]) -> str:
+    """The example, as far as it is about elements with several values that matter."""
+    chosen = set(relevant)
+    said = [
+        (domain, value)
+        for domain, value in example.state.items()
+        if domain in chosen and not (isinstance(domain, sct.Plant) and len(domain.locations) == 1)
+    ]
+    shown = f", for example where `{condition(said)}`" if said else ""
+    return shown if example.quiescent else f"{shown}, if only until silent transitions have run"

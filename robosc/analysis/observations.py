@@ -1,0 +1,307 @@
+"""What is doubtful about a supervisor that is not empty: what it allows and is hardly meant, and what never happens."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum, auto
+from functools import cached_property
+from itertools import combinations
+from typing import TYPE_CHECKING
+
+from robosc.analysis.blocking import BlockingCounterexample, blocking_counterexample, forbidding, never_ready
+from robosc.metamodel import sct
+from robosc.semantics.roles import plant_of, provide_numbers
+from robosc.synthesis.decoding import Value, pick, value
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from robosc.analysis.system import SynthesizedSystem
+    from robosc.synthesis.bdd import Diagram
+    from robosc.synthesis.encoding import Element
+    from robosc.synthesis.guards import Permission
+
+_CALLS = (sct.PlantKind.service, sct.PlantKind.action)
+#: What the counterexamples of all guards may cost: the way to them, in nodes looked at, and the steps of all traces.
+_EFFORT = 1_000_000
+_STEPS = 400
+_FOLLOWS_THE_ROBOT = (sct.EventKind.tau, sct.EventKind.reset, sct.EventKind.cancel)
+
+
+class Forbidden(Enum):
+    """Who keeps an event from ever happening: the first of these that does."""
+
+    BY_PLANTS = auto()
+    BY_REQUIREMENTS = auto()
+    BY_SYNTHESIS = auto()
+
+
+@dataclass(frozen=True)
+class NeverEnabled:
+    """A trigger or tau event that is allowed in no controlled state.
+
+    `plants` are those which forbid it alone wherever the robot may come, `requirements` those which forbid it wherever
+    the plants enable it, be it only in states that the supervisor keeps the robot from: see `forbidding`.
+    `kept_away` says that the plants forbid it for that reason only. `counterexample` is there where synthesis forbids
+    it.
+    """
+
+    event: sct.Event
+    forbidden: Forbidden
+    plants: tuple[sct.Plant, ...] = ()
+    requirements: tuple[sct.Requirement, ...] = ()
+    kept_away: bool = False
+    counterexample: BlockingCounterexample | None = None
+
+
+@dataclass(frozen=True)
+class SilentRestricted:
+    """A tau, reset or cancel event to which synthesis added something."""
+
+    event: sct.Event
+    counterexample: BlockingCounterexample
+
+
+@dataclass(frozen=True)
+class SelfCancelling:
+    """An action, by its trigger, whose requirement holds in no state right after it.
+
+    `requirements` are those on it which hold in none of these states: see `forbidding`.
+    """
+
+    event: sct.Event
+    requirements: tuple[sct.Requirement, ...]
+
+
+@dataclass(frozen=True)
+class Example:
+    """A controlled state: the location of every plant by name, the value of every variable.
+
+    `quiescent` says that no internal event is allowed in it; there is another example only where no state is quiescent.
+    """
+
+    state: Mapping[Element, Value]
+    quiescent: bool
+
+
+@dataclass(frozen=True)
+class ProvideGap:
+    """A trigger that is allowed where none of the conditions on its data, in the plant `data`, holds."""
+
+    event: sct.Event
+    data: sct.Plant
+    example: Example
+
+
+@dataclass(frozen=True)
+class SharedTopicConflict:
+    """Two triggers of messages on one topic that are allowed at once, in the order of the model."""
+
+    first: sct.Event
+    second: sct.Event
+    example: Example
+
+
+@dataclass(frozen=True)
+class Hindrance:
+    """Why a transition that leads to a state from another is never taken.
+
+    `forbidden` is None where its own state is never reached. `plants` are those, its own among them, that are never
+    ready for it there, none if all are but never at once; `requirements` forbid it there, as `forbidding` says;
+    `counterexample` is there where synthesis does.
+    """
+
+    edge: sct.Edge
+    forbidden: Forbidden | None
+    plants: tuple[sct.Plant, ...] = ()
+    requirements: tuple[sct.Requirement, ...] = ()
+    counterexample: BlockingCounterexample | None = None
+
+
+@dataclass(frozen=True)
+class UnreachableState:
+    """A location of a component in no controlled state, and why none of the transitions to it is ever taken."""
+
+    location: sct.Location
+    hindrances: tuple[Hindrance, ...]
+
+
+@dataclass(frozen=True)
+class Observations:
+    """All of them, each kind in the order of the model. `unrestricted_calls` are triggers of services and actions.
+
+    These can happen, no requirement is on them, and no plant but their own takes part in them. `counterexamples` are
+    there for events to which synthesis added something: for all in models that are not large.
+    """
+
+    never_enabled: tuple[NeverEnabled, ...]
+    silent_restricted: tuple[SilentRestricted, ...]
+    self_cancelling: tuple[SelfCancelling, ...]
+    provide_gaps: tuple[ProvideGap, ...]
+    shared_topic_conflicts: tuple[SharedTopicConflict, ...]
+    unrestricted_calls: tuple[sct.Event, ...]
+    unreachable_states: tuple[UnreachableState, ...]
+    counterexamples: Mapping[sct.Event, BlockingCounterexample]
+
+
+class Observer:
+    """Looks at a system whose supervisor is not empty; `permissions` are those of all controllable events."""
+
+    def __init__(self, system: SynthesizedSystem, permissions: Sequence[Permission]) -> None:
+        self._system = system
+        self._permissions = {permission.relation.event: permission for permission in permissions}
+        self._counterexamples: dict[tuple[sct.Event, Diagram], BlockingCounterexample] = {}
+        self._triggers = [trigger for trigger in system.roles.triggers if trigger in self._permissions]
+
+    def observations(self) -> Observations:
+        """All that there is to say."""
+        return Observations(
+            tuple(self._never_enabled()),
+            tuple(self._silent_restricted()),
+            tuple(self._self_cancelling()),
+            tuple(self._provide_gaps()),
+            tuple(self._shared_topic_conflicts()),
+            tuple(self._unrestricted_calls()),
+            tuple(self._unreachable_states()),
+            dict(self._affordable_counterexamples()),
+        )
+
+    def _never_enabled(self) -> Iterator[NeverEnabled]:
+        controlled, uncontrolled = self._system.controlled, self._system.uncontrolled
+        for event, permission in self._permissions.items():
+            if event.kind not in (sct.EventKind.trigger, sct.EventKind.tau) or permission.guard.everEnabled:
+                continue
+            relation = permission.relation
+            in_sight = controlled & relation.enabled
+            enabled = in_sight if in_sight.satisfiable() else uncontrolled & relation.enabled
+            forbidden = not (enabled & relation.requirement).satisfiable()
+            if not enabled.satisfiable() or not (in_sight.satisfiable() or forbidden):
+                plants, kept_away = never_ready(relation, controlled), enabled.satisfiable()
+                yield NeverEnabled(event, Forbidden.BY_PLANTS, plants=plants, kept_away=kept_away)
+            elif forbidden:
+                yield NeverEnabled(
+                    event, Forbidden.BY_REQUIREMENTS, requirements=forbidding(permission.relation, enabled)
+                )
+            else:
+                yield NeverEnabled(event, Forbidden.BY_SYNTHESIS, counterexample=self._counterexample(permission))
+
+    def _silent_restricted(self) -> Iterator[SilentRestricted]:
+        for event, permission in self._permissions.items():
+            if event.kind in _FOLLOWS_THE_ROBOT and permission.guard.synthesis is not None:
+                yield SilentRestricted(event, self._counterexample(permission))
+
+    def _self_cancelling(self) -> Iterator[SelfCancelling]:
+        for event in self._triggers:
+            permission = self._permissions[event]
+            step = permission.relation.step
+            if plant_of(event).kind != sct.PlantKind.action or not permission.guard.everEnabled:
+                continue
+            after = permission.where if step is None else step.image(permission.where)
+            if not (after & permission.relation.requirement).satisfiable():
+                yield SelfCancelling(event, forbidding(permission.relation, after))
+
+    def _provide_gaps(self) -> Iterator[ProvideGap]:
+        for event in self._triggers:
+            plant = self._system.roles.data_plants.get(event)
+            if plant is None:
+                continue
+            gap = self._permissions[event].allowed
+            for chosen, number in provide_numbers(plant).items():
+                if chosen in self._permissions and number:
+                    gap &= ~self._permissions[chosen].relation.enabled
+            if gap.satisfiable():
+                yield ProvideGap(event, plant, self._example(gap))
+
+    def _shared_topic_conflicts(self) -> Iterator[SharedTopicConflict]:
+        for events in self._system.roles.shared_topics:
+            for first, second in combinations([event for event in events if event in self._permissions], 2):
+                both = self._permissions[first].allowed & self._permissions[second].allowed
+                if both.satisfiable():
+                    yield SharedTopicConflict(first, second, self._example(both))
+
+    def _unrestricted_calls(self) -> Iterator[sct.Event]:
+        for event in self._triggers:
+            plant, permission = plant_of(event), self._permissions[event]
+            alone = all(participant is plant for participant in permission.relation.enabled_by)
+            restricted = permission.relation.requirements or not alone
+            if plant.kind in _CALLS and not restricted and permission.guard.everEnabled:
+                yield event
+
+    def _unreachable_states(self) -> Iterator[UnreachableState]:
+        for plant in self._system.model.plants:
+            if plant.kind != sct.PlantKind.behaviour:
+                continue
+            reached = [
+                (self._system.controlled & self._system.encoding.location(location)) for location in plant.locations
+            ]
+            if all(states.satisfiable() for states in reached):
+                continue
+            states = dict(zip(plant.locations, reached, strict=True))
+            for location in plant.locations:
+                if not states[location].satisfiable():
+                    leading = (
+                        edge
+                        for other in plant.locations
+                        for edge in other.edges
+                        if edge.target is location and other is not location
+                    )
+                    hindrances = [self._hindrance(edge, states[edge.eContainer()]) for edge in leading]
+                    yield UnreachableState(location, tuple(hindrances))
+
+    def _hindrance(self, edge: sct.Edge, here: Diagram) -> Hindrance:
+        """Why an edge is never taken in the controlled states in which its plant is in its location."""
+        if not here.satisfiable():
+            return Hindrance(edge, None)
+        relation = self._system.relations[edge.event]
+        enabled = here & relation.enabled
+        if not enabled.satisfiable():
+            return Hindrance(edge, Forbidden.BY_PLANTS, plants=never_ready(relation, here))
+        if not (enabled & relation.requirement).satisfiable():
+            return Hindrance(edge, Forbidden.BY_REQUIREMENTS, requirements=forbidding(relation, enabled))
+        return Hindrance(
+            edge, Forbidden.BY_SYNTHESIS, counterexample=self._counterexample(self._permissions[edge.event], here)
+        )
+
+    def _example(self, states: Diagram) -> Example:
+        quiescent = states & ~self._active
+        codes = pick(quiescent if quiescent.satisfiable() else states, self._system.encoding.layout.state)
+        by_rank = sorted(self._system.encoding.layout.state, key=lambda domain: domain.rank)
+        named = {domain.element: value(domain.element, codes[domain.element]) for domain in by_rank}
+        return Example(named, quiescent.satisfiable())
+
+    @cached_property
+    def _active(self) -> Diagram:
+        result = self._system.encoding.diagrams.false
+        for event in self._system.roles.silent:
+            if event in self._permissions:
+                result |= self._permissions[event].allowed
+        return result
+
+    def _affordable_counterexamples(self) -> Iterator[tuple[sct.Event, BlockingCounterexample]]:
+        taken = 0
+        for event, permission in self._permissions.items():
+            if permission.guard.synthesis is None:
+                continue
+            goal = self._held_back(permission)
+            known = self._counterexamples.get((event, goal))
+            way = None if known or taken > _STEPS else self._system.layers.path_to(goal, _EFFORT)
+            found = known or (way and blocking_counterexample(self._system, event, way))
+            if found:
+                taken += len(found.trace) + len(found.onwards)
+                yield event, found
+
+    def _counterexample(self, permission: Permission, where: Diagram | None = None) -> BlockingCounterexample:
+        """What is prevented where the event is held back, in some of these states: looked for once, it may be long."""
+        goal = self._held_back(permission)
+        if where is not None:
+            goal &= where
+        event = permission.relation.event
+        if (event, goal) not in self._counterexamples:
+            way = self._system.path_to(goal)
+            self._counterexamples[event, goal] = blocking_counterexample(self._system, event, way)
+        return self._counterexamples[event, goal]
+
+    def _held_back(self, permission: Permission) -> Diagram:
+        """The controlled states in which only synthesis forbids the event."""
+        relation = permission.relation
+        return self._system.controlled & (relation.enabled & relation.requirement & ~permission.where)

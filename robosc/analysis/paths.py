@@ -1,0 +1,145 @@
+"""Shortest ways through the state space, event by event."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from robosc.semantics.roles import event_name
+from robosc.synthesis.decoding import Value, pick, text, value
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from robosc.synthesis.bdd import Diagram
+    from robosc.synthesis.encoding import Element, Encoding
+    from robosc.synthesis.relation import EventRelation, Step
+
+    Move = tuple[EventRelation, Step]
+
+
+@dataclass(frozen=True)
+class TraceStep:
+    """One event of a trace: its name, with its plant, and the values of those inputs on which its effect depends."""
+
+    event: str
+    inputs: Mapping[str, Value] = field(default_factory=dict)
+
+    def __str__(self) -> str:
+        """The event as a person writes it: `message_level.u_response(i_response = 3)`."""
+        values = ", ".join(f"{name} = {text(chosen)}" for name, chosen in self.inputs.items())
+        return f"{self.event}({values})" if values else self.event
+
+
+@dataclass(frozen=True)
+class Path:
+    """A way from one state to another: the states on it, both ends included, and the events between them."""
+
+    states: list[dict[Element, int]]
+    moves: list[Move]
+
+
+class Layers:
+    """The states that moves reach from a start, by the least number of steps, as far as was asked for."""
+
+    def __init__(self, encoding: Encoding, moves: Sequence[Move], start: Diagram, within: Diagram) -> None:
+        """A path stays `within` until it is at its goal."""
+        self._encoding = encoding
+        self._moves = moves
+        self._within = within
+        self._layers = [start]
+        self._seen = start
+        self._effort = 0
+
+    def path_to(self, goal: Diagram, effort: int | None = None) -> Path | None:
+        """A shortest path to a state of `goal`; None where there is none, or where all layers would take more effort.
+
+        Effort counts the nodes that every move looks at. Of several paths it is the same one every time: by the order
+        of the moves, then by the states' codes.
+        """
+        steps = 0
+        while not (self._layers[steps] & goal).satisfiable():
+            steps += 1
+            if steps == len(self._layers) and not self._grow(effort):
+                return None
+        return self._back(steps, goal)
+
+    def _grow(self, most: int | None) -> bool:
+        effort = self._effort + self._layers[-1].node_count() * len(self._moves)
+        if most is not None and effort > most:
+            return False
+        self._effort = effort
+        reached = self._encoding.diagrams.false
+        for _, step in self._moves:
+            reached |= step.image(self._layers[-1] & self._within)
+            self._encoding.diagrams.tidy()
+        reached &= ~self._seen
+        if not reached.satisfiable():
+            return False
+        self._layers.append(reached)
+        self._seen |= reached
+        return True
+
+    def _back(self, steps: int, goal: Diagram) -> Path:
+        state = pick(self._layers[steps] & goal, self._encoding.layout.state)
+        states, taken = [state], []
+        for layer in reversed(self._layers[:steps]):
+            here = self._encoding.state(state)
+            allowed = layer & self._within
+            move, before = next(
+                (move, before)
+                for move in self._moves
+                if move[0].may_lead_to(state) and (before := move[1].preimage(here) & allowed).satisfiable()
+            )
+            state = pick(before, self._encoding.layout.state)
+            states.append(state)
+            taken.append(move)
+        return Path(states[::-1], taken[::-1])
+
+
+def shortest_path(
+    encoding: Encoding, moves: Sequence[Move], start: Diagram, goal: Diagram, within: Diagram
+) -> Path | None:
+    """A shortest path from a state of `start` to one of `goal`, as `Layers` finds it."""
+    return Layers(encoding, moves, start, within).path_to(goal)
+
+
+def deciding(moves: Sequence[Move], elements: Iterable[Element]) -> list[Move]:
+    """The moves that decide what becomes of the elements: those that change them, or what these read, and so on."""
+    changing: dict[Element, list[int]] = {}
+    for number, (relation, _) in enumerate(moves):
+        for element in relation.changed:
+            changing.setdefault(element, []).append(number)
+    found: set[int] = set()
+    pending = list(elements)
+    while pending:
+        added = set(changing.pop(pending.pop(), ())) - found
+        found |= added
+        pending += (element for number in added for element in moves[number][0].concerned)
+    return [moves[number] for number in sorted(found)]
+
+
+def trace(encoding: Encoding, path: Path) -> list[TraceStep]:
+    """The events of a path with the input values that take it."""
+    return [
+        TraceStep(event_name(relation.event), _inputs(encoding, relation, before, after))
+        for (relation, _), before, after in zip(path.moves, path.states[:-1], path.states[1:], strict=True)
+    ]
+
+
+def _inputs(
+    encoding: Encoding, relation: EventRelation, before: Mapping[Element, int], after: Mapping[Element, int]
+) -> dict[str, Value]:
+    """Values of the event's inputs that lead from one state to the next; none for those that do not matter."""
+    if not relation.event.inputs:
+        return {}
+    fitting = relation.between(before, after)
+    chosen = {}
+    for parameter in relation.event.inputs:
+        domain = encoding.layout.domains[parameter]
+        anything = fitting.exists(encoding.diagrams.cube(domain.levels)) & encoding.in_domain(parameter)
+        if anything != fitting:
+            code = pick(fitting, [domain])[parameter]
+            chosen[parameter.name] = value(parameter, code)
+            fitting &= encoding.has_code(parameter, code)
+    return chosen

@@ -1,0 +1,99 @@
+"""Gives a model its supervisor, or says why there is none, and what is doubtful about it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from robosc.analysis.blocking import Reason, reason_of_emptiness
+from robosc.analysis.findings import findings_of
+from robosc.analysis.observations import Observations, Observer
+from robosc.analysis.system import SynthesizedSystem
+from robosc.analysis.wording import blocking, counterexample_in_words, forbid, in_words
+from robosc.diagnostics import Diagnostic, ModelError, Severity, has_errors
+from robosc.metamodel.places import place
+from robosc.semantics.recursion import deep_recursion
+from robosc.synthesis import MEMORY, Phase, Solution, Statistics, Synthesis, solve
+
+if TYPE_CHECKING:
+    from robosc.metamodel import sct
+
+
+@dataclass(frozen=True)
+class Diagnosis(Synthesis):
+    """The result of synthesis, with `observations` of the supervisor, or with the `reason` why it is empty."""
+
+    observations: Observations | None = None
+    reason: Reason | None = None
+
+
+@dataclass(frozen=True)
+class Supervision:
+    """The result of synthesis, and what its rules find."""
+
+    synthesis: Diagnosis
+    findings: list[Diagnostic]
+
+
+class EmptySupervisorError(ModelError):
+    """No behaviour of the robot keeps to its requirements; `synthesis.reason` says why."""
+
+    def __init__(self, model: sct.SupervisoryControlModel, synthesis: Diagnosis) -> None:
+        self.synthesis = synthesis
+        assert synthesis.reason is not None
+        reason = synthesis.reason
+        trace = f"; a shortest trace: {in_words(reason.trace, model)}" if reason.trace else ""
+        file, span = place(reason.event or model)
+        message = f"the supervisor is empty: {blocking(reason)}{trace}"
+        if reason.requirements and not (reason.event and reason.event.controllable):
+            message += f"; from there on {forbid(reason.requirements, 'something')}"
+        hint = (
+            "loosen a requirement, or give every component a way back to a marked state; `robosc explain --why-empty`"
+            " tells more"
+        )
+        super().__init__([Diagnostic(file, span, Severity.ERROR, "empty-supervisor", message, hint)])
+
+
+def diagnose(
+    model: sct.SupervisoryControlModel, *, memory: int = MEMORY, statistics: Statistics | None = None
+) -> Diagnosis:
+    """Synthesizes the supervisor of a model, which stays as it is, and observes it.
+
+    `memory`, `statistics` and errors are those of `robosc.synthesis.synthesize`.
+    """
+
+    def look(solution: Solution) -> Diagnosis:
+        found = vars(solution.synthesis)
+        with solution.synthesis.statistics.during(Phase.OBSERVE if solution.synthesis.supervisor else Phase.GUARDS):
+            system = SynthesizedSystem(model, solution.encoding, solution.relations, solution.states)
+            system.uncontrolled = solution.uncontrolled
+            if solution.synthesis.supervisor is None:
+                return Diagnosis(**found, reason=reason_of_emptiness(system))
+            return Diagnosis(**found, observations=Observer(system, solution.permissions).observations())
+
+    return solve(model, look, memory=memory, statistics=statistics)
+
+
+@deep_recursion()
+def supervise(
+    model: sct.SupervisoryControlModel, *, memory: int = MEMORY, statistics: Statistics | None = None
+) -> Supervision:
+    """Synthesizes the supervisor of a model, and makes it the model's own unless the findings have an error.
+
+    Its guards say why synthesis added something, where that is told at reasonable cost.
+
+    `memory` and `statistics` are those of `robosc.synthesis.synthesize`. Raises EmptySupervisorError where there is no
+    supervisor, ModelError and MemoryError as it does.
+    """
+    synthesis = diagnose(model, memory=memory, statistics=statistics)
+    if synthesis.observations is None:
+        raise EmptySupervisorError(model, synthesis)
+    found = findings_of(model, synthesis.observations)
+    assert synthesis.supervisor is not None
+    for guard in synthesis.supervisor.guards:
+        counterexample = synthesis.observations.counterexamples.get(guard.event)
+        if counterexample is not None:
+            guard.explanation = counterexample_in_words(counterexample, model)
+    if not has_errors(found):
+        model.supervisor = synthesis.supervisor
+    return Supervision(synthesis, found)

@@ -1,0 +1,250 @@
+"""The supervised system: what findings, explanations and verification are all about.
+
+It has the decision diagrams of a model, the states that can be reached under its supervisor, where each event can
+happen in them, and shortest paths through them. There are two ways to come by one. `SynthesizedSystem` is the system as
+the fixpoint of synthesis found it. `GuardedSystem` is the system that a controller executes: it is read from the guards
+of a model's supervisor alone, so that verification does not trust the fixpoint.
+"""
+
+from __future__ import annotations
+
+from copy import copy
+from decimal import Decimal
+from functools import cached_property, reduce
+from operator import and_
+from typing import TYPE_CHECKING
+
+from robosc.analysis.paths import Layers, trace
+from robosc.analysis.wording import condition
+from robosc.metamodel import sct
+from robosc.semantics.roles import Roles, plant_of
+from robosc.synthesis.decoding import value
+from robosc.synthesis.fixpoint import reachable, supervise
+from robosc.synthesis.relation import event_relations, plant_moves, required_moves, steps
+from robosc.synthesis.run_to_completion import Completion, completion, internal_events
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Set as AbstractSet
+    from typing import Self
+
+    from robosc.analysis.paths import Path, TraceStep
+    from robosc.metamodel import expression as ex
+    from robosc.synthesis.bdd import Diagram
+    from robosc.synthesis.decoding import Value
+    from robosc.synthesis.encoding import Element, Encoding
+    from robosc.synthesis.fixpoint import SupervisedStates
+    from robosc.synthesis.relation import EventRelation, Move
+
+    Codes = Mapping[Element, int]
+
+#: What finding the longest run to completion may cost, in nodes looked at.
+_EFFORT = 200_000_000
+#: Numbers of more digits are rounded.
+_DIGITS = 15
+
+
+class SupervisedSystem:
+    """The plants of a model under a supervisor; a single state is given by the code of each of its elements.
+
+    `relations` has the relation of each event, in the order of the plants. `moves` are the events that change
+    something, each with its step; from a controlled state, a step may lead out of the controlled states where only
+    synthesis forbids it.
+    """
+
+    def __init__(
+        self,
+        model: sct.SupervisoryControlModel,
+        encoding: Encoding,
+        relations: Mapping[sct.Event, EventRelation],
+        moves: Sequence[Move],
+    ) -> None:
+        self.model = model
+        self.roles = Roles(model)
+        self.encoding = encoding
+        self.diagrams = encoding.diagrams
+        self.relations = relations
+        self.moves = moves
+        self.plant_moves = plant_moves(relations.values())
+
+    @cached_property
+    def controlled(self) -> Diagram:
+        """The states that are reachable under the supervisor: none if it is empty."""
+        return reachable(self.diagrams, steps(self.moves), self.encoding.initial, self.diagrams.true)
+
+    @cached_property
+    def uncontrolled(self) -> Diagram:
+        """The states that the plants reach without requirements."""
+        return reachable(self.diagrams, steps(self.plant_moves), self.encoding.initial, self.diagrams.true)
+
+    @cached_property
+    def size(self) -> str:
+        """The number of controlled states, in words."""
+        return counted(self.encoding.count(self.controlled), "state")
+
+    @cached_property
+    def layers(self) -> Layers:
+        """The controlled states by their distance from the initial one."""
+        return self.layers_from(self.encoding.initial_codes)
+
+    def layers_from(self, start: Codes) -> Layers:
+        """The controlled states by their distance from one of them."""
+        return Layers(self.encoding, self.moves, self.encoding.state(start), self.controlled)
+
+    def path_to(self, states: Diagram) -> Path:
+        """A shortest path from the initial state to one of these controlled states."""
+        path = self.layers.path_to(states)
+        assert path is not None
+        return path
+
+    def trace(self, path: Path) -> tuple[TraceStep, ...]:
+        """The events of a path, with the values of inputs that matter."""
+        return tuple(trace(self.encoding, path))
+
+    def last(self, path: Path) -> Diagram:
+        """The state in which a path ends."""
+        return self.encoding.state(path.states[-1])
+
+    def onwards(self, codes: Codes, moves: Sequence[Move] | None = None) -> Diagram:
+        """The states that `moves`, else all moves of the system, reach from a state, that one included."""
+        possible = self.moves if moves is None else moves
+        return reachable(self.diagrams, steps(possible), self.encoding.state(codes), self.diagrams.true)
+
+    def never_marked(self, codes: Codes, moves: Sequence[Move] | None = None) -> list[sct.Plant]:
+        """The plants that are in no marked location in any state that can follow the given one, as `onwards` says."""
+        states = self.onwards(codes, moves)
+        return [plant for plant in self.model.plants if not (states & self.encoding.marked(plant)).satisfiable()]
+
+    def holds(self, expression: ex.Expression | None, codes: Codes) -> bool:
+        """Whether a condition is true in a state."""
+        return self.is_in(codes, self.encoding.holds(expression))
+
+    def is_in(self, codes: Codes, states: Diagram) -> bool:
+        """Whether a state is one of these."""
+        return (self.encoding.state(codes) & states).satisfiable()
+
+    @staticmethod
+    def where(codes: Codes, relevant: Iterable[Element]) -> str:
+        """The values of those relevant elements that have several, such as `Lidar.free and Gauge.level = 3`."""
+        chosen = dict.fromkeys(element for element in relevant if element in codes)
+        return condition(
+            (element, value(element, codes[element]))
+            for element in chosen
+            if not (isinstance(element, sct.Plant) and len(element.locations) == 1)
+        )
+
+
+class SynthesizedSystem(SupervisedSystem):
+    """The system as synthesis finds it; its moves are all events under the requirements.
+
+    `found` is the result of the fixpoint: of each round the states still held to be good, and those of them from which
+    a marked state can be reached.
+    """
+
+    def __init__(
+        self,
+        model: sct.SupervisoryControlModel,
+        encoding: Encoding,
+        relations: Sequence[EventRelation] | None = None,
+        found: SupervisedStates | None = None,
+    ) -> None:
+        """Without `relations` and `found` they are made anew."""
+        relations = event_relations(model, encoding) if relations is None else relations
+        super().__init__(
+            model, encoding, {relation.event: relation for relation in relations}, required_moves(relations)
+        )
+        self.required = {relation.event: relation.requirement for relation in relations}
+        self.found = supervise(encoding, self.moves) if found is None else found
+        self.controlled = self.found.controlled
+
+    def without(self, requirements: AbstractSet[sct.Requirement]) -> Self:
+        """The system that there would be without some requirements.
+
+        An action that is cancelled where a requirement on it no longer holds is then cancelled for the others alone.
+        """
+        other = copy(self)
+        vars(other).pop("layers", None)
+        other.required = {}
+        for event, relation in self.relations.items():
+            trigger = self.start_of(event)
+            kept = self._asked(relation if trigger is None else self.relations[trigger], requirements)
+            other.required[event] = kept if trigger is None else ~kept
+        moves = ((relation, relation.step_where(other.required[event])) for event, relation in self.relations.items())
+        other.moves = [(relation, step) for relation, step in moves if step is not None]
+        other.found = supervise(self.encoding, other.moves)
+        other.controlled = other.found.controlled
+        return other
+
+    def allowed(self, event: sct.Event) -> Diagram:
+        """The controlled states in which the event can happen."""
+        enabled = self.controlled & self.relations[event].enabled & self.required[event]
+        step = next((step for relation, step in self.moves if relation.event is event), None)
+        return enabled & step.preimage(self.controlled) if event.controllable and step is not None else enabled
+
+    def start_of(self, event: sct.Event) -> sct.Event | None:
+        """The start of the action whose requirements say when `event` cancels it; None for any other event.
+
+        The requirement that says so stands at the action itself.
+        """
+        plant, requirements = plant_of(event), self.relations[event].requirements
+        sources = [requirement.source for requirement in requirements]
+        if event.kind != sct.EventKind.cancel or sources != [plant.source or ""]:
+            return None
+        return next((other for other in plant.events if other.kind == sct.EventKind.trigger), None)
+
+    def _asked(self, relation: EventRelation, left_out: AbstractSet[sct.Requirement]) -> Diagram:
+        """Where the requirements on an event hold but for those left out."""
+        kept = [asked for requirement, asked in relation.asked.items() if requirement not in left_out]
+        return reduce(and_, kept, self.diagrams.true)
+
+
+class GuardedSystem(SupervisedSystem):
+    """The system that a controller executes.
+
+    An event happens where its plants enable it and both parts of its guard hold: these are expressions of the
+    supervisor, and the requirements are not asked. Without `guards` the system are the plants alone. Raises ValueError
+    where the model has no supervisor.
+    """
+
+    def __init__(self, model: sct.SupervisoryControlModel, encoding: Encoding, *, guards: bool = True) -> None:
+        if model.supervisor is None:
+            raise ValueError(f"{model.name} has no supervisor: synthesize it first")
+        self.supervisor = model.supervisor
+        self.guards = {guard.event: guard for guard in model.supervisor.guards if guards}
+        relations = {relation.event: relation for relation in event_relations(model, encoding)}
+        super().__init__(model, encoding, relations, [])
+        #: Where an event can happen, in reachable states and in all others.
+        self.allowed = {event: relation.enabled & self.guard(event) for event, relation in relations.items()}
+        supervised = [
+            (relations[event], allowed, relations[event].step_where(allowed)) for event, allowed in self.allowed.items()
+        ]
+        self.moves = [(relation, step) for relation, _, step in supervised if step is not None]
+        self.internal = internal_events(supervised, self.guards.values())
+
+    def guard(self, event: sct.Event) -> Diagram:
+        """Where the supervisor lets an event happen: everywhere, if it has no guard for the event."""
+        guard = self.guards.get(event)
+        if guard is None:
+            return self.diagrams.true
+        return self.encoding.holds(guard.requirement) & self.encoding.holds(guard.synthesis)
+
+    @cached_property
+    def completion(self) -> Completion:
+        """How many internal events can happen in a row, and where there is no end to them."""
+        return completion(self.diagrams, self.internal, self.controlled, _EFFORT)
+
+
+def whole_state(model: sct.SupervisoryControlModel, codes: Codes) -> dict[str, Value]:
+    """The state with these codes, as `robosc simulate` prints it."""
+    state: dict[str, Value] = {}
+    for plant in model.plants:
+        state[plant.name] = value(plant, codes[plant])
+        for variable in plant.variables:
+            state[f"{plant.origin or plant.name}.{variable.name}"] = value(variable, codes[variable])
+    return state
+
+
+def counted(number: int, what: str) -> str:
+    """A number of things: `1 state`, `1,234 states`, `1.27e+30 states`."""
+    text = f"{number:,}" if number < 10**_DIGITS else f"{Decimal(number):.2e}"
+    return f"{text} {what}" if number == 1 else f"{text} {what}s"

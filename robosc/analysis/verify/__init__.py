@@ -1,0 +1,81 @@
+"""Proves or refutes that a supervised system keeps its promises, and that its outputs are what it is.
+
+    verdicts = verify(Models(model_with_supervisor), Configuration())
+
+`properties` and `response` are about the supervised system, on decision diagrams; the states that the control loop
+comes to are found in `loop`. `c_validation` and `cif_validation` are translation validation: they do not ask how a text
+was made, but read it anew, the C with a compiler, the CIF with a grammar of its own, and compare it with the model
+(Pnueli, Siegel, Singerman: Translation validation, TACAS 1998).
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from time import perf_counter
+from typing import TYPE_CHECKING, Any
+
+from robosc.analysis.system import GuardedSystem
+from robosc.analysis.verify import c_validation, cif_validation
+from robosc.analysis.verify.c_validation import Effort, validate_c
+from robosc.analysis.verify.cif_validation import validate_cif
+from robosc.analysis.verify.properties import properties
+from robosc.analysis.verify.verdict import Outcome, Verdict
+from robosc.m2t import cif, supervisor
+from robosc.synthesis import MEMORY, encoded
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from robosc.configuration import Configuration
+    from robosc.m2t.models import Models
+    from robosc.metamodel import sct
+    from robosc.synthesis.encoding import Encoding
+
+__all__ = ["Effort", "Outcome", "Verdict", "validate", "validate_c", "validate_cif", "verify", "verify_system"]
+
+
+def verify(models: Models, configuration: Configuration) -> list[Verdict]:
+    """The verdicts on a model with its supervisor, and on the C and the CIF that the configuration makes of it.
+
+    Raises ValueError where the model has no supervisor, MemoryError where decision diagrams take more than 4 GB.
+    """
+    return [*verify_system(models.sct), *validate(models, configuration)]
+
+
+def verify_system(model: sct.SupervisoryControlModel, *, memory: int = MEMORY) -> list[Verdict]:
+    """The verdicts on a model under its supervisor, whatever it was made from, the model left as it is.
+
+    All but the seconds is the same on every run. `memory` bounds the bytes for decision diagrams: MemoryError is raised
+    beyond. Raises ValueError where the model has no supervisor.
+    """
+
+    def look(encoding: Encoding) -> list[Verdict]:
+        return [_timed(examine) for examine in properties(GuardedSystem(model, encoding))]
+
+    return encoded(model, look, memory)
+
+
+def validate(models: Models, configuration: Configuration) -> list[Verdict]:
+    """The verdicts on the C and on the CIF that are generated from a model with its supervisor.
+
+    Raises ValueError where the model has no supervisor, MemoryError where decision diagrams take more than 4 GB.
+    """
+    targets: list[tuple[str, Any, Callable[..., Verdict]]] = [
+        (c_validation.PROPERTY, supervisor, validate_c),
+        (cif_validation.PROPERTY, cif, validate_cif),
+    ]
+    verdicts = []
+    for question, target, examine in targets:
+        obstacles = target.preconditions(models, configuration)
+        verdicts.append(
+            Verdict(question, Outcome.SKIPPED, "", obstacles[0].message)
+            if obstacles
+            else _timed(lambda: examine(models.sct, target.generate(models, configuration)))  # noqa: B023 - called at once
+        )
+    return verdicts
+
+
+def _timed(examine: Callable[[], Verdict]) -> Verdict:
+    """The verdict with its seconds."""
+    began = perf_counter()
+    return replace(examine(), seconds=perf_counter() - began)

@@ -1,0 +1,462 @@
+"""Reads generated CIF by CIF's language reference: grammar/cif.tx, then names, types, and what synthesis asks for."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, replace
+from functools import cache, reduce
+from typing import TYPE_CHECKING, Any, NoReturn
+
+import textx
+
+from robosc.analysis.verify import cif_types as types
+from robosc.files.resources import locate
+from robosc.metamodel import expression as ex
+from robosc.metamodel import sct
+from robosc.semantics.printing import copied
+from robosc.semantics.recursion import deep_recursion
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    _Typed = tuple[ex.Expression, types.Type]
+
+
+class CifError(ValueError):
+    """A text that is not such a specification; says where and what is wrong."""
+
+
+class DepthError(CifError):
+    """A text that is nested too deep to be read."""
+
+
+@dataclass(frozen=True)
+class Specification:
+    """What a specification says, with CIF's own names and numbers.
+
+    `model` holds enumerations, plants and requirements; CIF knows no kinds of plants and events, nor which event
+    carries an input. `supervisor` is the automaton with what synthesis added, in one location, None where there is
+    none; `alphabet` are its events. `invariants` are what else holds under the supervisor.
+    """
+
+    model: sct.SupervisoryControlModel
+    invariants: Sequence[sct.Requirement]
+    supervisor: sct.Plant | None
+    alphabet: Sequence[sct.Event]
+
+
+#: How deep parentheses, `if` and `not` may be nested: what reads them calls itself so often for each, and takes
+#: of the C stack, too.
+DEEPEST = 2000
+_CALLS = 60
+#: What nests, and what stands between; texts and comments, in which nothing does, are one of the latter.
+_NESTING = re.compile(r'"(?:[^"\\]|\\.)*"|//.*|/\*(?:.|\n)*?\*/|[();]|\$?[A-Za-z_][\w.$]*|\d+')
+
+
+@cache
+def _grammar() -> Any:
+    return textx.metamodel_from_file(str(locate("grammar/cif.tx")), autokwd=True)
+
+
+def read(text: str) -> Specification:
+    """The specification that a text is. Raises CifError."""
+    strange = next((place for place, character in enumerate(text) if not character.isascii()), None)
+    if strange is not None:
+        line, column = text.count("\n", 0, strange) + 1, strange - text.rfind("\n", 0, strange)
+        raise CifError(f"line {line}, column {column}: {text[strange]!a} is no ASCII")
+    _refuse_too_deep(text)
+    try:
+        with deep_recursion(_CALLS * DEEPEST):
+            return _Reading(_grammar().model_from_str(text)).specification()
+    except textx.TextXSyntaxError as fault:
+        raise CifError(f"line {fault.line}, column {fault.col}: {fault.message}") from None
+
+
+def _refuse_too_deep(text: str) -> None:
+    around: list[int] = []
+    depth = operators = 0
+    for token in _NESTING.finditer(text):
+        word = token[0]
+        if word == "not":
+            operators += 1
+        elif word in ("(", "if"):
+            around.append(operators + 1)
+            depth += around[-1]
+            operators = 0
+        elif word == ";":
+            around.clear()
+            depth = operators = 0
+        else:
+            operators = 0
+            if word in (")", "end") and around:
+                depth -= around.pop()
+        if depth + operators > DEEPEST:
+            line, column = text.count("\n", 0, token.start()) + 1, token.start() - text.rfind("\n", 0, token.start())
+            raise DepthError(f"line {line}, column {column}: this is nested more than {DEEPEST} levels deep")
+
+
+@dataclass(frozen=True)
+class _Scope:
+    """Where an expression stands: the automaton, if any; and what is special there."""
+
+    automaton: sct.Plant | None = None
+    #: It is a constant.
+    constant: bool = False
+    #: It is all that is assigned, where synthesis takes a subtraction.
+    assigned: bool = False
+
+
+class _Reading:
+    """From the objects of the grammar to those of the metamodel."""
+
+    def __init__(self, read: Any) -> None:
+        self._read = read
+        #: What is declared outside of automata, and in each of them.
+        self._outer: dict[str, Any] = {}
+        self._inner: dict[sct.Plant, dict[str, Any]] = {}
+        self._types: dict[sct.DiscreteVariable | sct.Input, types.Type] = {}
+
+    def specification(self) -> Specification:
+        """All of it. Raises CifError."""
+        model = sct.SupervisoryControlModel(name="")
+        self._annotated(self._read)
+        automata: list[tuple[Any, sct.Plant]] = []
+        for enumeration in self._of("Enumeration"):
+            model.enumerations.append(self._enumeration(enumeration))
+        for declaration in self._of("Automaton"):
+            self._annotated(declaration)
+            automata.append(
+                (declaration, self._define(sct.Plant(name=_plain(declaration.name)), declaration.name, self._outer))
+            )
+        for declaration, automaton in automata:
+            self._declare(declaration, automaton)
+        alphabets = [
+            (declaration, automaton, self._fill(declaration, automaton)) for declaration, automaton in automata
+        ]
+        model.plants.extend(automaton for declaration, automaton in automata if declaration.kind == "plant")
+        if not model.plants:
+            self._fail(self._read, "there is no plant")
+        invariants: dict[str, list[sct.Requirement]] = {"plant": [], "requirement": [], "supervisor": []}
+        for invariant in self._of("Invariant"):
+            self._annotated(invariant)
+            invariants[invariant.kind].append(self._exclusion(invariant.restriction))
+        model.requirements.extend(invariants["requirement"])
+        supervisors = [alphabet for alphabet in alphabets if alphabet[0].kind == "supervisor"]
+        for declaration, _, _ in supervisors[1:]:
+            self._fail(declaration, "there is a second supervisor")
+        for declaration, automaton, _ in supervisors:
+            if len(automaton.locations) != 1 or not automaton.locations[0].marked:
+                self._fail(declaration, "a supervisor has one location, and that is marked")
+        return Specification(
+            model,
+            [*invariants["plant"], *invariants["supervisor"]],
+            supervisors[0][1] if supervisors else None,
+            supervisors[0][2] if supervisors else [],
+        )
+
+    def _of(self, rule: str) -> list[Any]:
+        return [declaration for declaration in self._read.declarations if type(declaration).__name__ == rule]
+
+    @staticmethod
+    def _fail(read: Any, reason: str) -> NoReturn:
+        place = textx.get_location(read)
+        raise CifError(f"line {place['line']}, column {place['col']}: {reason}")
+
+    def _annotated(self, read: Any) -> None:
+        for annotation in read.annotations:
+            if annotation.name.lstrip("@") != "doc":
+                self._fail(annotation, f"there is no annotation {annotation.name}")
+            if not annotation.texts:
+                self._fail(annotation, f"{annotation.name} says nothing")
+
+    # Declarations
+
+    def _define(self, element: Any, read: Any, scope: dict[str, Any]) -> Any:
+        if element.name in scope:
+            self._fail(read, f"there are two of the name '{element.name}'")
+        scope[element.name] = element
+        return element
+
+    def _enumeration(self, read: Any) -> ex.Enumeration:
+        self._annotated(read)
+        made: ex.Enumeration = self._define(ex.Enumeration(name=_plain(read.name)), read.name, self._outer)
+        for literal in read.literals:
+            self._annotated(literal)
+            made.literals.append(self._define(ex.EnumerationLiteral(name=_plain(literal.name)), literal, self._outer))
+        return made
+
+    def _declare(self, read: Any, automaton: sct.Plant) -> None:
+        """What is declared in an automaton, without what speaks of other things."""
+        self._inner[automaton] = {}
+        made: list[Any]
+        for declaration in read.declarations:
+            match type(declaration).__name__:
+                case "Events":
+                    made = [
+                        sct.Event(name=_plain(name), controllable=declaration.controllable)
+                        for name in declaration.names
+                    ]
+                    self._members(automaton.events, made, declaration, declaration.names)
+                case "Inputs":
+                    made = [
+                        sct.Input(name=_plain(name), type=self._type(declaration.type, automaton))
+                        for name in declaration.names
+                    ]
+                    self._members(automaton.inputs, made, declaration, declaration.names)
+                case "Variables":
+                    names = [variable.name for variable in declaration.variables]
+                    kind = self._type
+                    made = [
+                        sct.DiscreteVariable(name=_plain(name), type=kind(declaration.type, automaton))
+                        for name in names
+                    ]
+                    self._members(automaton.variables, made, declaration, names)
+        for location in read.locations:
+            self._location(location, automaton, alone=len(read.locations) == 1)
+        if not any(location.initial for location in automaton.locations):
+            self._fail(read, f"'{automaton.name}' has no initial location")
+
+    def _members(self, members: Any, made: Sequence[Any], read: Any, names: Sequence[Any]) -> None:
+        self._annotated(read)
+        for element, name in zip(made, names, strict=True):
+            members.append(element)
+            self._define(element, name, self._inner[element.eContainer()])
+            if not isinstance(element, sct.Event):
+                self._types[element] = _values(element.type)
+
+    def _location(self, read: Any, automaton: sct.Plant, *, alone: bool) -> None:
+        self._annotated(read)
+        words = [getattr(element, "word", None) for element in read.elements]
+        location = sct.Location(
+            name=_plain(read.name) if read.name else "", initial="initial" in words, marked="marked" in words
+        )
+        if read.name:
+            self._define(location, read.name, self._inner[automaton])
+        elif not alone:
+            self._fail(read, "a location without a name is the only one")
+        if location.initial and any(location.initial for location in automaton.locations):
+            self._fail(read, f"'{automaton.name}' has another initial location before this one")
+        automaton.locations.append(location)
+
+    def _type(self, read: Any, automaton: sct.Plant) -> ex.Type:
+        match type(read).__name__:
+            case "Boolean":
+                return ex.BooleanType()
+            case "Range":
+                low, high = (self._number(bound, read) for bound in (read.low, read.high))
+                if low > high:
+                    self._fail(read, f"nothing is in int[{low}..{high}]")
+                return ex.IntegerType(minimum=low, maximum=high)
+        enumeration = self._find(read.enumeration, automaton)
+        if not isinstance(enumeration, ex.Enumeration):
+            self._fail(read, f"'{read.enumeration.text}' is no enumeration")
+        return ex.EnumerationType(enumeration=enumeration)
+
+    def _number(self, digits: str, read: Any) -> int:
+        if int(digits) > types.LARGEST:
+            self._fail(read, f"{digits} does not fit 32 bits")
+        return int(digits)
+
+    # What speaks of other things
+
+    def _fill(self, read: Any, automaton: sct.Plant) -> list[sct.Event]:
+        """Initial values and edges; returns the automaton's alphabet."""
+        variables = [
+            variable for one in read.declarations if type(one).__name__ == "Variables" for variable in one.variables
+        ]
+        for variable, declaration in zip(automaton.variables, variables, strict=True):
+            value, kind = self._expression(declaration.initial, _Scope(automaton, constant=True))
+            if not types.contains(self._types[variable], kind):
+                self._fail(
+                    declaration,
+                    f"'{variable.name}' is {self._shown(variable)} and its initial value {types.shown(kind)}",
+                )
+            variable.initial = value
+        for location, declaration in zip(automaton.locations, read.locations, strict=True):
+            for edge in declaration.elements:
+                if type(edge).__name__ == "Edge":
+                    location.edges.append(self._edge(edge, location, automaton))
+        return self._alphabet(read, automaton)
+
+    def _alphabet(self, read: Any, automaton: sct.Plant) -> list[sct.Event]:
+        declared = self._events(read, "Alphabet", automaton)
+        edges = [
+            element for location in read.locations for element in location.elements if type(element).__name__ == "Edge"
+        ]
+        used = [self._event(edge.event, automaton) for edge in edges]
+        if declared is not None:
+            for edge, event in zip(edges, used, strict=True):
+                if event not in declared:
+                    self._fail(edge, f"'{edge.event.text}' is not in the alphabet of '{automaton.name}'")
+            if read.kind != "supervisor" and set(declared) != set(used):
+                self._fail(read, f"an event in the alphabet of '{automaton.name}' has no edge")
+        alphabet = list(dict.fromkeys(used)) if declared is None else declared
+        monitored = self._events(read, "Monitor", automaton)
+        for event in (monitored or alphabet) if monitored is not None else ():
+            if event not in alphabet:
+                self._fail(read, f"'{event.name}' is monitored and not in the alphabet of '{automaton.name}'")
+            for location in automaton.locations:
+                _monitor(event, location)
+        return alphabet
+
+    def _events(self, read: Any, rule: str, automaton: sct.Plant) -> list[sct.Event] | None:
+        """The events of such a declaration, None where there is none."""
+        found = [declaration for declaration in read.declarations if type(declaration).__name__ == rule]
+        for another in found[1:]:
+            self._fail(another, f"'{automaton.name}' has another {rule.lower()} before this one")
+        return [self._event(event, automaton) for event in found[0].events] if found else None
+
+    def _edge(self, read: Any, location: sct.Location, automaton: sct.Plant) -> sct.Edge:
+        self._annotated(read)
+        target = self._find(read.target, automaton) if read.target else location
+        if not isinstance(target, sct.Location) or target.eContainer() is not automaton:
+            self._fail(read.target, f"'{read.target.text}' is no location of '{automaton.name}'")
+        edge = sct.Edge(event=self._event(read.event, automaton), target=target)
+        if read.guard:
+            edge.guard = self._condition(read.guard, _Scope(automaton))
+        for update in read.updates:
+            variable = self._find(update.variable, automaton)
+            if not isinstance(variable, sct.DiscreteVariable):
+                self._fail(update, f"'{update.variable.text}' is no variable")
+            if variable.eContainer() is not automaton:
+                self._fail(update, f"'{update.variable.text}' is no variable of '{automaton.name}'")
+            if any(variable is other.variable for other in edge.updates):
+                self._fail(update, f"'{update.variable.text}' is assigned twice")
+            value, kind = self._expression(update.value, _Scope(automaton, assigned=True))
+            if not types.overlap(self._types[variable], kind):
+                self._fail(
+                    update, f"'{variable.name}' is {self._shown(variable)} and what it is to be {types.shown(kind)}"
+                )
+            edge.updates.append(sct.Update(variable=variable, value=value))
+        return edge
+
+    def _shown(self, variable: sct.DiscreteVariable) -> str:
+        return types.shown(self._types[variable])
+
+    def _exclusion(self, read: Any) -> sct.Requirement:
+        return sct.Requirement(
+            event=self._event(read.event, None),
+            kind=getattr(sct.RequirementKind, type(read).__name__.lower()),
+            condition=self._condition(read.condition, _Scope()),
+        )
+
+    def _event(self, read: Any, automaton: sct.Plant | None) -> sct.Event:
+        event = self._find(read, automaton)
+        if not isinstance(event, sct.Event):
+            self._fail(read, f"'{read.text}' is no event")
+        return event
+
+    def _find(self, read: Any, automaton: sct.Plant | None) -> Any:
+        """What a name means inside an automaton: the nearest of its first identifier, and what is in that."""
+        first, *others = read.text.replace("$", "").split(".")
+        inner = {} if automaton is None else self._inner[automaton]
+        found = inner.get(first) or self._outer.get(first)
+        for part in others:
+            if found is not None and found not in self._inner:
+                self._fail(read, f"there is nothing in '{found.name}', so no '{read.text}'")
+            found = None if found is None else self._inner[found].get(part)
+        if found is None:
+            self._fail(read, f"there is no '{read.text}'")
+        return found
+
+    # Expressions
+
+    def _condition(self, read: Any, scope: _Scope) -> ex.Expression:
+        made, kind = self._expression(read, scope)
+        if kind != types.BOOLEAN:
+            self._fail(read, f"a condition is bool and this is {types.shown(kind)}")
+        return made
+
+    def _expression(self, read: Any, scope: _Scope) -> _Typed:
+        """An expression of any level of the grammar, and its type."""
+        match type(read).__name__:
+            case "Expression":
+                return self._chain([read.left, *([read.right] if read.operator else [])], [read.operator], scope)
+            case "Or" | "And" as rule:
+                return self._chain(read.operands, [rule.lower()] * (len(read.operands) - 1), scope)
+            case "Compared" | "Sum":
+                return self._chain([read.left, *read.rights], read.operators, scope)
+            case "Group":
+                return self._expression(read.inner, scope)
+            case "Choice":
+                return self._choice(read, replace(scope, assigned=False))
+            case "Negation":
+                operand, kind = self._expression(read.operand, replace(scope, assigned=False))
+                if kind != types.BOOLEAN:
+                    self._fail(read, f"'not' does not apply to {types.shown(kind)}")
+                return ex.Negation(operand=operand), kind
+            case "Truth":
+                return ex.BooleanLiteral(value=read.value == "true"), types.BOOLEAN
+            case "Literal":
+                number = self._number(read.value, read)
+                return ex.IntegerLiteral(value=number), range(number, number + 1)
+        return self._reference(read, scope)
+
+    def _chain(self, operands: Sequence[Any], operators: Sequence[str], scope: _Scope) -> _Typed:
+        """From the left."""
+        if len(operands) == 1:
+            return self._expression(operands[0], scope)
+        within = replace(scope, assigned=False)
+        made, kind = self._expression(operands[0], within)
+        for position, (operator, operand) in enumerate(zip(operators, operands[1:], strict=True), 2):
+            if operator == "-" and not (scope.assigned and position == len(operands)):
+                self._fail(operand, "CIF's synthesis takes a '-' at the top of an assignment only")
+            right, other = self._expression(operand, within)
+            kind = self._combined(lambda: types.combined(operator, kind, other), operand)  # noqa: B023 - called at once
+            made = types.OPERATORS[operator](left=made, right=right)
+        return made, kind
+
+    def _choice(self, read: Any, scope: _Scope) -> _Typed:
+        conditions = [self._condition(condition, scope) for condition in read.conditions]
+        values = [self._expression(value, scope) for value in read.values]
+        made, kind = self._expression(read.otherwise, scope)
+        for guard, (value, other) in reversed(list(zip(conditions, values, strict=True))):
+            kind = self._combined(lambda: types.joined(other, kind), read)  # noqa: B023 - called at once
+            made = ex.Conditional(condition=guard, then=value, otherwise=made)
+        return made, kind
+
+    def _combined(self, kind: Callable[[], types.Type], read: Any) -> types.Type:
+        try:
+            return kind()
+        except TypeError as fault:
+            return self._fail(read, str(fault))
+
+    def _reference(self, read: Any, scope: _Scope) -> _Typed:
+        element = self._find(read.name, scope.automaton)
+        if scope.constant and not isinstance(element, ex.EnumerationLiteral):
+            self._fail(read, f"'{read.name.text}' is no constant")
+        match element:
+            case sct.DiscreteVariable():
+                return sct.VariableReference(variable=element), self._types[element]
+            case sct.Input():
+                return sct.InputReference(input=element), self._types[element]
+            case sct.Location():
+                return sct.LocationReference(location=element), types.BOOLEAN
+            case ex.EnumerationLiteral():
+                return ex.EnumerationLiteralReference(literal=element), element.eContainer()
+        return self._fail(read, f"'{read.name.text}' has no value")
+
+
+def _monitor(event: sct.Event, location: sct.Location) -> None:
+    """Lets an event happen where no edge of the location lets it: CIF's monitors never block."""
+    guards = [edge.guard for edge in location.edges if edge.event is event]
+    if any(guard is None for guard in guards):
+        return
+    otherwise: list[ex.Expression] = [ex.Negation(operand=copied(guard)) for guard in guards if guard is not None]
+    guard = reduce(lambda one, other: ex.Conjunction(left=one, right=other), otherwise) if otherwise else None
+    location.edges.append(sct.Edge(event=event, target=location, guard=guard))
+
+
+def _values(kind: ex.Type) -> types.Type:
+    match kind:
+        case ex.IntegerType():
+            assert kind.minimum is not None
+            assert kind.maximum is not None
+            return range(kind.minimum, kind.maximum + 1)
+        case ex.EnumerationType():
+            return kind.enumeration
+    return types.BOOLEAN
+
+
+def _plain(read: Any) -> str:
+    return (read if isinstance(read, str) else read.text).removeprefix("$")

@@ -1,0 +1,236 @@
+"""Compares both files of CIF, read back, with the model: each event, in all states, symbolically."""
+
+from __future__ import annotations
+
+from copy import copy
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from robosc.analysis.system import GuardedSystem, counted
+from robosc.analysis.verify.cif_reading import CifError, DepthError, Specification, read
+from robosc.analysis.verify.correspondence import Correspondence
+from robosc.analysis.verify.differences import different, happening, on_one_side, refuted, where
+from robosc.analysis.verify.transitions import (
+    AmbiguityError,
+    Transition,
+    of_system,
+    together,
+)
+from robosc.analysis.verify.verdict import Outcome, Verdict
+from robosc.diagnostics import ModelError
+from robosc.metamodel import sct
+from robosc.semantics.edges import edges_by_event
+from robosc.semantics.recursion import deep_recursion
+from robosc.synthesis import MEMORY, arithmetic
+from robosc.synthesis.bdd import Diagrams, with_enough_memory
+from robosc.synthesis.decoding import pick
+from robosc.synthesis.encoding import Encoding, Layout, smallest
+from robosc.synthesis.relation import requirements_by_event
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
+    from robosc.synthesis.bdd import Diagram
+    from robosc.synthesis.encoding import Element
+
+    _Bits = tuple[Element | None, tuple[Diagram, ...], tuple[Diagram, ...], Diagram]
+
+PROPERTY = "cif-translation"
+TEXT = "the generated CIF"
+UNSUPERVISED = f"{TEXT} without supervisor"
+
+
+@deep_recursion()
+def validate_cif(model: sct.SupervisoryControlModel, files: Mapping[str, str]) -> Verdict:
+    """Whether `<robot>.cif` means the model's plants and requirements, and `<robot>.supervised.cif` its supervisor.
+
+    States correspond by `Correspondence`; then initial and marked states must be the same, and every event must do the
+    same in every state, reachable or not. `files` are the texts by their names. Raises MemoryError where the decision
+    diagrams take more than 4 GB.
+    """
+    verdicts = (
+        _validate(model, files[f"{model.name}.cif"], supervised=False),
+        _validate(model, files[f"{model.name}.supervised.cif"], supervised=True),
+    )
+    return next((verdict for verdict in verdicts if verdict.outcome is not Outcome.PROVED), verdicts[-1])
+
+
+def _validate(model: sct.SupervisoryControlModel, text: str, *, supervised: bool) -> Verdict:
+    what = TEXT if supervised else UNSUPERVISED
+    try:
+        specification = read(text)
+        comparison = _Comparison(
+            model, specification, Correspondence(model, specification.model), supervised=supervised
+        )
+        return with_enough_memory(comparison.run, MEMORY)
+    except DepthError as fault:
+        return Verdict(PROPERTY, Outcome.SKIPPED, "", f"{what} can't be read: {fault}")
+    except (CifError, AmbiguityError, ModelError) as fault:
+        return refuted(PROPERTY, f"{what} is wrong: {fault}")
+
+
+@dataclass(frozen=True)
+class _Difference:
+    """In which states, with which inputs, the model and its CIF have other bits.
+
+    They are of an element after the event where it can happen in both, or, without an element, of whether it can: by
+    the plants, or where it is `asked`, by the requirements.
+    """
+
+    event: sct.Event
+    element: Element | None
+    ours: tuple[Diagram, ...]
+    theirs: tuple[Diagram, ...]
+    where: Diagram
+    asked: bool = False
+
+
+class _Comparison:
+    """A model and its CIF over the same decision diagrams: a value has the code that its counterpart has.
+
+    Under a supervisor what is asked is part of what can happen; without it, it is a question of its own.
+    """
+
+    def __init__(
+        self,
+        model: sct.SupervisoryControlModel,
+        specification: Specification,
+        correspondence: Correspondence,
+        *,
+        supervised: bool,
+    ) -> None:
+        """Raises CifError where there is a supervisor and none is due."""
+        if not supervised and (specification.supervisor is not None or specification.invariants):
+            raise CifError("it says what a supervisor does")
+        self._model = model
+        self._correspondence = correspondence
+        self._supervised = supervised
+        self._text = TEXT if supervised else UNSUPERVISED
+        self._asked = requirements_by_event(model.requirements)
+        self._invariants = requirements_by_event([*specification.invariants, *specification.model.requirements])
+        self._layout = Layout(model)
+        self._inputs = [domain for domain in self._layout.domains.values() if isinstance(domain.element, sct.Input)]
+        self._their_layout = copy(self._layout)
+        self._their_layout.domains = {}
+        for element, domain in self._layout.domains.items():
+            counterpart = correspondence.holding(element)
+            self._their_layout.domains[counterpart] = replace(domain, element=counterpart)
+            if counterpart is not correspondence[element]:  # the location of such a plant is no part of its state
+                single = replace(
+                    domain, element=correspondence[element], size=1, levels=(), halfway_levels=(), next_levels=()
+                )
+                self._their_layout.domains[correspondence[element]] = single
+        self._edges = edges_by_event(specification.model.plants)
+        supervisor = specification.supervisor
+        self._alphabet = frozenset(specification.alphabet)
+        self._loops = {} if supervisor is None else edges_by_event([supervisor])
+
+    def run(self, capacity: int) -> Verdict:
+        """The verdict, with so many nodes for the decision diagrams. Raises CifError, AmbiguityError, ModelError."""
+        encoding, theirs = (
+            Encoding(layout, diagrams)
+            for diagrams in [Diagrams(self._layout.levels, capacity)]
+            for layout in (self._layout, self._their_layout)
+        )
+        system = GuardedSystem(self._model, encoding, guards=self._supervised)
+        held = ((domain.element, self._correspondence.holding(domain.element)) for domain in self._layout.state)
+        initial = {
+            element: self._initial(counterpart, theirs)
+            for element, counterpart in held
+            if isinstance(counterpart, sct.DiscreteVariable)
+        }
+        if any(code != encoding.initial_codes[element] for element, code in initial.items()):
+            return refuted(PROPERTY, f"at the start {different(initial, encoding.initial_codes, self._text)}")
+        found = list(self._differences(system, theirs))
+        if not found:
+            evidence = f"{counted(len(system.relations), 'event')} in both files, each in every state"
+            return Verdict(PROPERTY, Outcome.PROVED, evidence)
+        reached = [difference for difference in found if (difference.where & system.controlled).satisfiable()]
+        if not reached:
+            codes = pick(found[0].where, self._layout.domains.values())
+            return refuted(PROPERTY, f"{self._said(system, found[0], codes)}, though nothing leads there")
+        inputs = encoding.diagrams.cube(level for domain in self._inputs for level in domain.levels)
+        path = system.path_to(reached[0].where.exists(inputs) & system.controlled)
+        codes = path.states[-1] | pick(reached[0].where & encoding.state(path.states[-1]), self._inputs)
+        return refuted(PROPERTY, self._said(system, reached[0], codes), system.trace(path))
+
+    @staticmethod
+    def _initial(counterpart: sct.DiscreteVariable, theirs: Encoding) -> int:
+        """The code of a variable's initial value in CIF."""
+        value = arithmetic.value_of(theirs.vector(counterpart.initial))
+        if value is None:
+            raise CifError(f"the initial value of '{counterpart.name}' is no constant")
+        return value - smallest(counterpart)
+
+    def _differences(self, system: GuardedSystem, theirs: Encoding) -> Iterator[_Difference]:
+        encoding = system.encoding
+        valid = encoding.diagrams.true
+        for domain in self._layout.domains:
+            valid &= encoding.in_domain(domain)
+        for event, transition in of_system(system).items():
+            if not self._supervised:
+                ours = _allowed(self._asked.get(event, []), encoding)
+                asked = _allowed(self._invariants.get(self._correspondence.event(event) or event, []), theirs)
+                if ((ours ^ asked) & valid).satisfiable():
+                    yield _Difference(event, None, (ours,), (asked,), (ours ^ asked) & valid, asked=True)
+            counterpart = self._their_transition(event, theirs)
+            compared: list[_Bits] = [(None, (transition.enabled,), (counterpart.enabled,), encoding.diagrams.true)]
+            both = transition.enabled & counterpart.enabled
+            for element in dict.fromkeys(
+                [*transition.after, *(self._correspondence.original(cell) for cell in counterpart.after)]
+            ):
+                bits = (
+                    transition.bits(element, encoding),
+                    counterpart.bits(self._correspondence.holding(element), theirs),
+                )
+                compared.append((element, *bits, both))
+            for element, our_bits, their_bits, within in compared:
+                differ = encoding.diagrams.false
+                for one, other in zip(our_bits, their_bits, strict=True):
+                    differ |= (one ^ other) & within
+                # Most are the same even for codes without a value: then the many domains need not be looked at.
+                if differ.satisfiable() and (differ & valid).satisfiable():
+                    yield _Difference(event, element, our_bits, their_bits, differ & valid)
+
+    def _their_transition(self, event: sct.Event, theirs: Encoding) -> Transition:
+        """What the event does in CIF: only automata that have it take part, and one of them at least."""
+        counterpart, diagrams = self._correspondence.event(event), theirs.diagrams
+        if counterpart is None:
+            return Transition(diagrams.false, {})
+        transition = together(self._edges.get(counterpart, {}).values(), theirs, saturates=False)
+        enabled = transition.enabled if counterpart in self._edges or counterpart in self._alphabet else diagrams.false
+        if counterpart in self._alphabet:
+            allowed = diagrams.false
+            for edge in (edge for edges in self._loops.get(counterpart, {}).values() for edge in edges):
+                allowed |= theirs.holds(edge.guard)
+            enabled &= allowed
+        if self._supervised:
+            enabled &= _allowed(self._invariants.get(counterpart, []), theirs)
+        return Transition(enabled, transition.after)
+
+    def _said(self, system: GuardedSystem, difference: _Difference, codes: Mapping[Element, int]) -> str:
+        """The difference where state and inputs have these codes."""
+        event, element = difference.event, difference.element
+        here = system.diagrams.true
+        for element, code in codes.items():
+            here &= system.encoding.has_code(element, code)
+        ours, theirs = (
+            sum((bit & here).satisfiable() << place for place, bit in enumerate(bits))
+            for bits in (difference.ours, difference.theirs)
+        )
+        step = happening(event, codes)
+        if element is None:
+            what = on_one_side(step, self._text, translated=bool(theirs))
+        else:
+            what = f"after {step}, {different({element: theirs}, {element: ours}, self._text)}"
+        asked = self._asked.get(event, []) if difference.asked else []
+        return ("by the requirements " if difference.asked else "") + what + where(system, event, codes, asked)
+
+
+def _allowed(requirements: Iterable[sct.Requirement], encoding: Encoding) -> Diagram:
+    """Where all requirements of an event let it happen."""
+    allowed = encoding.diagrams.true
+    for requirement in requirements:
+        holds = encoding.holds(requirement.condition)
+        allowed &= ~holds if requirement.kind == sct.RequirementKind.disables else holds
+    return allowed

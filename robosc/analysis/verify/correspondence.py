@@ -1,0 +1,113 @@
+"""What in a CIF specification stands for what in the model: by order and name, and nothing but that."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from robosc.analysis.verify.cif_reading import CifError
+from robosc.metamodel import expression as ex
+from robosc.synthesis.encoding import domain_size, smallest
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from robosc.metamodel import sct
+    from robosc.synthesis.encoding import Element
+
+
+class Correspondence:
+    """For each element of a model the one that stands for it in a specification, and the other way round.
+
+    Plants and their members are those of the model in its order, with its names, but that underscores may follow, and
+    that a plant's only location needs none. An integer has the same range, or in place of one that begins below 0 one
+    of the same size from 0 on: then the first value stands for the first, and so on. So a last variable more, of an
+    only location, may stand for where the plant is. An event may be missing: in the specification it never happens.
+    """
+
+    def __init__(self, model: sct.SupervisoryControlModel, specification: sct.SupervisoryControlModel) -> None:
+        """Raises CifError where anything has no counterpart, or one of another type, control or marking."""
+        self._counterparts: dict[Any, Any] = {}
+        #: The variables that stand for the locations of plants.
+        self._numbers: dict[Any, sct.DiscreteVariable] = {}
+        self._pair("enumerations", model.enumerations, specification.enumerations)
+        for enumeration in model.enumerations:
+            self._pair(f"literals of '{enumeration.name}'", enumeration.literals, self[enumeration].literals)
+        self._pair("plants", model.plants, specification.plants)
+        for plant in model.plants:
+            self._pair_members(plant, self[plant])
+        self._originals = {theirs: ours for ours, theirs in self._counterparts.items()}
+        self._originals.update({theirs: ours for ours, theirs in self._numbers.items()})
+
+    def __getitem__(self, ours: Any) -> Any:
+        """What stands for an element of the model."""
+        return self._counterparts[ours]
+
+    def holding(self, ours: Element) -> Element:
+        """What holds the value of an element of the model: for a plant's location a variable, where there is one."""
+        counterpart: Element = self._numbers.get(ours) or self._counterparts[ours]
+        return counterpart
+
+    def event(self, ours: sct.Event) -> sct.Event | None:
+        """What stands for an event of the model, None where it is missing."""
+        return self._counterparts.get(ours)
+
+    def original(self, theirs: Any) -> Any:
+        """What an element of the specification stands for."""
+        return self._originals[theirs]
+
+    def _pair(self, what: str, ours: Sequence[ex.NamedElement], theirs: Sequence[ex.NamedElement]) -> None:
+        if len(ours) != len(theirs) or not all(map(_same_name, ours, theirs)):
+            names = (", ".join(element.name for element in elements) or "none" for elements in (theirs, ours))
+            raise CifError(f"its {what} are {next(names)}, not {next(names)}")
+        self._counterparts.update(zip(ours, theirs, strict=True))
+
+    def _pair_members(self, ours: sct.Plant, theirs: sct.Plant) -> None:
+        of = f"of '{ours.name}'"
+        self._pair_events(of, ours, theirs)
+        self._pair(f"inputs {of}", ours.inputs, theirs.inputs)
+        variables = list(theirs.variables)
+        nameless = [location.name for location in theirs.locations] == [""]
+        if nameless and len(variables) > len(ours.variables):
+            self._number(of, ours, variables.pop())
+        self._pair(f"variables {of}", ours.variables, variables)
+        if not nameless:
+            self._pair(f"locations {of}", ours.locations, theirs.locations)
+        elif len(ours.locations) == 1 or ours in self._numbers:
+            self._counterparts.update(dict.fromkeys(ours.locations, theirs.locations[0]))
+        else:
+            raise CifError(f"it has one location {of} only")
+        for location in ours.locations:
+            for word in ("marked",) if ours in self._numbers else ("initial", "marked"):
+                if getattr(location, word) != getattr(self[location], word):
+                    raise CifError(f"'{location.name}' {of} is {'not ' * getattr(location, word)}{word} in it")
+        members: list[sct.DiscreteVariable | sct.Input] = [*ours.inputs, *ours.variables]
+        for member in members:
+            if not self._same_values(member, self[member]):
+                raise CifError(f"the values of '{member.name}' {of} are others")
+
+    def _number(self, of: str, ours: sct.Plant, variable: sct.DiscreteVariable) -> None:
+        kind = variable.type
+        if not isinstance(kind, ex.IntegerType) or (kind.minimum, kind.maximum) != (0, len(ours.locations) - 1):
+            raise CifError(
+                f"the values of '{variable.name}' {of} are not the numbers of {len(ours.locations)} locations"
+            )
+        self._numbers[ours] = variable
+
+    def _pair_events(self, of: str, ours: sct.Plant, theirs: sct.Plant) -> None:
+        left = list(theirs.events)
+        there = [event for event in ours.events if left and _same_name(event, left[0]) and left.pop(0)]
+        self._pair(f"events {of}", there if not left else ours.events, theirs.events)
+        for event in there:
+            if event.controllable != self[event].controllable:
+                raise CifError(f"it has '{event.name}' {of} {'un' * event.controllable}controllable")
+
+    def _same_values(self, ours: sct.DiscreteVariable | sct.Input, theirs: sct.DiscreteVariable | sct.Input) -> bool:
+        if type(ours.type) is not type(theirs.type) or domain_size(ours) != domain_size(theirs):
+            return False
+        if isinstance(ours.type, ex.EnumerationType) and isinstance(theirs.type, ex.EnumerationType):
+            return self[ours.type.enumeration] is theirs.type.enumeration
+        return smallest(theirs) == max(0, smallest(ours))
+
+
+def _same_name(ours: ex.NamedElement, theirs: ex.NamedElement) -> bool:
+    return theirs.name.startswith(ours.name) and not theirs.name.removeprefix(ours.name).strip("_")

@@ -1,0 +1,66 @@
+"""What is different in a translation, in words."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robosc.analysis.paths import TraceStep
+from robosc.analysis.verify.verdict import Outcome, Verdict
+from robosc.analysis.wording import condition, with_words
+from robosc.semantics.roles import event_name
+from robosc.synthesis.decoding import value
+from robosc.synthesis.encoding import domain_size, referenced, smallest
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from robosc.analysis.system import GuardedSystem
+    from robosc.metamodel import sct
+    from robosc.synthesis.decoding import Value
+    from robosc.synthesis.encoding import Element
+
+
+def happening(event: sct.Event, inputs: Mapping[Element, int]) -> str:
+    """The event with those of its inputs whose codes are given."""
+    values = {parameter.name: value(parameter, inputs[parameter]) for parameter in event.inputs if parameter in inputs}
+    meaning = with_words(event).removeprefix(event_name(event))
+    return f"`{TraceStep(event_name(event), values)}`{meaning}"
+
+
+def on_one_side(step: str, translation: str, *, translated: bool) -> str:
+    """That an event can happen in the translation and not in the model, or the other way round."""
+    sides = (translation, "the model") if translated else ("the model", translation)
+    return f"{step} can happen in {sides[0]} and not in {sides[1]}"
+
+
+def different(theirs: Mapping[Element, int], ours: Mapping[Element, int], translation: str) -> str:
+    """The first of the elements whose code is another one in the translation."""
+    element = next(cell for cell in theirs if theirs[cell] != ours[cell])
+    values = [condition([(element, _value(element, codes[element]))]) for codes in (theirs, ours)]
+    return f"{translation} has `{values[0]}` and the model `{values[1]}`"
+
+
+def where(
+    system: GuardedSystem, event: sct.Event, state: Mapping[Element, int], asked: Iterable[sct.Requirement] = ()
+) -> str:
+    """As much of a state as the event has to do with, and what is asked of it."""
+    touched = set(system.relations[event].touched)
+    if event in system.guards:
+        touched.update(referenced(system.guards[event].requirement), referenced(system.guards[event].synthesis))
+    for requirement in asked:
+        touched.update(referenced(requirement.condition))
+    elements = [element for plant in system.model.plants for element in (plant, *plant.variables) if element in touched]
+    said = system.where(state, elements)
+    return f" where `{said}`" if said else ""
+
+
+def refuted(question: str, explanation: str, way: tuple[TraceStep, ...] = ()) -> Verdict:
+    """The verdict on a translation that means something else than the model."""
+    return Verdict(question, Outcome.REFUTED, "", explanation, way)
+
+
+def _value(element: Element, code: int) -> Value:
+    """What a code stands for; a number where it is outside of the domain."""
+    if code < domain_size(element):
+        return value(element, code)
+    return smallest(element) + code - (2**64 if code >= 2**63 else 0)

@@ -1,0 +1,265 @@
+"""The states that the control loop comes to: between events from outside it lets internal events run to completion."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property, wraps
+from itertools import chain, count, pairwise
+from typing import TYPE_CHECKING
+
+from robosc.analysis.paths import Path
+from robosc.analysis.verify.verdict import Outcome, Verdict
+from robosc.diagnostics import ModelError
+from robosc.metamodel import sct
+from robosc.semantics.roles import SILENT, plant_of
+from robosc.synthesis.acceleration import Acceleration
+from robosc.synthesis.decoding import pick
+from robosc.synthesis.fixpoint import coreachable, reachable
+from robosc.synthesis.run_to_completion import independent_groups, runs
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from robosc.analysis.paths import Move
+    from robosc.analysis.system import GuardedSystem
+    from robosc.synthesis.bdd import Diagram
+    from robosc.synthesis.encoding import Element
+    from robosc.synthesis.relation import Step
+    from robosc.synthesis.run_to_completion import InternalEvent
+
+    Property = Callable[["ControlLoop"], Verdict]
+    Fire = Callable[["_Batch", Diagram], Diagram]
+    Close = Callable[[list[Step], Diagram], Diagram]
+
+
+def asked_of_the_loop(name: str) -> Callable[[Property], Property]:
+    """Skips the property of this name where the states that the loop comes to are too many to be found."""
+
+    def decorator(examine: Property) -> Property:
+        @wraps(examine)
+        def examined(loop: ControlLoop) -> Verdict:
+            try:
+                return examine(loop)
+            except ModelError as fault:
+                return Verdict(name, Outcome.SKIPPED, "", fault.diagnostics[0].message)
+
+        return examined
+
+    return decorator
+
+
+@dataclass(frozen=True)
+class _Batch:
+    """Some of these events in their order, with nothing in between; all states, where none of them happens."""
+
+    moves: tuple[Move, ...]
+
+    def image(self, states: Diagram) -> Diagram:
+        for _, step in self.moves:
+            states |= step.image(states)
+        return states
+
+    def preimage(self, states: Diagram) -> Diagram:
+        for _, step in reversed(self.moves):
+            states |= step.preimage(states)
+        return states
+
+    def between(self, system: GuardedSystem, before: dict[Element, int], after: dict[Element, int]) -> Path:
+        """The way from one state to another, as few events as that takes when they are tried in their order."""
+        goals = [system.encoding.state(after)]
+        for _, step in reversed(self.moves):
+            goals.append(goals[-1] | step.preimage(goals[-1]))
+        goals.reverse()
+        path = Path([before], [])
+        for move, goal in zip(self.moves, goals[1:], strict=True):
+            here = system.encoding.state(path.states[-1])
+            if not (here & goal).satisfiable():
+                path.states.append(pick(move[1].image(here) & goal, system.encoding.layout.state))
+                path.moves.append(move)
+        return path
+
+
+class ControlLoop:
+    """The order that the control loop keeps.
+
+    Internal events and the choice of data happen at any time; requests, cancels and what comes from the robot only
+    where the loop waits. The events of one message, and the cancels of a robot that is stopped, then happen one after
+    the other, as far as they can: some may be missing, where their data can't be read. Quotas, and whether the loop
+    reacts, only delay, and are left out of account. The reset of what has failed may be held back, as `retryMs` says.
+    Where more internal events can happen in a row than the loop lets, it goes on from wherever it then is.
+    """
+
+    def __init__(self, system: GuardedSystem) -> None:
+        self.system = system
+        free = [move for move in system.moves if move[0].event.kind in (*SILENT, sct.EventKind.data)]
+        self._free = [step for _, step in free]
+        self._alone = [_Batch((move,)) for move in free]
+        moves = {relation.event: (relation, step) for relation, step in system.moves}
+        together = [*system.roles.batches, system.roles.cancels]
+        batches = [tuple(moves[event] for event in events if event in moves) for events in together]
+        batched = {relation.event for batch in batches for relation, _ in batch}
+        batches += [(move,) for move in system.moves if move not in free and move[0].event not in batched]
+        near = independent_groups(system.internal)
+        self._waiting = [
+            (_Batch(batch), [event.step for group in near if _triggers(batch, group) for event in group if event.step])
+            for batch in batches
+            if batch
+        ]
+
+    @cached_property
+    def states(self) -> Diagram:
+        """The states that it comes to, those in which internal events are yet to happen among them."""
+        return self._after(self.system.encoding.initial, self._waits)
+
+    def after(self, codes: Mapping[Element, int]) -> Diagram:
+        """The states that it comes to from one of them, running to completion every time."""
+        return self._after(self.system.encoding.state(codes), self.quiescent)
+
+    def _after(self, start: Diagram, waits: Diagram) -> Diagram:
+        diagrams = self.system.diagrams
+        acceleration = _LoopAcceleration(self._free, self._waiting, waits, diagrams.true, forwards=True)
+        return self._closure(
+            start,
+            lambda batch, states: batch.image(states & waits),
+            lambda free, states: reachable(diagrams, free, states, diagrams.true),
+            acceleration,
+        )
+
+    @cached_property
+    def quiescent(self) -> Diagram:
+        """Those in which no internal event can happen that is not held back."""
+        states = self.states
+        for internal in self.system.internal:
+            states &= ~(internal.allowed & ~self.held(internal.relation.event))
+        return states
+
+    def held(self, event: sct.Event) -> Diagram:
+        """The states in which an internal event may be held back: the reset of what has failed."""
+        encoding = self.system.encoding
+        found = encoding.diagrams.false
+        if event.kind == sct.EventKind.reset:
+            edges = (edge for location in plant_of(event).locations for edge in location.edges)
+            for failed in dict.fromkeys(edge.target for edge in edges if edge.event.kind == sct.EventKind.error):
+                found |= encoding.location(failed)
+        return found
+
+    def coreachable(self, goal: Diagram) -> Diagram:
+        """The states from which it comes to some of these, running to completion every time."""
+        acceleration = _LoopAcceleration(self._free, self._waiting, self.quiescent, self.states, forwards=False)
+        return self._closure(
+            goal,
+            lambda batch, states: batch.preimage(states & self.states) & self.quiescent,
+            lambda free, states: coreachable(self.system.diagrams, free, states, self.states),
+            acceleration,
+        )
+
+    def path_to(self, goal: Diagram) -> Path:
+        """A way from the initial state to one of these states: of those with the fewest batches, always the same."""
+        system = self.system
+        layers, seen = [system.encoding.initial], system.encoding.initial
+        batches = [(batch, system.diagrams.true) for batch in self._alone]
+        batches += [(batch, self._waits) for batch, _ in self._waiting]
+        while not (layers[-1] & goal).satisfiable():
+            reached = system.diagrams.false
+            for batch, waits in batches:
+                reached |= batch.image(layers[-1] & waits)
+            layers.append(reached & ~seen)
+            seen |= reached
+            assert layers[-1].satisfiable()
+        codes = [pick(layers[-1] & goal, system.encoding.layout.state)]
+        taken = []
+        for layer in reversed(layers[:-1]):
+            here = system.encoding.state(codes[-1])
+            batch, before = next(
+                (batch, before)
+                for batch, waits in batches
+                if (before := batch.preimage(here) & waits & layer).satisfiable()
+            )
+            codes.append(pick(before, system.encoding.layout.state))
+            taken.append(batch)
+        codes.reverse()
+        path = Path(codes[:1], [])
+        for batch, ends in zip(reversed(taken), pairwise(codes), strict=True):
+            part = batch.between(system, *ends)
+            path.states.extend(part.states[1:])
+            path.moves.extend(part.moves)
+        return path
+
+    @cached_property
+    def _waits(self) -> Diagram:
+        """Where it lets something happen that is not internal."""
+        states = self.system.diagrams.true
+        for internal in () if self._overruns else self.system.internal:
+            states &= ~(internal.allowed & ~self.held(internal.relation.event))
+        return states
+
+    @cached_property
+    def _overruns(self) -> bool:
+        """Whether more internal events can happen in a row than the loop lets."""
+        system, bound = self.system, self.system.roles.settling_bound
+        if system.completion.bound is None:
+            return True
+        if system.completion.bound <= bound:
+            return False
+        # What was found is the bound of groups of events taken together: no run need be that long.
+        for length, states in enumerate(runs(system.diagrams, system.internal, system.controlled), 1):
+            if length > bound or not states.satisfiable():
+                return states.satisfiable()
+        raise AssertionError("there is no end to longer and longer runs")
+
+    def _closure(self, states: Diagram, fire: Fire, close: Close, acceleration: _LoopAcceleration) -> Diagram:
+        for turn in count(1):
+            found = states = close(self._free, states)
+            for batch, near in self._waiting:
+                more = states | fire(batch, states)
+                # Without those that are quiescent again, the states of others would be found one by one.
+                states = states if more == states else close(near, more)
+            if states == found:
+                break
+            states = acceleration.taken(states, turn)
+        return states
+
+
+class _LoopAcceleration:
+    """What many turns of the loop do at once, where wide integers keep it going.
+
+    An event of a batch alone is a batch, too: the others may be missing. So each state that events lead to, taken one
+    by one where the loop lets them, is one that it comes to.
+    """
+
+    def __init__(
+        self,
+        free: Sequence[Step],
+        waiting: Sequence[tuple[_Batch, Sequence[Step]]],
+        where: Diagram,
+        within: Diagram,
+        *,
+        forwards: bool,
+    ) -> None:
+        """The batches begin `where` the loop lets them; every state is `within` the bound."""
+        self._free = free
+        self._batches = [[step for _, step in batch.moves] for batch, _ in waiting]
+        self._where = where
+        self._within = within
+        self._forwards = forwards
+        self._acceleration = Acceleration([*free, *chain(*self._batches)], forwards=forwards)
+
+    def taken(self, states: Diagram, turn: int) -> Diagram:
+        """The states, and those that acceleration adds where it is due. Raises ModelError as that."""
+        if self._acceleration.due(turn):
+            for number, here in enumerate(self._restricted):
+                others = chain(*self._restricted[:number], *self._restricted[number + 1 :], self._free)
+                for step in self._acceleration.over(here, list(others), turn, self._within):
+                    states |= step.image(states) if self._forwards else step.preimage(states)
+        return states
+
+    @cached_property
+    def _restricted(self) -> list[list[Step]]:
+        """The batches, their events only where the loop lets them."""
+        return [[replace(step, relation=step.relation & self._where) for step in steps] for steps in self._batches]
+
+
+def _triggers(batch: Sequence[Move], group: Sequence[InternalEvent]) -> bool:
+    """Whether the events may make internal events of the group possible."""
+    changed = {element for relation, _ in batch for element in relation.changed}
+    return any(not event.touched.isdisjoint(changed) for event in group)

@@ -1,0 +1,232 @@
+"""What a supervised system has to be: a property is a function from the system, or from its control loop, to a verdict.
+
+`response` holds those about how many internal events happen in a row and where they lead.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING, TypeVar
+
+from robosc.analysis.system import counted
+from robosc.analysis.verify.loop import ControlLoop, asked_of_the_loop
+from robosc.analysis.verify.response import bounded_response, confluence, finite_response
+from robosc.analysis.verify.verdict import Outcome, Verdict, happening
+from robosc.analysis.wording import listed, name, words
+from robosc.diagnostics import Span
+from robosc.metamodel import expression as ex
+from robosc.metamodel import sct
+from robosc.semantics.printing import RobotPrinter, copied
+from robosc.semantics.roles import event_name, plant_of
+from robosc.synthesis.encoding import referenced
+from robosc.synthesis.fixpoint import coreachable, supervise
+from robosc.synthesis.relation import required_moves, steps
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from robosc.analysis.paths import Path
+    from robosc.analysis.system import Codes, GuardedSystem
+    from robosc.synthesis.bdd import Diagram
+    from robosc.synthesis.relation import EventRelation
+
+    T = TypeVar("T")
+
+#: An action that is restricted by nothing that changes is never cancelled, and data may always be at hand: of cancels
+#: and data events, which no user wrote, some are dead on purpose.
+_LIVE = (sct.EventKind.trigger, sct.EventKind.reset, sct.EventKind.tau)
+_INPUTS = (sct.EventKind.response, sct.EventKind.error, sct.EventKind.feedback, sct.EventKind.cancel)
+_NEVER_QUIESCENT = "the control loop never again rests in a state in which all components are marked"
+
+
+def properties(system: GuardedSystem) -> list[Callable[[], Verdict]]:
+    """All that a model with its supervisor is to satisfy: a property for each requirement among them."""
+    loop = ControlLoop(system)
+    return [
+        partial(non_blocking, system),
+        partial(controllability, system),
+        partial(input_enabledness, system),
+        *(partial(requirement_holds, system, requirement) for requirement in system.model.requirements),
+        partial(no_dead_events, system),
+        partial(maximal_permissiveness, system),
+        partial(finite_response, system),
+        partial(bounded_response, system),
+        partial(confluence, loop),
+        partial(non_blocking_in_the_loop, loop),
+    ]
+
+
+def non_blocking(system: GuardedSystem) -> Verdict:
+    """Every reachable state can reach one in which every plant is marked."""
+    states = system.controlled
+    marked = states & system.encoding.all_marked
+    blocked = states & ~coreachable(system.diagrams, steps(system.moves), marked, states)
+    if not blocked.satisfiable():
+        marks = counted(system.encoding.count(marked), "of them marked").removesuffix("s")
+        return Verdict("non-blocking", Outcome.PROVED, f"{system.size}, {marks}")
+    path = system.path_to(blocked)
+    explanation = _stuck(system.never_marked(path.states[-1]), path.states[-1])
+    return Verdict("non-blocking", Outcome.REFUTED, system.size, explanation, system.trace(path))
+
+
+def controllability(system: GuardedSystem) -> Verdict:
+    """Where the plants enable an uncontrollable event in a reachable state, no requirement and no guard forbids it."""
+    uncontrollable = [relation for relation in system.relations.values() if not relation.event.controllable]
+    forbidden = {
+        relation: system.controlled & relation.enabled & ~(relation.requirement & system.guard(relation.event))
+        for relation in uncontrollable
+    }
+
+    def explanation(relation: EventRelation, _path: Path) -> str:
+        parts = ["a requirement"] if relation.requirements else []
+        who = " or ".join([*parts, "its guard"] if relation.event in system.guards else parts)
+        return f"{words(relation.event)} can't be prevented, but {who} forbids it here"
+
+    evidence = f"{system.size}, {counted(len(uncontrollable), 'uncontrollable event')}"
+    return _nowhere("controllability", system, evidence, forbidden, explanation)
+
+
+def input_enabledness(system: GuardedSystem) -> Verdict:
+    """Where a communication allows an answer, an error, feedback or its cancelling, so does every component.
+
+    Components synchronise with communications: one without an edge for such an event would block the robot in the
+    model, though nothing blocks it in the world. The term is that of I/O automata (Lynch, Tuttle: An introduction to
+    input/output automata, CWI Quarterly 1989).
+    """
+    inputs = [
+        relation
+        for relation in system.relations.values()
+        if relation.event.kind in _INPUTS and plant_of(relation.event) in relation.enabled_by
+    ]
+    blocking = {
+        (relation.event, plant): system.controlled & relation.enabled_by[plant_of(relation.event)] & ~enabled
+        for relation in inputs
+        for plant, enabled in relation.enabled_by.items()
+    }
+
+    def explanation(blocked: tuple[sct.Event, sct.Plant], path: Path) -> str:
+        event, plant = blocked
+        location = plant.locations[path.states[-1][plant]].name
+        return f"{words(event)} can come, but `{name(plant)}` has no transition for it in `{location}`"
+
+    evidence = f"{system.size}, {counted(len(inputs), 'event')}"
+    return _nowhere("input-enabledness", system, evidence, blocking, explanation)
+
+
+def requirement_name(requirement: sct.Requirement) -> str:
+    """The requirement in the robot model's words, and its line there."""
+    span = Span.parse(requirement.source)
+    said = requirement.text or f"requirement on {event_name(requirement.event)}"
+    return f"{said} (line {span.line})" if span else said
+
+
+def requirement_holds(system: GuardedSystem, requirement: sct.Requirement) -> Verdict:
+    """The supervisor lets the event happen in no reachable state in which the requirement forbids it.
+
+    The evidence shows what was proved: the condition of the model, which was made of the author's words.
+    """
+    relation = system.relations[requirement.event]
+    condition = copied(requirement.condition)
+    wanted = requirement.kind == sct.RequirementKind.needs
+    asked = RobotPrinter()(condition if wanted else ex.Negation(operand=condition))
+    happens = system.controlled & system.allowed[requirement.event]
+    states = counted(system.encoding.count(happens), "state")
+
+    def explanation(_: EventRelation, path: Path) -> str:
+        where = system.where(path.states[-1], referenced(requirement.condition))
+        return f"{words(requirement.event)} can happen" + (f" where `{where}`" if where else "")
+
+    evidence = f"happens in {states}, asks for `{asked}`"
+    broken = {relation: happens & ~relation.asked[requirement]}
+    return _nowhere(requirement_name(requirement), system, evidence, broken, explanation, last=lambda one: one.event)
+
+
+def no_dead_events(system: GuardedSystem) -> Verdict:
+    """Each trigger, each internal transition and each reset can happen in some reachable state."""
+    events = [event for event in system.relations if event.kind in _LIVE]
+    dead = [event for event in events if not (system.controlled & system.allowed[event]).satisfiable()]
+    evidence = f"{system.size}, {counted(len(events), 'event')}"
+    if not dead:
+        return Verdict("no dead events", Outcome.PROVED, evidence)
+    explanation = f"{listed([words(event) for event in dead])} can never happen"
+    return Verdict("no dead events", Outcome.REFUTED, evidence, explanation)
+
+
+def maximal_permissiveness(system: GuardedSystem) -> Verdict:
+    """Where the guard of a controllable event forbids it in a reachable state, any supervisor has to."""
+    required = supervise(system.encoding, required_moves(system.relations.values())).controlled
+    controllable = [relation for relation in system.relations.values() if relation.event.controllable]
+    needless = {
+        relation: system.controlled & _permitted(relation, required) & ~system.allowed[relation.event]
+        for relation in controllable
+    }
+
+    def explanation(relation: EventRelation, _path: Path) -> str:
+        return f"{words(relation.event)} is forbidden here, though nothing speaks against it"
+
+    evidence = f"{system.size}, {counted(len(controllable), 'controllable event')}"
+    return _nowhere(
+        "maximal permissiveness", system, evidence, needless, explanation, last=lambda relation: relation.event
+    )
+
+
+@asked_of_the_loop("non-blocking in the control loop")
+def non_blocking_in_the_loop(loop: ControlLoop) -> Verdict:
+    """From each state that the control loop comes to it can come to a marked one that is quiescent.
+
+    Where some events have precedence, a system that is non-blocking may never get out of them, or always take the same
+    branch. Non-blocking under control, of Eclipse ESCET's controller properties for CIF, is asked in the same way of
+    all controllable events, which code generated there lets happen until none is possible. This loop does that with
+    internal events; requests and cancels take turns with what comes from the robot.
+    """
+    system, question = loop.system, "non-blocking in the control loop"
+    blocked = loop.states & ~loop.coreachable(loop.quiescent & system.encoding.all_marked)
+    evidence = counted(system.encoding.count(loop.states), "state")
+    if not blocked.satisfiable():
+        return Verdict(question, Outcome.PROVED, evidence)
+    path = loop.path_to(blocked)
+    onwards = loop.after(path.states[-1])
+    plants = [plant for plant in system.model.plants if not (onwards & system.encoding.marked(plant)).satisfiable()]
+    explanation = _stuck(plants, path.states[-1]) if plants else _NEVER_QUIESCENT
+    return Verdict(question, Outcome.REFUTED, evidence, explanation, system.trace(path))
+
+
+def _nowhere(  # noqa: PLR0913 - all parts of a verdict
+    question: str,
+    system: GuardedSystem,
+    evidence: str,
+    violations: Mapping[T, Diagram],
+    explanation: Callable[[T, Path], str],
+    *,
+    last: Callable[[T], sct.Event] | None = None,
+) -> Verdict:
+    """Whether there are no violations; else, the first of them in the nearest state that has any.
+
+    The trace ends in that state, or, with `last`, with that event of the violation.
+    """
+    anywhere = system.diagrams.false
+    for states in violations.values():
+        anywhere |= states
+    if not anywhere.satisfiable():
+        return Verdict(question, Outcome.PROVED, evidence)
+    path = system.path_to(anywhere)
+    violated = next(one for one, states in violations.items() if system.is_in(path.states[-1], states))
+    trace = (*system.trace(path), *([happening(last(violated))] if last else []))
+    return Verdict(question, Outcome.REFUTED, evidence, explanation(violated, path), trace)
+
+
+def _permitted(relation: EventRelation, controlled: Diagram) -> Diagram:
+    """Where the maximally permissive supervisor allows the event."""
+    enabled = controlled & relation.enabled & relation.requirement
+    return enabled if relation.step is None else enabled & relation.step.preimage(controlled)
+
+
+def _stuck(plants: Sequence[sct.Plant], codes: Codes) -> str:
+    """That these plants, or all of them together, are never marked again."""
+    if not plants:
+        return "the marked states of all components can't be reached together any more"
+    places = (
+        f"`{name(plant)}`" + (f" in `{plant.locations[codes[plant]].name}`" if len(plant.locations) > 1 else "")
+        for plant in plants
+    )
+    return f"{', '.join(places)} can't get back to a marked state"

@@ -1,0 +1,215 @@
+"""Finite and bounded response, and confluence: internal events come to an end, after how many of them, and where.
+
+The terms are those of Reijnen, Hofkamp, van de Mortel-Fronczak, Reniers, Rooda: Finite response and confluence of
+state-based supervisory controllers, CASE 2019. Where pairs of events are looked at there, confluence is decided here.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cached_property
+from itertools import chain, combinations
+from typing import TYPE_CHECKING
+
+from robosc.analysis.paths import shortest_path
+from robosc.analysis.system import counted
+from robosc.analysis.verify.loop import asked_of_the_loop
+from robosc.analysis.verify.verdict import Outcome, Verdict, happening
+from robosc.synthesis.decoding import pick
+from robosc.synthesis.fixpoint import coreachable
+from robosc.synthesis.relation import steps
+from robosc.synthesis.run_to_completion import independent_groups, runs
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from robosc.analysis.paths import Path, TraceStep
+    from robosc.analysis.system import GuardedSystem
+    from robosc.analysis.verify.loop import ControlLoop
+    from robosc.metamodel import sct
+    from robosc.synthesis.bdd import Diagram
+    from robosc.synthesis.encoding import Element
+    from robosc.synthesis.run_to_completion import InternalEvent
+
+FINITE, BOUNDED, CONFLUENCE = "finite response", "bounded response", "confluence"
+_GIVEN_UP = "silent events take so many steps to come to rest that counting them was given up"
+#: How many resets of what has failed may be among internal events that depend on each other: all ways to hold them back
+#: are looked at.
+_HELD = 6
+
+
+def finite_response(system: GuardedSystem) -> Verdict:
+    """From no reachable state internal events can happen for ever."""
+    found = system.completion
+    evidence = f"{system.size}, {counted(len(system.internal), 'silent event')}"
+    if found.divergent.satisfiable():
+        stem, cycle = _lasso(system, found.divergent)
+        explanation = f"{counted(len(cycle), 'silent event')} can happen again and again, and nothing else then happens"
+        return Verdict(FINITE, Outcome.REFUTED, evidence, explanation, stem, cycle)
+    if found.bound is None:
+        return Verdict(FINITE, Outcome.SKIPPED, evidence, _GIVEN_UP)
+    return Verdict(FINITE, Outcome.PROVED, evidence)
+
+
+def bounded_response(system: GuardedSystem) -> Verdict:
+    """No more internal events happen in a row than the supervisor says, and there is such a bound."""
+    found = system.completion
+    if found.divergent.satisfiable():
+        return Verdict(
+            BOUNDED, Outcome.REFUTED, system.size, "silent events need not come to rest: see finite response"
+        )
+    if found.bound is None:
+        return Verdict(BOUNDED, Outcome.SKIPPED, system.size, _GIVEN_UP)
+    said = system.supervisor.settlingBound
+    if said is not None and said < found.bound:
+        # What was found is the bound of groups of events taken together: no run need be that long.
+        for length, states in enumerate(runs(system.diagrams, system.internal, system.controlled), 1):
+            if length > said and states.satisfiable():
+                path = system.path_to(states)
+                run = _run(system, path.states[-1], length)
+                explanation = f"the supervisor says that at most {counted(said, 'silent event')} happen in a row"
+                return Verdict(BOUNDED, Outcome.REFUTED, system.size, explanation, system.trace(path), run)
+            if not states.satisfiable():
+                break
+    bound = found.bound if said is None else min(said, found.bound)
+    return Verdict(BOUNDED, Outcome.PROVED, f"{system.size}, at most {counted(bound, 'silent event')} in a row")
+
+
+def _lasso(system: GuardedSystem, divergent: Diagram) -> tuple[tuple[TraceStep, ...], tuple[TraceStep, ...]]:
+    """A shortest way to where internal events need never end, as far as the first cycle; and the cycle."""
+    path = system.path_to(_recurring(system, divergent))
+    states, events = [path.states[-1]], []
+    while True:
+        event, after = _next(system, states[-1], divergent)
+        events.append(event)
+        if after in states:
+            start = states.index(after)
+            taken = [happening(event.relation.event) for event in events]
+            return (*system.trace(path), *taken[:start]), tuple(taken[start:])
+        states.append(after)
+
+
+def _recurring(system: GuardedSystem, divergent: Diagram) -> Diagram:
+    """Of the states from which internal events need not end, those on a way from one cycle of them to another."""
+    while True:
+        after = system.diagrams.false
+        for internal in system.internal:
+            after |= divergent & internal.allowed if internal.step is None else internal.step.image(divergent)
+        if divergent == divergent & after:
+            return divergent
+        divergent &= after
+
+
+def _run(system: GuardedSystem, codes: dict[Element, int], length: int) -> tuple[TraceStep, ...]:
+    """So many internal events in a row from a state from which they are possible."""
+    longer = [system.controlled]
+    for states, _ in zip(runs(system.diagrams, system.internal, system.controlled), range(length - 1), strict=False):
+        longer.append(states)
+    taken = []
+    for states in reversed(longer):
+        event, codes = _next(system, codes, states)
+        taken.append(happening(event.relation.event))
+    return tuple(taken)
+
+
+def _next(
+    system: GuardedSystem, codes: dict[Element, int], within: Diagram
+) -> tuple[InternalEvent, dict[Element, int]]:
+    """The first internal event that leads from a state to one of these, and the state after it."""
+    here = system.encoding.state(codes)
+    for internal in system.internal:
+        after = (here & internal.allowed if internal.step is None else internal.step.image(here)) & within
+        if after.satisfiable():
+            return internal, pick(after, system.encoding.layout.state)
+    raise AssertionError("the states were said to go on")
+
+
+@asked_of_the_loop(CONFLUENCE)
+def confluence(loop: ControlLoop) -> Verdict:
+    """From every state that the control loop comes to internal events lead to one quiescent state at most.
+
+    Events that have nothing to do with each other can't lead elsewhere by taking turns: they are looked at apart.
+    """
+    system = loop.system
+    resting = counted(system.encoding.count(loop.quiescent), "of them at rest").removesuffix("s")
+    evidence = f"{counted(system.encoding.count(loop.states), 'state')}, {resting}"
+    skipped = False
+    for group in independent_groups(system.internal):
+        held = {event.relation.event: loop.held(event.relation.event) for event in group}
+        resets = [event for event, states in held.items() if states.satisfiable()]
+        # A single event has no order.
+        if len(group) == 1:
+            continue
+        skipped = skipped or len(resets) > _HELD
+        for chosen in _subsets(resets[:_HELD]):
+            ends = _Ends(
+                loop, [_held_back(event, held) if event.relation.event in chosen else event for event in group]
+            )
+            if ends.several.satisfiable():
+                return ends.verdict(evidence)
+    if skipped:
+        return Verdict(CONFLUENCE, Outcome.SKIPPED, evidence, "too many resets have to do with each other")
+    return Verdict(CONFLUENCE, Outcome.PROVED, evidence)
+
+
+def _subsets(events: Sequence[sct.Event]) -> Iterator[tuple[sct.Event, ...]]:
+    return chain.from_iterable(combinations(events, size) for size in range(len(events) + 1))
+
+
+def _held_back(internal: InternalEvent, held: Mapping[sct.Event, Diagram]) -> InternalEvent:
+    """A reset that happens only where nothing holds it back."""
+    allowed = internal.allowed & ~held[internal.relation.event]
+    return replace(internal, allowed=allowed, step=internal.relation.step_where(allowed))
+
+
+class _Ends:
+    """Where internal events that have to do with each other end, when they happen in whatever order."""
+
+    def __init__(self, loop: ControlLoop, events: Sequence[InternalEvent]) -> None:
+        self._loop = loop
+        self._moves = [(event.relation, event.step) for event in events if event.step is not None]
+        self._quiescent = loop.states
+        for event in events:
+            self._quiescent &= ~event.allowed
+
+    @cached_property
+    def several(self) -> Diagram:
+        """The states from which they can end in several: these differ in some bit, which one of the events changed."""
+        system, several = self._loop.system, self._loop.system.diagrams.false
+        for element in dict.fromkeys(element for relation, _ in self._moves for element in relation.changed):
+            for bit in system.encoding.bits(element):
+                one, other = (
+                    coreachable(system.diagrams, steps(self._moves), self._quiescent & value, self._loop.states)
+                    for value in (bit, ~bit)
+                )
+                several |= one & other
+        return several
+
+    def verdict(self, evidence: str) -> Verdict:
+        """That there are some, with two ways from one of them."""
+        system = self._loop.system
+        path = self._loop.path_to(self.several)
+        one = self._way(path, self._quiescent)
+        other = self._way(path, self._quiescent & ~system.last(one))
+        return Verdict(
+            CONFLUENCE,
+            Outcome.REFUTED,
+            evidence,
+            _difference(system, one, other),
+            system.trace(path),
+            system.trace(one),
+            system.trace(other),
+        )
+
+    def _way(self, before: Path, goal: Diagram) -> Path:
+        system = self._loop.system
+        way = shortest_path(system.encoding, self._moves, system.last(before), goal, self._loop.states)
+        assert way is not None
+        return way
+
+
+def _difference(system: GuardedSystem, one: Path, other: Path) -> str:
+    ends = one.states[-1], other.states[-1]
+    differing = [element for element in ends[0] if ends[0][element] != ends[1][element]]
+    first, second = (system.where(end, differing) for end in ends)
+    return f"depending on their order, silent events end where `{first}` or where `{second}`"

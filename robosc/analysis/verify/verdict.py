@@ -1,0 +1,158 @@
+"""What was asked of a supervised system and the answer; as JSON, as JUnit XML, and in words."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import TYPE_CHECKING, Any
+from xml.etree.ElementTree import Element, SubElement, indent, tostring
+
+from robosc.analysis.paths import TraceStep
+from robosc.analysis.wording import in_words
+from robosc.diagnostics.visible import visible, visible_lines
+from robosc.semantics.roles import event_name
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from robosc.metamodel import sct
+
+#: What no verdict is about.
+TRUSTED = (
+    "Trusted, not examined: that plants and requirements are what the text says, the control loop around the events, "
+    "the C compiler, RoboSC itself; docs/verify.md says more."
+)
+
+
+class Outcome(StrEnum):
+    """How an examination ended."""
+
+    PROVED = "proved"
+    REFUTED = "refuted"
+    #: No difference was found, but not everything was looked at.
+    SAMPLED = "sampled"
+    #: It could not be examined: `Verdict.explanation` says why.
+    SKIPPED = "skipped"
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """The answer to one question, in `seconds`.
+
+    `property` is its short name (`non-blocking`), `evidence` what was looked at (`1,234 states`), `explanation` a
+    sentence where it is refuted or skipped. `trace` is then a shortest way from the initial state to the fault,
+    `onwards` how it can go on from there, `other` a second way from there, where these are needed to show it.
+    """
+
+    property: str
+    outcome: Outcome
+    evidence: str
+    explanation: str = ""
+    trace: tuple[TraceStep, ...] = ()
+    onwards: tuple[TraceStep, ...] = ()
+    other: tuple[TraceStep, ...] = ()
+    seconds: float = 0.0
+
+
+def happening(event: sct.Event) -> TraceStep:
+    """The event as the end of a trace, where nothing matters that comes with it."""
+    return TraceStep(event_name(event))
+
+
+def as_json(robot: str, verdicts: Sequence[Verdict]) -> str:
+    """JSON for programs, one object: `proved` says that nothing was refuted, a trace lists events with their inputs."""
+    answer = {
+        "robot": robot,
+        "proved": all(verdict.outcome is not Outcome.REFUTED for verdict in verdicts),
+        "properties": [_verdict(verdict) for verdict in verdicts],
+    }
+    return json.dumps(answer, indent=2) + "\n"
+
+
+def _verdict(verdict: Verdict) -> dict[str, Any]:
+    return {
+        "property": verdict.property,
+        "outcome": verdict.outcome.value,
+        "evidence": verdict.evidence,
+        "explanation": verdict.explanation or None,
+        "trace": _steps(verdict.trace),
+        "onwards": _steps(verdict.onwards),
+        "other": _steps(verdict.other),
+        "seconds": round(verdict.seconds, 3),
+    }
+
+
+def _steps(trace: Sequence[TraceStep]) -> list[dict[str, Any]]:
+    return [{"event": step.event, "inputs": dict(step.inputs)} for step in trace]
+
+
+def as_junit(model: sct.SupervisoryControlModel, verdicts: Sequence[Verdict], file: str) -> str:
+    """JUnit XML, the form of test results that continuous integration reads: a property is a test case.
+
+    The model stands in `file`; what is refuted failed, with its trace as the text. The attributes and elements are
+    those that Jenkins, GitLab and GitHub's test reporters have in common (https://github.com/testmoapp/junitxml).
+    """
+    numbers = {
+        "tests": str(len(verdicts)),
+        "failures": str(_count(verdicts, Outcome.REFUTED)),
+        "errors": "0",
+        "skipped": str(_count(verdicts, Outcome.SKIPPED)),
+        "time": _seconds(sum(verdict.seconds for verdict in verdicts)),
+    }
+    root = Element("testsuites", {"name": "robosc verify", **numbers})
+    suite = SubElement(root, "testsuite", {"name": model.name, **numbers})
+    for verdict in verdicts:
+        case = SubElement(
+            suite,
+            "testcase",
+            {
+                "name": verdict.property,
+                "classname": model.name,
+                "file": visible(file),
+                "time": _seconds(verdict.seconds),
+            },
+        )
+        if verdict.outcome is Outcome.REFUTED:
+            failure = SubElement(
+                case, "failure", {"message": visible(verdict.explanation), "type": verdict.outcome.value}
+            )
+            failure.text = visible_lines(details(verdict, model))
+        elif verdict.outcome is Outcome.SKIPPED:
+            SubElement(case, "skipped", {"message": visible(verdict.explanation)})
+        SubElement(case, "system-out").text = visible(verdict.evidence)
+    indent(root)
+    return '<?xml version="1.0" encoding="UTF-8"?>\n' + tostring(root, encoding="unicode") + "\n"
+
+
+def _count(verdicts: Sequence[Verdict], outcome: Outcome) -> int:
+    return sum(verdict.outcome is outcome for verdict in verdicts)
+
+
+def _seconds(seconds: float) -> str:
+    return f"{seconds:.3f}"
+
+
+def details(verdict: Verdict, model: sct.SupervisoryControlModel) -> str:
+    """What is wrong, and the shortest way to it, a line an event; empty where there is nothing to add."""
+    if not verdict.explanation:
+        return ""
+    lines = [f"{verdict.property}: {verdict.explanation}"]
+    if verdict.outcome is Outcome.REFUTED and verdict.trace:
+        lines += _numbered("after", verdict.trace, model)
+    if verdict.onwards:
+        lines += _numbered("then", verdict.onwards, model)
+    if verdict.other:
+        lines += _numbered("or instead", verdict.other, model)
+    return "\n".join(lines)
+
+
+def _numbered(heading: str, steps: Sequence[TraceStep], model: sct.SupervisoryControlModel) -> list[str]:
+    said = [f"    {number}. {in_words([step], model)}" for number, step in enumerate(steps, 1)]
+    return [f"  {heading}", *said]
+
+
+def summary(verdicts: Sequence[Verdict]) -> str:
+    """How many verdicts there are of each outcome: `12 proved, 1 refuted`."""
+    counts = {outcome: sum(verdict.outcome is outcome for verdict in verdicts) for outcome in Outcome}
+    return ", ".join(f"{count} {outcome}" for outcome, count in counts.items() if count)

@@ -1,0 +1,189 @@
+"""Events, states and traces of an sct model in the words of the robot model that it came from."""
+
+from __future__ import annotations
+
+from itertools import groupby
+from typing import TYPE_CHECKING
+
+from robosc.diagnostics import Span
+from robosc.metamodel import sct
+from robosc.semantics.edges import edges_from
+from robosc.semantics.roles import event_name, plant_of, provide_number
+from robosc.synthesis.decoding import text
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from robosc.analysis.blocking import BlockingCounterexample, Reason
+    from robosc.analysis.paths import TraceStep
+    from robosc.synthesis.decoding import Value
+    from robosc.synthesis.encoding import Element
+
+#: How many components a sentence names.
+_NAMED = 4
+_EVENTS = {
+    sct.EventKind.trigger: "request to {}",
+    sct.EventKind.response: "response from {}",
+    sct.EventKind.error: "error from {}",
+    sct.EventKind.feedback: "feedback from {}",
+    sct.EventKind.cancel: "cancel of {}",
+    sct.EventKind.reset: "reset of {}",
+    sct.EventKind.tau: "transition of {}",
+}
+
+
+def name(plant: sct.Plant) -> str:
+    """What the robot model calls it: a component, or a component's communication with a dot between."""
+    return plant.origin or plant.name
+
+
+def words(event: sct.Event) -> str:
+    """An event, such as `request to Platform.move`.
+
+    Of silent transitions and of statements that provide data also the line, and what tells them apart.
+    """
+    owner = f"`{name(plant_of(event))}`"
+    if event.kind == sct.EventKind.data:
+        number = provide_number(event)
+        said = f"choice of `provide` {number} for {owner}" if number else f"choice of no data for {owner}"
+        where = _where(event) if number else ""
+    else:
+        said = _EVENTS[event.kind].format(owner)
+        where = _where(event) if event.kind == sct.EventKind.tau else ""
+    return f"{said} in {where}" if where else said
+
+
+def with_words(event: sct.Event) -> str:
+    """The event's name; of those whose name says nothing of the text that they come from, also that."""
+    unclear = event.kind in (sct.EventKind.tau, sct.EventKind.data) and event.source
+    return f"{event_name(event)} ({words(event)})" if unclear else event_name(event)
+
+
+def _where(event: sct.Event) -> str:
+    """The line of an event, with the column where another of its plant stands in that line."""
+    span = Span.parse(event.source)
+    if span is None:
+        return ""
+    others = (Span.parse(other.source) for other in plant_of(event).events if other is not event)
+    shared = any(other is not None and other.line == span.line and other != span for other in others)
+    return f"line {span.line}, column {span.column}" if shared else f"line {span.line}"
+
+
+def change(event: sct.Event) -> str:
+    """What a silent event does: `Lidar changes by itself: blocked to free`; where several do that, the line, too."""
+    plant = plant_of(event)
+    if event.kind == sct.EventKind.reset:
+        return f"{name(plant)} is ready to be used again"
+    steps: dict[sct.Event, dict[str, None]] = {}
+    for location in plant.locations:
+        for edge in edges_from(location):
+            steps.setdefault(edge.event, {})[f"{location.name} to {edge.target.name}"] = None
+    own = steps.get(event, {})
+    alike = any(other.kind == sct.EventKind.tau and steps[other] == own for other in steps if other is not event)
+    where = _where(event) if alike else ""
+    return f"{name(plant)} changes by itself: {', '.join(own)}" + (f" ({where})" if where else "")
+
+
+def called(requirements: Sequence[sct.Requirement]) -> str:
+    """Requirements, each in its own words and with its line: "`requirement move needs Lidar.free` (line 12)"."""
+    named = [_called(requirement) for requirement in requirements[:_NAMED]]
+    if len(requirements) > _NAMED:
+        named.append(f"{len(requirements) - _NAMED} more")
+    return listed(named)
+
+
+def _called(requirement: sct.Requirement) -> str:
+    span = Span.parse(requirement.source)
+    text = f"`{requirement.text}`" if requirement.text else f"a requirement on the {words(requirement.event)}"
+    return f"{text} (line {span.line})" if span else text
+
+
+def forbid(requirements: Sequence[sct.Requirement], what: str) -> str:
+    """That they forbid something."""
+    return f"{called(requirements)} {'forbids' if len(requirements) == 1 else 'forbid'} {what}"
+
+
+def blocking(reason: Reason) -> str:
+    """Why there is no supervisor, in a sentence without its trace."""
+    problem = "no marked state can be reached"
+    if reason.event is None:
+        problem += " at all"
+    elif reason.event.controllable:
+        problem += f": the shortest way to one needs {words(reason.event)} where {forbid(reason.requirements, 'it')}"
+    else:
+        problem = f"{words(reason.event)} can't be prevented, and after it {problem}"
+    named = [_stuck(plant, reason) for plant in reason.unmarked[:_NAMED]]
+    if len(reason.unmarked) > _NAMED:
+        named.append(f"{len(reason.unmarked) - _NAMED} more")
+    who = (
+        f"never in a marked state: {listed(named)}" if named else "each component can be marked, but never all at once"
+    )
+    return f"{problem}; {who}"
+
+
+def _stuck(plant: sct.Plant, reason: Reason) -> str:
+    state = reason.state.get(plant.name)
+    return f"`{name(plant)}`" + (f" in `{state}`" if state is not None else "")
+
+
+def in_words(steps: Sequence[TraceStep], model: sct.SupervisoryControlModel) -> str:
+    """The events of a trace with the data that matters; what happens several times in a row is said once."""
+    events = {event_name(event): event for plant in model.plants for event in plant.events}
+    said = []
+    for step in steps:
+        event = events[step.event]
+        data = ", ".join(f"{_data(parameter, event)} = {text(chosen)}" for parameter, chosen in step.inputs.items())
+        said.append(f"{words(event)} ({data})" if data else words(event))
+    runs = [(phrase, len(list(run))) for phrase, run in groupby(said)]
+    return ", then ".join(phrase if times == 1 else f"{times:,} times {phrase}" for phrase, times in runs)
+
+
+def counterexample_in_words(counterexample: BlockingCounterexample, model: sct.SupervisoryControlModel) -> str:
+    """What would happen if synthesis did not hold an event back, in a sentence without its full stop."""
+    steps = in_words(counterexample.trace, model)
+    problem = "the marked states of all components can't be reached together any more"
+    if counterexample.unmarked:
+        problem = (
+            f"{listed([f'`{name(plant)}`' for plant in counterexample.unmarked])} can't get back to a marked state"
+        )
+    if not counterexample.onwards:
+        return f"after {steps}, {problem}"
+    *onwards, last = counterexample.onwards
+    further = f", and further {in_words(onwards, model)}" if onwards else ""
+    return f"after {steps}{further}, {in_words([last], model)} can't be prevented, and then {problem}"
+
+
+def way_out(counterexample: BlockingCounterexample) -> str:
+    """What would make synthesis allow the event."""
+    stuck = [f"`{name(plant)}`" for plant in counterexample.unmarked if plant.kind == sct.PlantKind.behaviour]
+    return f"give {listed(stuck) or 'the components'} a way from there to a marked state"
+
+
+def _data(input_name: str, event: sct.Event) -> str:
+    return input_name.removeprefix(f"i_{event.kind.name}").removeprefix("_") or "value"
+
+
+def listed(names: Sequence[str]) -> str:
+    """`a`, `a and b`, `a, b and c`."""
+    return ", ".join(names[:-1]) + f" and {names[-1]}" if len(names) > 1 else "".join(names)
+
+
+def condition(values: Iterable[tuple[Element, Value]]) -> str:
+    """Values of plants and variables as a condition of the language, such as `Lidar.free and Lidar.front = clear`."""
+    return " and ".join(_is(element, chosen) for element, chosen in values)
+
+
+def what_is(element: Element, chosen: Value) -> str:
+    """What a plant or variable is at the moment, such as "`Lidar` is in `free`" or "`Gauge.level` is 3"."""
+    if isinstance(element, sct.Plant):
+        return f"`{name(element)}` is in `{chosen}`"
+    return f"`{name(element.eContainer())}.{element.name}` is {text(chosen)}"
+
+
+def _is(element: Element, chosen: Value) -> str:
+    if isinstance(element, sct.Plant):
+        return f"{name(element)}.{chosen}"
+    whole = f"{name(element.eContainer())}.{element.name}"
+    if isinstance(chosen, bool):
+        return whole if chosen else f"!{whole}"
+    return f"{whole} = {text(chosen)}"

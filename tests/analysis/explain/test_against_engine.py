@@ -1,0 +1,351 @@
+"""What is explained, on random models, against the engine that runs the supervisor and against the definitions."""
+
+import json
+from collections.abc import Iterator, Sequence
+from functools import partial
+from itertools import islice, product
+
+import pytest
+from hypothesis import event, given, settings
+from hypothesis import strategies as st
+
+from robosc.analysis.explain.answers import Explanation, Possibility, Reach
+from robosc.analysis.explain.explaining import emptiness, explain, explored, possibility
+from robosc.analysis.explain.names import state_given
+from robosc.analysis.paths import TraceStep
+from robosc.analysis.supervise import diagnose
+from robosc.analysis.system import SynthesizedSystem, whole_state
+from robosc.engine import Blocked, Engine
+from robosc.engine.state import State
+from robosc.metamodel import sct
+from robosc.semantics.edges import edges_from
+from robosc.semantics.roles import event_name
+from robosc.synthesis import synthesize
+from robosc.synthesis.decoding import Value, text
+from tests.analysis.test_blocking import Replay, is_blocked, is_never_marked
+from tests.analysis.test_observations import Definitions
+from tests.random_sct import sct_models
+from tests.synthesis.oracle import Oracle, values_of
+from tests.synthesis.test_against_oracle import RANDOM_MODELS
+
+pytestmark = pytest.mark.slow
+
+SOME_MODELS = settings(RANDOM_MODELS, max_examples=25)
+
+
+def supervised(model: sct.SupervisoryControlModel) -> Engine:
+    """Its engine; where it has no supervisor, all locations are marked first, and then it has one."""
+    model.supervisor = synthesize(model).supervisor
+    if model.supervisor is None:
+        for plant in model.plants:
+            for location in plant.locations:
+                location.marked = True
+        model.supervisor = synthesize(model).supervisor
+    return Engine(model)
+
+
+def add_gate(model: sct.SupervisoryControlModel, kind: str | None) -> None:
+    """A gate, open only in states of the plants that the supervisor never lets the robot get to.
+
+    A requirement of this kind keeps it shut, or synthesis, since there is no way back to where it is marked.
+    """
+    opening = sct.Event(name="c_trigger", controllable=True, kind=sct.EventKind.trigger)
+    shut, opened = sct.Location(name="shut", initial=True, marked=True), sct.Location(name="open")
+    shut.edges.append(sct.Edge(event=opening, target=opened))
+    gate = sct.Plant(name="gate", kind=sct.PlantKind.behaviour, events=[opening], locations=[shut, opened])
+    model.plants.append(gate)
+    if kind is not None:
+        # What a requirement keeps the robot from need be no trap.
+        opened.marked = True
+        condition = sct.LocationReference(location=opened if kind == "needs" else shut)
+        requirement = sct.Requirement(event=opening, kind=getattr(sct.RequirementKind, kind), condition=condition)
+        model.requirements.append(requirement)
+
+
+def add_pit(model: sct.SupervisoryControlModel) -> None:
+    """Where the robot may fall into from its first state, and never gets out again."""
+    fall = sct.Event(name="u_response", controllable=False, kind=sct.EventKind.response)
+    edge, bottom = sct.Location(name="edge", initial=True, marked=True), sct.Location(name="bottom")
+    edge.edges.append(sct.Edge(event=fall, target=bottom))
+    model.plants.append(sct.Plant(name="pit", kind=sct.PlantKind.behaviour, events=[fall], locations=[edge, bottom]))
+
+
+def input_values(each: sct.Event) -> Iterator[dict[str, Value]]:
+    """All that may come with an event."""
+    for values in product(*(values_of(own.type) for own in each.inputs)):
+        yield {own.name: getattr(one, "name", one) for own, one in zip(each.inputs, values, strict=True)}
+
+
+def making_it_possible(engine: Engine, state: State, name: str) -> set[str]:
+    """The events after which, with some data, another is possible that is not now."""
+    found = set()
+    for each in engine.roles.events:
+        for data in input_values(each):
+            engine.state = state
+            if engine.perform(event_name(each), data) and engine.enabled(name):
+                found.add(event_name(each))
+    engine.state = state
+    return found
+
+
+def run(engine: Engine, steps: Sequence[TraceStep]) -> None:
+    for step in steps:
+        assert engine.perform(step.event, step.inputs), step
+
+
+def some_states(engine: Engine, number: int = 12):
+    """States that the engine comes to, breadth first."""
+    inputs = {event_name(each): bool(each.inputs) for each in engine.roles.events}
+    seen = {engine.state: None}
+    pending = [engine.state]
+    for state in pending:
+        for each in engine.events:
+            engine.state = state
+            if not inputs[each] and engine.perform(each) and engine.state not in seen:
+                seen[engine.state] = None
+                pending.append(engine.state)
+        if len(pending) >= number:
+            break
+    return list(islice(seen, number))
+
+
+def told_state(engine: Engine) -> str:
+    return ",".join(f"{name}={text(value)}" for name, value in engine.state.items())
+
+
+@given(sct_models())
+@SOME_MODELS
+def test_an_event_in_a_state_is_what_the_engine_says(model):
+    engine = supervised(model)
+
+    def look(system: SynthesizedSystem) -> None:
+        for state in some_states(engine):
+            engine.state = state
+            told = told_state(engine)
+            codes = state_given(model, told) if told else {}
+            for each in engine.roles.events:
+                engine.state = state
+                told = explain(system, each, codes)
+                assert told.situation.reach is Reach.SUPERVISED
+                assert {name: told.situation.state[name] for name in state} == dict(state)
+                assert told.by == engine.blocked_by(event_name(each))
+                assert told.allowed == engine.enabled(event_name(each))
+                event(f"by {told.by}")
+                check(engine, state, told)
+
+    explored(model, look)
+
+
+def check(engine: Engine, state, told: Explanation) -> None:
+    """Its traces can be run and end where they claim to; its reasons are there where they are due."""
+    name = event_name(told.event)
+    fresh = Engine(engine.model)
+    run(fresh, told.situation.trace)
+    assert dict(fresh.state) == dict(state)
+    if told.way is not None:
+        run(fresh, told.way)
+        assert fresh.enabled(name)
+    assert (told.way == ()) == told.allowed
+    assert bool(told.plants) == (told.by is Blocked.PLANT)
+    assert bool(told.requirements) >= (told.by is Blocked.REQUIREMENT)
+    assert all(note.details for note in told.requirements)
+    engine.state = state
+    assert [note.element for note in told.requirements] == engine.failing(name)
+    helpful = set() if told.allowed else making_it_possible(engine, state, name)
+    assert {event_name(note.element.event) for note in told.changes} == helpful
+    for note in told.changes:
+        here = note.element.eContainer()
+        assert here is here.eContainer().locations[engine.location(here.eContainer())]
+    assert (told.counterexample is not None) == (told.by is Blocked.SYNTHESIS)
+    if told.counterexample is not None:
+        steps = [*told.situation.trace, *told.counterexample.trace, *told.counterexample.onwards]
+        replay = Replay(engine.model, steps)
+        end = replay.after(len(steps), requirements=True)
+        assert [each.event for each in told.counterexample.trace] == [name]
+        assert is_blocked(replay.oracle, end)
+        assert {each.name for each in told.counterexample.unmarked} == {
+            each.name for each in engine.model.plants if is_never_marked(replay.oracle, each, end)
+        }
+
+
+@given(sct_models(), st.sampled_from((None, "needs", "disables")), st.data())
+@SOME_MODELS
+def test_states_out_of_the_supervisors_reach_are_told_apart(model, requirement, data):
+    supervised(model)
+    add_gate(model, requirement)
+    engine = supervised(model)
+    oracle = Oracle(model)
+    outside = sorted(
+        (oracle.uncontrolled - oracle.controlled), key=lambda each: str([getattr(part, "name", part) for part in each])
+    )
+    state = data.draw(st.sampled_from(outside))
+    chosen = data.draw(st.sampled_from(engine.roles.events))
+    codes = state_given(model, json.dumps({"state": Replay(model, []).names(state)}))
+
+    def look(system: SynthesizedSystem) -> Explanation:
+        return explain(system, chosen, codes)
+
+    told = explored(model, look)
+    assert told.situation.reach is Reach.UNSUPERVISED
+    assert not told.allowed
+    assert told.way is None
+    # Whoever goes this way is stopped by the supervisor, and first there.
+    refusal = told.refusal
+    assert refusal is not None
+    run(engine, refusal.situation.trace)
+    assert refusal.situation.trace == told.situation.trace[: len(refusal.situation.trace)]
+    stopped = told.situation.trace[len(refusal.situation.trace)]
+    assert stopped.event == event_name(refusal.event)
+    assert engine.blocked_by(stopped.event) == refusal.by
+    assert refusal.by in {Blocked.REQUIREMENT, Blocked.SYNTHESIS}
+    assert Replay(model, told.situation.trace).after(len(told.situation.trace), requirements=False) == state
+    # What the plants and the requirements say is true there, too.
+    assert bool(told.plants) == (oracle.edges(chosen, state) is None)
+    assert bool(told.requirements) == (not oracle.required(chosen, state))
+
+
+@given(sct_models())
+@SOME_MODELS
+def test_what_never_happens(model):
+    engine = supervised(model)
+    oracle = Oracle(model)
+    definitions = Definitions(oracle)
+
+    def look(system: SynthesizedSystem) -> None:
+        for each in engine.roles.events:
+            told = possibility(system, each)
+            ever = any(
+                oracle.allows(each, state) if each.controllable else oracle.edges(each, state) is not None
+                for state in oracle.controlled
+            )
+            assert told.possible == ever
+            if told.nearest is None:
+                assert not any(oracle.edges(each, state) is not None for state in oracle.uncontrolled)
+                assert told.plants
+                continue
+            event(f"nearest {told.nearest.situation.reach} {told.nearest.by}")
+            fresh = Engine(model)
+            if told.nearest.situation.reach is Reach.SUPERVISED:
+                run(fresh, told.nearest.situation.trace)
+                assert fresh.blocked_by(event_name(each)) == told.nearest.by
+            if not ever:
+                assert (told.nearest.by is Blocked.SYNTHESIS) == bool(definitions.held_back(each))
+                check_beyond(oracle, each, told.beyond)
+                check_conflict(oracle, each, told)
+                check_loosenings(model, told.loosenings, partial(possible, event_name(each)))
+
+    explored(model, look)
+
+
+def check_beyond(oracle: Oracle, each: sct.Event, beyond: Explanation | None) -> None:
+    """It is there where plants and requirements allow the event in no controlled state, but in some other."""
+    willing = [
+        state for state in oracle.uncontrolled if oracle.edges(each, state) is not None and oracle.required(each, state)
+    ]
+    enabled = any(oracle.edges(each, state) is not None for state in oracle.controlled)
+    assert (beyond is not None) == (bool(willing) and enabled and not any(s in oracle.controlled for s in willing))
+    if beyond is not None:
+        replay = Replay(oracle.model, beyond.situation.trace)
+        assert replay.after(len(replay.trace), requirements=False) in willing
+        assert beyond.refusal is not None
+
+
+def check_conflict(oracle: Oracle, each: sct.Event, told: Possibility) -> None:
+    """It is there where the requirements on the event allow it nowhere; what it names suffices for that."""
+    willing = [state for state in oracle.uncontrolled if oracle.edges(each, state) is not None]
+    assert bool(told.conflict) == (told.nearest.by is Blocked.REQUIREMENT and told.beyond is None)
+    if told.conflict:
+        assert not any(
+            all(
+                oracle.value(note.element.condition, state, {}) == (note.element.kind == sct.RequirementKind.needs)
+                for note in told.conflict
+            )
+            for state in willing
+        )
+
+
+def possible(name: str, model: sct.SupervisoryControlModel) -> bool:
+    return name in map(event_name, synthesize(model).possible)
+
+
+def check_loosenings(model, loosenings, helps) -> None:
+    """Each requirement that is said to help does so if it is left out, and no other does."""
+    requirements = list(model.requirements)
+    helpful = []
+    for left_out in requirements:
+        model.requirements.remove(left_out)
+        if helps(model):
+            helpful.append(left_out)
+        model.requirements.clear()
+        model.requirements.extend(requirements)
+    if loosenings is None:
+        model.requirements.clear()
+        assert not helps(model)
+        model.requirements.extend(requirements)
+    else:
+        assert {each.requirements for each in loosenings} == {(each,) for each in helpful}
+
+
+def changes_something(model, event):
+    return any(
+        edge.target is not location or any(len(values_of(update.variable.type)) > 1 for update in edge.updates)
+        for plant in model.plants
+        for location in plant.locations
+        for edge in edges_from(location)
+        if edge.event is event
+    )
+
+
+@given(sct_models())
+@SOME_MODELS
+def test_why_there_is_no_supervisor(model):
+    if synthesize(model).supervisor is not None:
+        assert explored(model, emptiness) is None
+        add_pit(model)
+    synthesis = diagnose(model)
+    told = explored(model, emptiness)
+    assert told.reason == synthesis.reason
+    assert [each.element for each in told.stuck] == [
+        each.locations[told.reason.codes[each]] for each in told.reason.unmarked
+    ]
+    oracle = Oracle(model)
+    before = 1 if told.reason.event is not None and told.reason.event.controllable else 0
+    end = Replay(model, told.reason.trace).after(len(told.reason.trace) - before, requirements=True)
+    onwards = oracle.reach(end, requirements=True)
+    assert {each.element for each in told.blamed} == {
+        each
+        for each in model.requirements
+        if any(
+            oracle.edges(each.event, state) is not None
+            and oracle.value(each.condition, state, {}) != (each.kind == sct.RequirementKind.needs)
+            for state in onwards
+        )
+    }
+    # What forbids an event that changes nothing keeps the robot from nowhere.
+    at_fault = {each.element for each in told.blamed if changes_something(model, each.element.event)}
+    if before:
+        at_fault = {
+            each
+            for each in model.requirements
+            if each.event is told.reason.event
+            and oracle.value(each.condition, end, {}) != (each.kind == sct.RequirementKind.needs)
+        }
+    assert set(told.reason.requirements) == (at_fault if told.reason.event is not None else set())
+    event(f"loosenings {told.loosenings and len(told.loosenings)}")
+    check_loosenings(model, told.loosenings, lambda other: synthesize(other).supervisor is not None)
+    for each in told.loosenings or ():
+        for own in each.requirements:
+            model.requirements.remove(own)
+        assert synthesize(model).controlled_states == each.states
+        model.requirements.extend(each.requirements)
+
+
+@given(sct_models())
+@SOME_MODELS
+def test_a_state_reads_as_it_is_written(model):
+    engine = supervised(model)
+    told = told_state(engine)
+    codes = state_given(model, told) if told else {}
+    whole = {each: codes.get(each, 0) for plant in model.plants for each in (plant, *plant.variables)}
+    shown = whole_state(model, whole)
+    assert {name: shown[name] for name in engine.state} == dict(engine.state)

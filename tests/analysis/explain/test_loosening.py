@@ -1,0 +1,49 @@
+"""What a robot could do without one of its requirements is what its text without it means."""
+
+from pathlib import Path
+
+import pytest
+
+import robosc
+from robosc.analysis.explain.explaining import explored, requirement_texts
+from robosc.analysis.system import SynthesizedSystem
+from robosc.m2m import robosc_to_sct
+from robosc.metamodel import expression as ex
+from robosc.metamodel import robosc as rsc
+from robosc.synthesis import synthesize
+
+EXAMPLES = sorted((Path(__file__).parents[3] / "examples").glob("*/*.rscd"))
+#: An action that is cancelled where one of two requirements no longer holds.
+USHER = Path(__file__).parents[2] / "m2t" / "layer" / "usher.rscd"
+
+
+@pytest.mark.parametrize("path", [*EXAMPLES, USHER], ids=lambda each: each.stem)
+def test_without_each_requirement(path: Path) -> None:
+    robot = robosc.load(path)
+    written = [each for each in robot.definitions if isinstance(each, rsc.Requirement)]
+
+    def look(system: SynthesizedSystem) -> list[tuple[int, int]]:
+        texts = requirement_texts(system)
+        assert len(texts) == len(written)
+        counts = []
+        for text in texts:
+            other = system.without(frozenset(text))
+            left_out = next(each for each in written if text[0].source.endswith(each.source))
+            counts.append((system.encoding.count(other.controlled), states_without(robot, left_out)))
+        return counts
+
+    for left, expected in explored(robosc_to_sct.transform(robot)[0], look):
+        assert left == expected
+
+
+def states_without(robot: rsc.Robot, left_out: rsc.Requirement) -> int:
+    """The states where the requirement asks for nothing, though it still reads what it reads."""
+    condition = left_out.condition
+    if isinstance(left_out, rsc.DisablesRequirement):
+        left_out.condition = ex.Conjunction(left=condition, right=ex.BooleanLiteral(value=False))
+    else:
+        left_out.condition = ex.Disjunction(left=condition, right=ex.BooleanLiteral(value=True))
+    try:
+        return synthesize(robosc_to_sct.transform(robot)[0]).controlled_states
+    finally:
+        left_out.condition = condition

@@ -1,0 +1,387 @@
+"""What synthesis observes over decision diagrams against the definitions, state by state, on random models."""
+
+from itertools import combinations
+from unittest.mock import patch
+
+import pytest
+from hypothesis import assume, event, given
+from hypothesis import strategies as st
+
+from robosc.analysis import observations
+from robosc.analysis.blocking import BlockingCounterexample
+from robosc.analysis.observations import Example, Forbidden, Observations, UnreachableState
+from robosc.analysis.supervise import diagnose
+from robosc.metamodel import sct
+from robosc.semantics.edges import edges_from
+from robosc.semantics.roles import event_name, plant_of
+from tests.analysis.test_blocking import Replay, distance, is_blocked, is_never_marked
+from tests.random_sct import sct_models
+from tests.sct_models import edge, model, needs, plant
+from tests.synthesis.classics import philosophers
+from tests.synthesis.oracle import Oracle, State
+from tests.synthesis.test_against_oracle import RANDOM_MODELS
+
+SILENT = (sct.EventKind.tau, sct.EventKind.reset)
+
+
+@st.composite
+def communicating_models(draw: st.DrawFn) -> sct.SupervisoryControlModel:
+    """Random models in which what is observed is not too rare.
+
+    Plants with a trigger are communication on one topic, data plants belong to one of them, and some actions need that
+    they have not started.
+    """
+    made = draw(sct_models())
+    triggers = [each for p in made.plants for each in p.events if each.kind == sct.EventKind.trigger]
+    for trigger in triggers:
+        plant_of(trigger).kind = getattr(sct.PlantKind, draw(st.sampled_from(("message", "service", "action"))))
+        plant_of(trigger).topic = draw(st.sampled_from(("shared", "/shared")))
+        if plant_of(trigger).kind == sct.PlantKind.action and draw(st.booleans()):
+            initial = next(each for each in plant_of(trigger).locations if each.initial)
+            made.requirements.append(
+                sct.Requirement(
+                    event=trigger, kind=sct.RequirementKind.needs, condition=sct.LocationReference(location=initial)
+                )
+            )
+    for each in made.plants:
+        if each.kind == sct.PlantKind.data and triggers:
+            each.origin = "C.c"
+            plant_of(draw(st.sampled_from(triggers))).origin = "C.c"
+    return made
+
+
+class Definitions:
+    """The definitions of all observations, over the states that the oracle found."""
+
+    def __init__(self, oracle: Oracle) -> None:
+        self.oracle = oracle
+        self.controllable = [each for each in oracle.events if each.controllable]
+        self.triggers = [each for each in self.controllable if each.kind == sct.EventKind.trigger]
+
+    def unreachable_states(self) -> list[sct.Location]:
+        return [
+            location
+            for each in self.oracle.model.plants
+            if each.kind == sct.PlantKind.behaviour
+            for location in each.locations
+            if not any(state[self.oracle.places[each]] is location for state in self.oracle.controlled)
+        ]
+
+    def allowed(self, each: sct.Event) -> set[State]:
+        return {state for state in self.oracle.controlled if self.oracle.allows(each, state)}
+
+    def never_enabled(self) -> list[sct.Event]:
+        kinds = (sct.EventKind.trigger, sct.EventKind.tau)
+        return [each for each in self.controllable if each.kind in kinds and not self.allowed(each)]
+
+    def held_back(self, each: sct.Event) -> set[State]:
+        """The controlled states in which only synthesis forbids the event."""
+        return {
+            state
+            for state in self.oracle.controlled
+            if self.oracle.edges(each, state) is not None and self.oracle.required(each, state)
+        } - self.allowed(each)
+
+    def silent_restricted(self) -> list[sct.Event]:
+        kinds = (*SILENT, sct.EventKind.cancel)
+        return [each for each in self.controllable if each.kind in kinds and self.held_back(each)]
+
+    def after(self, each: sct.Event) -> set[State]:
+        return {after for state in self.allowed(each) for after in self.oracle.successors(each, state)}
+
+    def self_cancelling(self) -> list[sct.Event]:
+        return [
+            each
+            for each in self.triggers
+            if plant_of(each).kind == sct.PlantKind.action
+            and self.allowed(each)
+            and not any(self.oracle.required(each, state) for state in self.after(each))
+        ]
+
+    def gap(self, each: sct.Event, data: sct.Plant) -> set[State]:
+        return {
+            state
+            for state in self.allowed(each)
+            if not any(
+                self.oracle.value(edge.guard, state, {})
+                for edge in edges_from(state[self.oracle.places[data]])
+                if not edge.target.initial
+            )
+        }
+
+    def provide_gaps(self) -> list[tuple[sct.Event, sct.Plant]]:
+        return [
+            (each, data)
+            for each in self.triggers
+            for data in self.oracle.model.plants
+            if data.kind == sct.PlantKind.data and data.origin and data.origin == plant_of(each).origin
+            if self.gap(each, data)
+        ]
+
+    def shared_topic_conflicts(self) -> list[tuple[sct.Event, sct.Event]]:
+        messages = [each for each in self.triggers if plant_of(each).kind == sct.PlantKind.message]
+        return [
+            (one, other)
+            for one, other in combinations(messages, 2)
+            if plant_of(one).topic.strip("/") == plant_of(other).topic.strip("/")
+            and self.allowed(one) & self.allowed(other)
+        ]
+
+    def unrestricted_calls(self) -> list[sct.Event]:
+        return [
+            each
+            for each in self.triggers
+            if plant_of(each).kind in (sct.PlantKind.service, sct.PlantKind.action)
+            and self.allowed(each)
+            and not any(requirement.event is each for requirement in self.oracle.model.requirements)
+            and not any(
+                edge.event is each
+                for p in self.oracle.model.plants
+                if p is not plant_of(each)
+                for location in p.locations
+                for edge in edges_from(location)
+            )
+        ]
+
+
+@given(communicating_models())
+@RANDOM_MODELS
+def test_random_models(random_model):
+    observed = diagnose(random_model).observations
+    oracle = Oracle(random_model)
+    assert (observed is None) == (not oracle.controlled)
+    assume(observed is not None)
+    definitions = Definitions(oracle)
+    assert [each.event for each in observed.never_enabled] == definitions.never_enabled()
+    assert [each.event for each in observed.silent_restricted] == definitions.silent_restricted()
+    assert [each.event for each in observed.self_cancelling] == definitions.self_cancelling()
+    assert [(each.event, each.data) for each in observed.provide_gaps] == definitions.provide_gaps()
+    conflicts = definitions.shared_topic_conflicts()
+    assert {(each.first, each.second) for each in observed.shared_topic_conflicts} == set(conflicts)
+    assert len(observed.shared_topic_conflicts) == len(conflicts)
+    assert list(observed.unrestricted_calls) == definitions.unrestricted_calls()
+    assert [each.location for each in observed.unreachable_states] == definitions.unreachable_states()
+    for name in vars(observed):
+        event(name if getattr(observed, name) else f"no {name}")
+    check_details(definitions, observed)
+
+
+def check_details(definitions: Definitions, observed: Observations) -> None:
+    """What is said beside the event is true, too."""
+    oracle = definitions.oracle
+    for each in observed.never_enabled:
+        enabled = [state for state in oracle.controlled if oracle.edges(each.event, state) is not None]
+        required = [state for state in enabled if oracle.required(each.event, state)]
+        beyond = [state for state in oracle.uncontrolled if oracle.edges(each.event, state) is not None]
+        states = enabled or beyond
+        asked = any(oracle.required(each.event, state) for state in states)
+        by_requirements = states and not asked
+        assert each.forbidden is (
+            Forbidden.BY_SYNTHESIS
+            if required
+            else Forbidden.BY_REQUIREMENTS
+            if by_requirements
+            else Forbidden.BY_PLANTS
+        )
+        assert each.kept_away == (not enabled and asked)
+        if each.forbidden is Forbidden.BY_REQUIREMENTS:
+            check_forbidding(oracle, each.event, each.requirements, states)
+        assert (each.counterexample is not None) == bool(required)
+        if each.counterexample is not None:
+            check_counterexample(definitions, each.event, each.counterexample)
+    for each in observed.silent_restricted:
+        check_counterexample(definitions, each.event, each.counterexample)
+    assert list(observed.counterexamples) == [each for each in definitions.controllable if definitions.held_back(each)]
+    for each, counterexample in observed.counterexamples.items():
+        check_counterexample(definitions, each, counterexample)
+    for each in observed.self_cancelling:
+        check_forbidding(oracle, each.event, each.requirements, definitions.after(each.event))
+    for each in observed.unreachable_states:
+        check_hindrances(definitions, each)
+    for each in observed.provide_gaps:
+        check_example(definitions, each.example, definitions.gap(each.event, each.data))
+    for each in observed.shared_topic_conflicts:
+        both = definitions.allowed(each.first) & definitions.allowed(each.second)
+        check_example(definitions, each.example, both)
+
+
+def holds(oracle, requirement, state):
+    return oracle.value(requirement.condition, state, {}) == (requirement.kind == sct.RequirementKind.needs)
+
+
+def check_forbidding(oracle, each, told, states):
+    """Those told are all that alone hold in none of the states; else some that do not together, none too many."""
+    own = [requirement for requirement in oracle.model.requirements if requirement.event is each]
+    alone = [one for one in own if not any(holds(oracle, one, state) for state in states)]
+    if alone:
+        assert list(told) == alone
+        return
+    assert len(told) > 1
+    assert not any(all(holds(oracle, one, state) for one in told) for state in states)
+    for left_out in told:
+        assert any(all(holds(oracle, one, state) for one in told if one is not left_out) for state in states)
+
+
+def check_hindrances(definitions: Definitions, observed: UnreachableState) -> None:
+    """They are all transitions to the state, and what is said of each keeps it from ever being taken."""
+    oracle, location = definitions.oracle, observed.location
+    component = location.eContainer()
+    assert {each.edge for each in observed.hindrances} == {
+        edge
+        for other in component.locations
+        if other is not location
+        for edge in other.edges
+        if edge.target is location
+    }
+    for each in observed.hindrances:
+        happens = each.edge.event
+        here = [s for s in oracle.controlled if s[oracle.places[component]] is each.edge.eContainer()]
+        enabled = [state for state in here if oracle.edges(happens, state) is not None]
+        required = [state for state in enabled if oracle.required(happens, state)]
+        assert each.forbidden is (
+            Forbidden.BY_SYNTHESIS
+            if required
+            else Forbidden.BY_REQUIREMENTS
+            if enabled
+            else Forbidden.BY_PLANTS
+            if here
+            else None
+        )
+        event(f"unreachable {each.forbidden}")
+        if each.forbidden is Forbidden.BY_REQUIREMENTS:
+            check_forbidding(oracle, happens, each.requirements, enabled)
+        assert (each.counterexample is not None) == bool(required)
+        if each.counterexample is not None:
+            replay = Replay(oracle.model, each.counterexample.trace)
+            assert replay.after(len(replay.trace) - 1, requirements=True) in required
+
+
+def check_example(definitions: Definitions, example: Example, states: set[State]) -> None:
+    """The example is one of the states, and settled if one of them is."""
+    oracle = definitions.oracle
+    silent = [each for each in definitions.controllable if each.kind in SILENT]
+    unsettled = {state for each in silent for state in definitions.allowed(each)}
+    [state] = [each for each in states if shown(oracle, each) == example.state]
+    assert list(example.state) == list(oracle.places)
+    assert example.quiescent == (state not in unsettled) == bool(states - unsettled)
+
+
+def shown(oracle: Oracle, state: State):
+    values = dict(zip(oracle.places, state, strict=True))
+    return {key: value if isinstance(value, (bool, int)) else value.name for key, value in values.items()}
+
+
+def check_counterexample(
+    definitions: Definitions, held_back: sct.Event, counterexample: BlockingCounterexample
+) -> None:
+    """The trace is a shortest one to where the event is held back, and goes on to where nothing is marked any more."""
+    oracle = definitions.oracle
+    assert counterexample.trace[-1].event == event_name(held_back)
+    steps = [*counterexample.trace, *counterexample.onwards]
+    replay = Replay(oracle.model, steps)
+    before, after, end = (
+        replay.after(count, requirements=True)
+        for count in (len(counterexample.trace) - 1, len(counterexample.trace), len(steps))
+    )
+    states = definitions.held_back(held_back)
+    assert before in states
+    assert after not in oracle.controlled
+    assert len(counterexample.trace) - 1 == min(distance(oracle, state, within=oracle.controlled) for state in states)
+    assert is_blocked(oracle, end)
+    if counterexample.onwards:
+        assert not replay.events[steps[-1].event].controllable
+        assert not is_blocked(oracle, replay.after(len(steps) - 1, requirements=True))
+    assert set(counterexample.unmarked) == {each for each in oracle.model.plants if is_never_marked(oracle, each, end)}
+
+
+def test_counterexample_that_comes_later_is_traced_to_its_end():
+    """The event leads to where the robot may slip, by itself, to where only a forbidden way goes on."""
+    machine = plant(
+        "M",
+        {
+            "rest": [edge("c_tau1", to="edge")],
+            "edge": [edge("u_slip", to="slope"), edge("c_tau2", to="rest")],
+            "slope": [edge("c_tau3", to="ravine")],
+            "ravine": [edge("u_fall", to="ground"), edge("c_tau4", to="rest")],
+            "ground": [],
+        },
+        controllable=["c_tau1", "c_tau2", "c_tau3", "c_tau4"],
+        uncontrollable=["u_slip", "u_fall"],
+    )
+    observed = diagnose(model([machine])).observations
+    [restricted] = observed.silent_restricted
+    assert restricted.event.name == "c_tau1"
+    assert [each.event for each in restricted.counterexample.trace] == ["M.c_tau1"]
+    assert [each.event for each in restricted.counterexample.onwards] == ["M.u_slip", "M.c_tau3", "M.u_fall"]
+    assert restricted.counterexample.unmarked == (machine.element,)
+    never = {each.event.name: each for each in observed.never_enabled}
+    assert never["c_tau1"].counterexample == restricted.counterexample
+    assert never["c_tau2"].forbidden is Forbidden.BY_PLANTS
+    assert never["c_tau2"].plants == (machine.element,)
+
+
+def test_counterexample_leads_through_what_nothing_prevents():
+    """The shorter way to the ground is one that the supervisor could prevent by itself."""
+    machine = plant(
+        "M",
+        {
+            "rest": [edge("c_tau1", to="edge")],
+            "edge": [edge("c_tau2", to="ground"), edge("u_slip", to="slope"), edge("c_tau3", to="rest")],
+            "slope": [edge("u_fall", to="ground"), edge("c_tau3", to="rest")],
+            "ground": [],
+        },
+        controllable=["c_tau1", "c_tau2", "c_tau3"],
+        uncontrollable=["u_slip", "u_fall"],
+    )
+    [(held_back, counterexample)] = diagnose(model([machine])).observations.counterexamples.items()
+    assert held_back.name == "c_tau1"
+    assert [each.event for each in counterexample.onwards] == ["M.u_slip", "M.u_fall"]
+
+
+def test_large_models_get_no_more_counterexamples_than_are_cheap():
+    with patch.object(observations, "_STEPS", 10):
+        assert 0 < len(diagnose(philosophers(4)).observations.counterexamples) < 8
+    with patch.object(observations, "_EFFORT", 10):
+        assert not diagnose(philosophers(4)).observations.counterexamples
+
+
+@pytest.mark.parametrize(
+    ("where", "example", "settled"),
+    [("S.dusk", "dusk", False), ("S.dusk or S.light", "light", True), ("S.dark or S.dusk", "dark", True)],
+)
+def test_an_example_is_settled_where_that_is_possible(where, example, settled):
+    sensor = plant(
+        "S",
+        {"dark": [edge("u_response", to="dusk")], "dusk": [edge("c_tau1", to="light")], "light": []},
+        controllable=["c_tau1"],
+        uncontrollable=["u_response"],
+        marked=["dark", "dusk", "light"],
+    )
+    one, other = (
+        plant(name, {"ready": [edge("c_trigger")]}, controllable=["c_trigger"], kind="message", topic=topic)
+        for name, topic in (("a", "t"), ("b", "/t"))
+    )
+    [conflict] = diagnose(
+        model([sensor, one, other], [needs("a.c_trigger", where)])
+    ).observations.shared_topic_conflicts
+    assert conflict.example.state == {sensor.element: example, one.element: "ready", other.element: "ready"}
+    assert conflict.example.quiescent == settled
+
+
+def test_what_can_still_be_marked_after_a_counterexample():
+    """The lamp can, once its bulb is in; the gate opens at a machine at rest only."""
+    machine = plant(
+        "M",
+        {"rest": [edge("c_tau1", to="slope")], "slope": [edge("u_fall", to="ground")], "ground": []},
+        controllable=["c_tau1"],
+        uncontrollable=["u_fall"],
+    )
+    gate = plant("G", {"shut": [edge("c_tau2", to="open")], "open": []}, controllable=["c_tau2"], marked=["open"])
+    lamp = plant("L", {"dark": [edge("c_tau3", to="lit")], "lit": []}, controllable=["c_tau3"], marked=["lit"])
+    bulb = plant(
+        "B", {"out": [edge("u_in", to="inserted")], "inserted": []}, uncontrollable=["u_in"], marked=["out", "inserted"]
+    )
+    made = model([machine, gate, lamp, bulb], [needs("c_tau2", "M.rest"), needs("c_tau3", "B.inserted")])
+    [restricted] = diagnose(made).observations.silent_restricted
+    assert [each.event for each in restricted.counterexample.trace] == ["M.c_tau1"]
+    assert restricted.counterexample.unmarked == (machine.element, gate.element)

@@ -1,0 +1,71 @@
+"""Events whose names say nothing of the text are told with their statement and its line."""
+
+from pathlib import Path
+
+from click.testing import CliRunner
+
+import robosc
+from robosc.analysis.supervise import supervise
+from robosc.analysis.wording import with_words
+from robosc.cli import main
+from robosc.configuration import Configuration
+from robosc.m2t import cif, supervisor
+from robosc.m2t.models import Models
+from robosc.semantics.roles import Roles, event_name
+
+MODEL = """robot Courier {
+  component Base {
+    outgoing message seen with identifier: "/seen", type: none
+    incoming message speed with identifier: "/speed", type: integer(0..9)
+
+    behaviour {
+      initial marked state far { on response from seen goto near }
+      marked state near { transition goto far }
+    }
+  }
+
+  provide speed with 1 if Base.near
+  provide speed with 9
+}
+"""
+TOLD = {
+    "message_seen.u_response": "",
+    "message_speed.c_trigger": "",
+    "component_Base.c_tau1": " (transition of `Base` in line 8)",
+    "data_speed.c_d1": " (choice of `provide` 1 for `Base.speed` in line 12)",
+    "data_speed.c_d2": " (choice of `provide` 2 for `Base.speed` in line 13)",
+    "data_speed.c_none": " (choice of no data for `Base.speed`)",
+}
+
+
+def models(folder: Path, text: str = MODEL) -> Models:
+    file = folder / "courier.rscd"
+    file.write_text(text)
+    graph = robosc.to_rosgraph(robosc.load(str(file)))
+    supervise(graph.model)
+    return Models(graph.model, graph)
+
+
+def test_what_a_person_reads_for_an_event(tmp_path: Path) -> None:
+    events = Roles(models(tmp_path).sct).events
+    assert {event_name(each): with_words(each) for each in events} == {name: name + said for name, said in TOLD.items()}
+
+
+def test_simulate_tells_it(tmp_path: Path) -> None:
+    models(tmp_path)
+    answer = CliRunner().invoke(main, ["simulate", str(tmp_path / "courier.rscd")], input="e\nd\nq\n")
+    for name in ("data_speed.c_d1", "data_speed.c_d2", "component_Base.c_tau1"):
+        assert name + TOLD[name] in answer.stdout
+
+
+def test_generated_texts_tell_the_statement_and_no_line(tmp_path: Path) -> None:
+    """So a comment in the model changes nothing in them."""
+    generators = (cif.generate, supervisor.generate)
+    texts = [generate(models(tmp_path), Configuration()) for generate in generators]
+    told = "\n".join(text for each in texts for text in each.values())
+    assert '@doc("The choice of provide 2 for Base.speed.")\n  controllable c_d2;\n' in told
+    assert "Base.speed is to be sent with the data of `provide` 1, if Base.near." in told
+    assert "Base.speed is to be sent with the data of `provide` 2." in told
+    assert "Base.speed is to be sent without data." in told
+    commented = models(tmp_path, f"// a comment\n\n{MODEL}")
+    assert [generate(commented, Configuration()) for generate in generators] == texts

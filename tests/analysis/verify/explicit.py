@@ -1,0 +1,279 @@
+"""The properties by their definition, one state at a time. Slow on purpose, and of the same mind as nobody else."""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import combinations, product
+
+from robosc.analysis.paths import TraceStep
+from robosc.metamodel import sct
+from robosc.semantics.edges import edges_from
+from robosc.semantics.roles import Roles, event_name, plant_of
+from robosc.synthesis.decoding import Value
+from tests.synthesis.oracle import Oracle, State, values_of
+
+_SILENT = (sct.EventKind.tau, sct.EventKind.reset)
+_INPUTS = (sct.EventKind.response, sct.EventKind.error, sct.EventKind.feedback, sct.EventKind.cancel)
+Move = tuple[sct.Event, State]
+#: A state; in a batch also its number, and how many of its events have had their turn.
+Configuration = tuple[State, tuple[int, int] | None]
+
+
+@dataclass(frozen=True)
+class Explicit:
+    """A model under its supervisor. `faults` of a property are the states that refute it."""
+
+    model: sct.SupervisoryControlModel
+
+    @cached_property
+    def oracle(self) -> Oracle:
+        return Oracle(self.model)
+
+    @cached_property
+    def guards(self) -> dict[sct.Event, sct.EventGuard]:
+        return {each.event: each for each in self.model.supervisor.guards}
+
+    def guarded(self, event: sct.Event, state: State) -> bool:
+        guard = self.guards.get(event)
+        parts = (guard.requirement, guard.synthesis) if guard else ()
+        return all(self.oracle.value(part, state, {}) for part in parts)
+
+    def allowed(self, event: sct.Event, state: State) -> bool:
+        return self.oracle.edges(event, state) is not None and self.guarded(event, state)
+
+    @cached_property
+    def _moves(self) -> dict[State, list[Move]]:
+        return {}
+
+    def moves(self, state: State) -> list[Move]:
+        if state not in self._moves:
+            self._moves[state] = [
+                (event, after)
+                for event in self.oracle.events
+                if self.allowed(event, state)
+                for after in self.oracle.successors(event, state)
+            ]
+        return self._moves[state]
+
+    def silent(self, state: State) -> list[Move]:
+        return [each for each in self.moves(state) if each[0].kind in _SILENT]
+
+    # The control loop, in configurations: a state, and where in a batch it is
+
+    @cached_property
+    def batches(self) -> list[list[sct.Event]]:
+        """What happens with nothing in between: the events of a topic, the cancels."""
+        sources: dict[object, list[sct.Event]] = {}
+        for event in self.oracle.events:
+            plant = plant_of(event)
+            if not event.controllable and plant.kind == sct.PlantKind.message:
+                sources.setdefault(plant.topic.removeprefix("/") if plant.topic else plant, []).append(event)
+        return [*sources.values(), [event for event in self.oracle.events if event.kind == sct.EventKind.cancel]]
+
+    def failed(self, event: sct.Event, state: State) -> bool:
+        """Whether the event is the reset of what has failed."""
+        edges = [edge for location in plant_of(event).locations for edge in location.edges]
+        failed = {each.target for each in edges if each.event.kind == sct.EventKind.error}
+        return event.kind == sct.EventKind.reset and state[self.oracle.places[plant_of(event)]] in failed
+
+    def rests(self, state: State) -> bool:
+        return all(self.failed(event, state) for event, _ in self.silent(state))
+
+    @cached_property
+    def overruns(self) -> bool:
+        """Whether silent events can happen more often than the loop lets them."""
+        return bool(self.divergent()) or self.longest_run() > Roles(self.model).settling_bound
+
+    def loop_moves(self, here: Configuration) -> list[tuple[sct.Event | None, Configuration]]:
+        """What can happen next; a batch can end, without an event, at any place."""
+        state, place = here
+        if place is not None:
+            batch, done = place
+            onwards = self.batches[batch][done:]
+            later: list[tuple[sct.Event | None, Configuration]] = [
+                (event, (after, (batch, done + number + 1)))
+                for number, wanted in enumerate(onwards)
+                for event, after in self.moves(state)
+                if event is wanted
+            ]
+            return [*later, (None, (state, None))]
+        found: list[tuple[sct.Event | None, Configuration]] = []
+        for event, after in self.moves(state):
+            if event.kind in (*_SILENT, sct.EventKind.data):
+                found.append((event, (after, None)))
+            elif self.rests(state) or self.overruns:
+                batch = next(
+                    ((number, each.index(event) + 1) for number, each in enumerate(self.batches) if event in each), None
+                )
+                found.append((event, (after, batch)))
+        return found
+
+    @cached_property
+    def loop_states(self) -> set[State]:
+        start: Configuration = (self.oracle.initial, None)
+        known, front = {start}, [start]
+        for here in front:
+            for _, after in self.loop_moves(here):
+                if after not in known:
+                    known.add(after)
+                    front.append(after)
+        return {state for state, place in known if place is None}
+
+    def loop_blocked(self) -> set[State]:
+        """The states of the loop from which it comes to no marked one in which it rests; it waits only at rest."""
+        alive: set[Configuration] = {
+            (each, None) for each in self.loop_states if self.oracle.is_marked(each) and self.rests(each)
+        }
+        places = [None, *((batch, done) for batch, each in enumerate(self.batches) for done in range(1, len(each) + 1))]
+        left = {(state, place) for state in self.states for place in places} - alive
+
+        def leads(here: Configuration) -> bool:
+            waits = here[1] is not None or self.rests(here[0])
+            return any(
+                after in alive and (waits or event is None or event.kind in (*_SILENT, sct.EventKind.data))
+                for event, after in self.loop_moves(here)
+            )
+
+        while more := {here for here in left if leads(here)}:
+            alive |= more
+            left -= more
+        return {state for state in self.loop_states if (state, None) not in alive}
+
+    def is_run_of_the_loop(self, trace: Iterable[TraceStep]) -> bool:
+        """Whether the control loop can let these events happen."""
+        events = {event_name(each): each for each in self.oracle.events}
+        here: set[Configuration] = {(self.oracle.initial, None)}
+        for number, step in enumerate(trace := list(trace)):
+            after = self.after(trace[: number + 1])
+            here |= {(state, None) for state, _ in here}
+            here = {
+                following
+                for each in here
+                for event, following in self.loop_moves(each)
+                if event is events[step.event] and following[0] == after
+            }
+        return bool(here)
+
+    def torn(self) -> set[State]:
+        """The states of the loop that end in several, whatever resets of what has failed are held back meanwhile."""
+        resets = [each for each in self.oracle.events if each.kind == sct.EventKind.reset]
+        found = set()
+        for size in range(len(resets) + 1):
+            for held in combinations(resets, size):
+                found |= {state for state in self.loop_states if len(self.ends(state, held)) > 1}
+        return found
+
+    def ends(self, state: State, held: Iterable[sct.Event] = ()) -> set[State]:
+        def silent(here: State) -> list[Move]:
+            return [each for each in self.silent(here) if not (each[0] in held and self.failed(each[0], here))]
+
+        return {each for each in self.distances(silent, state) if not silent(each)}
+
+    def distances(self, moves: Callable[[State], list[Move]], start: State) -> dict[State, int]:
+        """All states that the moves lead to, with the least number of them."""
+        known, front = {start: 0}, [start]
+        for state in front:
+            for _, after in moves(state):
+                if after not in known:
+                    known[after] = known[state] + 1
+                    front.append(after)
+        return known
+
+    @cached_property
+    def states(self) -> dict[State, int]:
+        return self.distances(self.moves, self.oracle.initial)
+
+    def blocked(self, moves: Callable[[State], list[Move]], states: Iterable[State]) -> set[State]:
+        alive = {state for state in states if self.oracle.is_marked(state)}
+        left = [state for state in states if state not in alive]
+        while more := {state for state in left if any(after in alive for _, after in moves(state))}:
+            alive |= more
+            left = [state for state in left if state not in alive]
+        return set(left)
+
+    def uncontrolled(self) -> set[State]:
+        return {
+            state
+            for state in self.states
+            for event in self.oracle.events
+            if not event.controllable and self.oracle.edges(event, state) is not None
+            if not (self.guarded(event, state) and self.oracle.required(event, state))
+        }
+
+    def deaf(self) -> set[State]:
+        """Where a plant has no edge for what the one that declares it lets happen."""
+        return {
+            state
+            for state in self.states
+            for event in self.oracle.events
+            if event.kind in _INPUTS and self._ready(event, plant_of(event), state)
+            if self.oracle.edges(event, state) is None
+        }
+
+    def _ready(self, event: sct.Event, plant: sct.Plant, state: State) -> bool:
+        location = state[self.oracle.places[plant]]
+        return any(each.event is event and self.oracle.value(each.guard, state, {}) for each in edges_from(location))
+
+    def broken(self, requirement: sct.Requirement) -> set[State]:
+        wanted = requirement.kind == sct.RequirementKind.needs
+        return {
+            state
+            for state in self.states
+            if self.allowed(requirement.event, state) and self.oracle.value(requirement.condition, state, {}) != wanted
+        }
+
+    def dead(self) -> set[sct.Event]:
+        live = (sct.EventKind.trigger, *_SILENT)
+        happen = {event for state in self.states for event, _ in self.moves(state)}
+        return {event for event in self.oracle.events if event.kind in live and event not in happen}
+
+    def needless(self) -> set[State]:
+        return {
+            state
+            for state in self.states
+            if state in self.oracle.controlled
+            for event in self.oracle.events
+            if event.controllable and self.oracle.allows(event, state) and not self.guarded(event, state)
+        }
+
+    def divergent(self) -> set[State]:
+        """From where silent events can happen for ever: as often as there are states, and once more."""
+        left = set(self.states)
+        while True:
+            kept = {state for state in left if any(after in left for _, after in self.silent(state))}
+            if kept == left:
+                return left
+            left = kept
+
+    def longest_run(self) -> int:
+        """How many silent events can happen in a row, if they come to rest."""
+        left, length = set(self.states), -1
+        while left:
+            left = {state for state in left if any(after in left for _, after in self.silent(state))}
+            length += 1
+        return length
+
+    def after(self, trace: Iterable[TraceStep], state: State | None = None) -> State:
+        """The state to which a trace leads: what it leaves open makes no difference."""
+        state = self.oracle.initial if state is None else state
+        events = {event_name(each): each for each in self.oracle.events}
+        for step in trace:
+            event = events[step.event]
+            assert self.allowed(event, state), step
+            found = {
+                after
+                for after, inputs in self._all_successors(event, state)
+                if all(_shown(inputs[each]) == step.inputs[each.name] for each in inputs if each.name in step.inputs)
+            }
+            assert len(found) == 1, step
+            state = found.pop()
+        return state
+
+    def _all_successors(self, event: sct.Event, state: State) -> Iterable[tuple[State, dict]]:
+        for values in product(*(values_of(each.type) for each in event.inputs)):
+            inputs = dict(zip(event.inputs, values, strict=True))
+            yield self.oracle.successor(event, state, inputs), inputs
+
+
+def _shown(value: object) -> Value:
+    return getattr(value, "name", value)

@@ -1,0 +1,109 @@
+"""What is changed in a supervised model that was right is found."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+import robosc
+from robosc.analysis.verify import Outcome, verify_system
+from robosc.cli import main
+from robosc.m2t.models import Models
+from robosc.metamodel import expression as ex
+from robosc.metamodel import sct
+from robosc.semantics.roles import event_name
+from tests.examples.conftest import MODELS
+
+
+def models_of(name: str) -> Models:
+    """An example's models with supervisor, to be changed."""
+    robot = robosc.load(MODELS[name])
+    plants = robosc.to_sct(robot)
+    robosc.synthesize(plants)
+    return Models(plants, robosc.to_rosgraph(robot), robot)
+
+
+def guard_of(model: sct.SupervisoryControlModel, event: str) -> sct.EventGuard:
+    return next(each for each in model.supervisor.guards if event_name(each.event) == event)
+
+
+def weaken_a_requirement(model: sct.SupervisoryControlModel) -> None:
+    """One part of a conjunction is not asked any more."""
+    guard = guard_of(model, "message_move.c_trigger")
+    assert isinstance(guard.requirement, ex.Conjunction)
+    guard.requirement = guard.requirement.right
+
+
+def remove_a_guard(model: sct.SupervisoryControlModel) -> None:
+    guard_of(model, "message_halt.c_trigger").requirement = None
+
+
+def forbid_an_event(model: sct.SupervisoryControlModel) -> None:
+    guard_of(model, "message_halt.c_trigger").synthesis = ex.BooleanLiteral(value=False)
+
+
+def forbid_it_in_one_state(model: sct.SupervisoryControlModel) -> None:
+    blocked = next(each for plant in model.plants for each in plant.locations if each.name == "blocked")
+    reference = ex.Negation(operand=sct.LocationReference(location=blocked))
+    guard_of(model, "message_halt.c_trigger").synthesis = reference
+
+
+def drop_a_self_loop(model: sct.SupervisoryControlModel) -> None:
+    """The one by which a component lets come what does not concern it."""
+    component = next(each for each in model.plants if each.name == "component_LineDetector")
+    location = next(each for each in component.locations if each.name == "searching")
+    loop = next(each for each in location.edges if each.target is location)
+    location.edges.remove(loop)
+
+
+def lower_the_bound(model: sct.SupervisoryControlModel) -> None:
+    model.supervisor.settlingBound = 0
+
+
+#: What is changed in the line follower, and what is refuted then.
+MUTATIONS = {
+    weaken_a_requirement: {
+        "requirement move needs LineDetector.following and Lidar.free and EmergencyStop.in_service (line 60)"
+    },
+    remove_a_guard: {
+        "requirement halt needs LineDetector.searching or Lidar.blocked or EmergencyStop.stopped (line 61)"
+    },
+    forbid_an_event: {"no dead events", "maximal permissiveness"},
+    forbid_it_in_one_state: {"maximal permissiveness"},
+    drop_a_self_loop: {"input-enabledness"},
+    lower_the_bound: {"bounded response"},
+}
+
+
+@pytest.mark.parametrize("mutate", MUTATIONS, ids=lambda each: each.__name__)
+def test_a_mutation_is_found(mutate: Callable[[sct.SupervisoryControlModel], None]) -> None:
+    model = models_of("line_follower").sct
+    assert {each.outcome for each in verify_system(model)} == {Outcome.PROVED}
+    mutate(model)
+    refuted = {each.property for each in verify_system(model) if each.outcome is Outcome.REFUTED}
+    assert refuted == MUTATIONS[mutate]
+
+
+def saved(models: Models, folder: Path) -> Path:
+    for name, text in robosc.generate("xmi", models).items():
+        (folder / name).write_text(text)
+    return folder / f"{models.sct.name}.sct.xmi"
+
+
+def test_the_supervisor_of_a_saved_model_is_taken_as_it_is(tmp_path: Path) -> None:
+    models = models_of("line_follower")
+    weaken_a_requirement(models.sct)
+    file = saved(models, tmp_path)
+    answer = CliRunner().invoke(main, ["verify", str(file)])
+    assert answer.exit_code == 1
+    assert "line 60)" in answer.stdout
+    assert answer.stdout.endswith(" proved, 1 refuted\n")
+
+
+def test_a_saved_model_without_a_guard_is_refused(tmp_path: Path) -> None:
+    models = models_of("line_follower")
+    models.sct.supervisor.guards.remove(guard_of(models.sct, "message_halt.c_trigger"))
+    answer = CliRunner().invoke(main, ["verify", str(saved(models, tmp_path))])
+    assert answer.exit_code == 1
+    assert "the event 'message_halt.c_trigger' has no guard" in answer.stderr
