@@ -18,7 +18,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
     from os import PathLike
 
     from robosc.analysis.supervise import EmptySupervisorError
@@ -66,29 +66,42 @@ def __dir__() -> list[str]:
 
 
 def load(
-    path: str | PathLike[str],
+    path: str | PathLike[str] | None = None,
     library_paths: Sequence[str | PathLike[str]] = (),
     interface_paths: Sequence[str | PathLike[str]] = (),
+    *,
+    text: str | None = None,
+    documents: Mapping[str | PathLike[str], str] | None = None,
 ) -> Robot:
     """The robot in a `.rscd` file, or in an `.xmi` file of the robosc metamodel, its names resolved.
 
+    A `text` is read instead of what is in the file, which need not be there; without a path, as if it stood in the
+    working folder. `documents` are texts that stand in place of other `.rscd` files, by their paths.
+
     Libraries are looked for beside the file, then in `library_paths`, in ROBOSC_PATH and in the standard library; ROS
     types that take the place of objects (`type: geometry_msgs/Twist`) as `check` does.
-    Raises ModelError with all findings where text or names have errors, ValueError where the file holds no robot, and
-    OSError where it can't be read. What the rules beyond syntax say, `check` tells.
+    Raises ModelError with all findings where text or names have errors, ValueError where the file holds no robot,
+    OSError where it can't be read, and TypeError without path and text. What the rules beyond syntax say, `check`
+    tells.
     """
     from robosc.diagnostics import ModelError, has_errors
     from robosc.metamodel import robosc
 
-    if str(path).endswith(".xmi"):
+    if path is None and text is None:
+        raise TypeError("load needs a path or a text")
+    path = "<text>" if path is None else str(path)
+    if path.endswith(".xmi") and text is None:
         from robosc.metamodel import xmi
 
-        base = xmi.load(str(path))
+        base = xmi.load(path)
     else:
-        from robosc.language import read
+        from robosc.language import Documents, read
         from robosc.ros_types import RosTypes
 
-        reading = read(str(path), [str(each) for each in library_paths], RosTypes(interface_paths))
+        texts = {str(name): content for name, content in (documents or {}).items()} | (
+            {} if text is None else {path: text}
+        )
+        reading = read(path, [str(folder) for folder in library_paths], RosTypes(interface_paths), Documents(texts))
         if reading.base is None or has_errors(reading.findings):
             raise ModelError(reading.findings)
         base = reading.base

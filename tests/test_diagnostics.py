@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from robosc.diagnostics import Diagnostic, Severity, Span, as_json, as_sarif, as_text, has_errors, in_order
+from robosc.diagnostics import Diagnostic, Edit, Severity, Span, as_json, as_sarif, as_text, has_errors, in_order
 
 
 def finding(
@@ -19,9 +19,10 @@ def finding(
     hint: str | None = None,
     severity: Severity = Severity.ERROR,
     message: str = "wrong",
+    edits: tuple[Edit, ...] = (),
 ) -> Diagnostic:
     span = Span(line, column, end_line or line, end_column or column + 1)
-    return Diagnostic(file, span, severity, rule, message, hint)
+    return Diagnostic(file, span, severity, rule, message, hint, edits)
 
 
 @pytest.mark.parametrize(
@@ -164,7 +165,8 @@ def test_summary(errors: int, warnings: int, expected: str) -> None:
 
 
 def test_json() -> None:
-    found = [finding(3, 2, 4, 7, rule="unique-topic", severity=Severity.WARNING), finding(1, 1, hint="write `0.0`")]
+    found = [finding(3, 2, 4, 7, rule="unique-topic", severity=Severity.WARNING)]
+    found.append(finding(1, 1, hint="write `0.0`", edits=(Edit(Span(1, 1, 1, 2), "0.0"),)))
     assert json.loads(as_json.render([*found, *found])) == [
         {
             "file": "a.rscd",
@@ -176,6 +178,7 @@ def test_json() -> None:
             "rule": "type",
             "message": "wrong",
             "hint": "write `0.0`",
+            "edits": [{"line": 1, "column": 1, "end_line": 1, "end_column": 2, "text": "0.0"}],
         },
         {
             "file": "a.rscd",
@@ -187,6 +190,7 @@ def test_json() -> None:
             "rule": "unique-topic",
             "message": "wrong",
             "hint": None,
+            "edits": [],
         },
     ]
     assert json.loads(as_json.render([])) == []
@@ -224,6 +228,18 @@ def test_sarif() -> None:
         "artifactLocation": {"uri": "models/my%20robot.rscd"},
         "region": {"startLine": 3, "startColumn": 2, "endLine": 4, "endColumn": 7},
     }
+
+
+def test_sarif_edits_are_fixes() -> None:
+    edit = Edit(Span(1, 1, 1, 2), "0.0")
+    mended, plain = run(finding(2), finding(1, 1, hint="write `0.0`", edits=(edit,)))["results"]
+    assert "fixes" not in plain
+    (fix,) = mended["fixes"]
+    assert fix["description"]["text"] == "write `0.0`"
+    (change,) = fix["artifactChanges"]
+    assert change["artifactLocation"] == {"uri": "a.rscd"}
+    region = {"startLine": 1, "startColumn": 1, "endLine": 1, "endColumn": 2}
+    assert change["replacements"] == [{"deletedRegion": region, "insertedContent": {"text": "0.0"}}]
 
 
 def test_sarif_describes_the_rules_that_were_broken() -> None:

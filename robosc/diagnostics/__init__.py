@@ -34,7 +34,7 @@ class Span:
     def parse(cls, source: str | None) -> Span | None:
         """The span of a model element's `source`, with or without a file before it; None where there is none."""
         found = re.search(r"(\d{1,9}):(\d{1,9})-(\d{1,9}):(\d{1,9})$", source or "")
-        return cls(*(int(each) for each in found.groups())) if found else None
+        return cls(*(int(number) for number in found.groups())) if found else None
 
     def contains(self, other: Span) -> bool:
         """Whether the other span lies within this one."""
@@ -46,9 +46,20 @@ class Span:
 START = Span(1, 1, 1, 1)
 
 
+@dataclass(frozen=True, order=True)
+class Edit:
+    """A change of a text: `text` takes the place of what stands in a span, which may be empty."""
+
+    span: Span
+    text: str
+
+
 @dataclass(frozen=True)
 class Diagnostic:
-    """One finding of one rule at one place; `hint` says how to mend it."""
+    """One finding of one rule at one place.
+
+    `hint` says how to mend it. Where that is so simple that a program can do it, `edits` do it in the finding's file.
+    """
 
     file: str
     span: Span
@@ -56,6 +67,7 @@ class Diagnostic:
     rule: str
     message: str
     hint: str | None = None
+    edits: tuple[Edit, ...] = ()
 
 
 class ModelError(Exception):
@@ -63,16 +75,17 @@ class ModelError(Exception):
 
     def __init__(self, diagnostics: Sequence[Diagnostic]) -> None:
         self.diagnostics = list(diagnostics)
-        super().__init__("\n".join(each.message for each in self.diagnostics))
+        super().__init__("\n".join(finding.message for finding in self.diagnostics))
 
 
 def in_order(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
     """Each finding once, by file, position and rule."""
     return sorted(
-        dict.fromkeys(findings), key=lambda each: (each.file, each.span, each.rule, each.message, each.hint or "")
+        dict.fromkeys(findings),
+        key=lambda found: (found.file, found.span, found.rule, found.message, found.hint or "", found.edits),
     )
 
 
 def has_errors(findings: Iterable[Diagnostic]) -> bool:
     """Whether one of the findings keeps the model from being used."""
-    return any(each.severity is Severity.ERROR for each in findings)
+    return any(finding.severity is Severity.ERROR for finding in findings)

@@ -3,30 +3,32 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from robosc.diagnostics import in_order
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from robosc.diagnostics import Diagnostic
+    from robosc.diagnostics import Diagnostic, Span
 
 
 def render(findings: Iterable[Diagnostic]) -> str:
     """A JSON array of all findings in order; `hint` is null where there is none. Ends with a line break."""
-    return json.dumps([_object(each) for each in in_order(findings)], indent=2) + "\n"
+    return json.dumps([_object(finding) for finding in in_order(findings)], indent=2) + "\n"
 
 
-def _object(finding: Diagnostic) -> dict[str, str | int | None]:
+def _object(finding: Diagnostic) -> dict[str, Any]:
     return {
         "file": finding.file,
-        "line": finding.span.line,
-        "column": finding.span.column,
-        "end_line": finding.span.end_line,
-        "end_column": finding.span.end_column,
+        **_place(finding.span),
         "severity": finding.severity.value,
         "rule": finding.rule,
         "message": finding.message,
         "hint": finding.hint,
+        "edits": [{**_place(edit.span), "text": edit.text} for edit in finding.edits],
     }
+
+
+def _place(span: Span) -> dict[str, int]:
+    return {"line": span.line, "column": span.column, "end_line": span.end_line, "end_column": span.end_column}

@@ -13,7 +13,7 @@ from robosc.diagnostics.rules import page, summary
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from robosc.diagnostics import Diagnostic
+    from robosc.diagnostics import Diagnostic, Span
 
 _SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
 
@@ -21,14 +21,14 @@ _SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sa
 def render(findings: Iterable[Diagnostic], version: str) -> str:
     """A SARIF log of one run by this version of the tool, with the findings in order. Ends with a line break.
 
-    Regions count columns in code points. The rules that drew a finding are described from their pages.
+    Regions count columns in code points. Edits are fixes. The rules that drew a finding are described from their pages.
     """
     found = in_order(findings)
-    rules = sorted({each.rule for each in found})
+    rules = sorted({finding.rule for finding in found})
     run = {
-        "tool": {"driver": {"name": "robosc", "version": version, "rules": [_rule(each) for each in rules]}},
+        "tool": {"driver": {"name": "robosc", "version": version, "rules": [_rule(rule) for rule in rules]}},
         "columnKind": "unicodeCodePoints",
-        "results": [_result(each, rules.index(each.rule)) for each in found],
+        "results": [_result(finding, rules.index(finding.rule)) for finding in found],
     }
     return json.dumps({"$schema": _SCHEMA, "version": "2.1.0", "runs": [run]}, indent=2) + "\n"
 
@@ -42,25 +42,29 @@ def _rule(rule: str) -> dict[str, Any]:
 
 def _result(finding: Diagnostic, rule_index: int) -> dict[str, Any]:
     hint = f"\n\nHint: {finding.hint}" if finding.hint else ""
-    span = finding.span
-    return {
+    artifact = {"uri": _uri(finding.file)}
+    result: dict[str, Any] = {
         "ruleId": finding.rule,
         "ruleIndex": rule_index,
         "level": finding.severity.value,
         "message": {"text": finding.message + hint},
-        "locations": [
-            {
-                "physicalLocation": {
-                    "artifactLocation": {"uri": _uri(finding.file)},
-                    "region": {
-                        "startLine": span.line,
-                        "startColumn": span.column,
-                        "endLine": span.end_line,
-                        "endColumn": span.end_column,
-                    },
-                }
-            }
-        ],
+        "locations": [{"physicalLocation": {"artifactLocation": artifact, "region": _region(finding.span)}}],
+    }
+    if finding.edits:
+        replacements = [
+            {"deletedRegion": _region(edit.span), "insertedContent": {"text": edit.text}} for edit in finding.edits
+        ]
+        change = {"artifactLocation": artifact, "replacements": replacements}
+        result["fixes"] = [{"description": {"text": finding.hint or finding.message}, "artifactChanges": [change]}]
+    return result
+
+
+def _region(span: Span) -> dict[str, int]:
+    return {
+        "startLine": span.line,
+        "startColumn": span.column,
+        "endLine": span.end_line,
+        "endColumn": span.end_column,
     }
 
 

@@ -36,9 +36,9 @@ def render(findings: Iterable[Diagnostic], texts: Mapping[str, str], paint: Call
     are shown, errors before warnings, and the number of the others.
     """
     found = in_order(findings)
-    shown = in_order(sorted(found, key=lambda each: each.severity is not Severity.ERROR)[:MOST])
-    lines = {file: texts[file].split("\n") for file in {each.file for each in shown} if file in texts}
-    parts = [_render(each, lines.get(each.file, []), paint) for each in shown]
+    shown = in_order(sorted(found, key=lambda finding: finding.severity is not Severity.ERROR)[:MOST])
+    lines = {file: texts[file].split("\n") for file in {finding.file for finding in shown} if file in texts}
+    parts = [_render(finding, lines.get(finding.file, []), paint) for finding in shown]
     if len(found) > len(shown):
         parts.append(f"{len(found) - len(shown)} more are not shown: `robosc check --format json` tells all\n")
     return "".join(parts)
@@ -47,7 +47,7 @@ def render(findings: Iterable[Diagnostic], texts: Mapping[str, str], paint: Call
 def summary(findings: Iterable[Diagnostic]) -> str:
     """How many errors and warnings there are, such as `2 errors, 1 warning`; empty for none."""
     found = in_order(findings)
-    counts = [(sum(each.severity is severity for each in found), severity.value) for severity in Severity]
+    counts = [(sum(finding.severity is severity for finding in found), severity.value) for severity in Severity]
     return ", ".join(f"{count} {word}{'s' if count > 1 else ''}" for count, word in counts if count)
 
 

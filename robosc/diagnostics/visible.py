@@ -22,7 +22,9 @@ def visible(text: str) -> str:
     """
     if text.isprintable() and not _HIDDEN.search(text):
         return text
-    return "".join(each if each.isprintable() and not _HIDDEN.match(each) else code(each) for each in text)
+    return "".join(
+        character if character.isprintable() and not _HIDDEN.match(character) else code(character) for character in text
+    )
 
 
 def visible_lines(text: str) -> str:

@@ -23,7 +23,7 @@ _ESCAPE = re.compile(r"\\(u[0-9A-Fa-f]{4}|x[0-9A-Fa-f]{2}|.)")
 
 @dataclass(frozen=True)
 class Name:
-    """A name that refers to something, and where it stands (offsets in the text)."""
+    """A name and where it stands (offsets in the text)."""
 
     text: str
     start: int
@@ -40,12 +40,14 @@ def element_class(rule: str) -> Any | None:
 class Builder:
     """Makes the model of one text, or of parts of it.
 
-    References are not linked: `references` holds, in the order of the text, their names by element and feature.
+    References are not linked: `references` holds, in the order of the text, their names by element and feature;
+    `declared` holds where the name of each named element stands.
     `findings` are words that the grammar admits and that still mean nothing, such as a number too large.
     """
 
     def __init__(self, text: Text) -> None:
         self.references: dict[Any, dict[str, Name]] = {}
+        self.declared: dict[Any, Name] = {}
         self.findings: list[Diagnostic] = []
         self._text = text
         #: Literals of 2^63, which is no integer, but the least one behind a minus.
@@ -55,8 +57,8 @@ class Builder:
         """The element of a parse tree, whose text starts at an offset of the file's."""
         self._offset = offset
         built = self._build(node)
-        for each in self._unsigned.values():
-            self._too_large(each)
+        for literal in self._unsigned.values():
+            self._too_large(literal)
         self._unsigned.clear()
         return built
 
@@ -67,7 +69,7 @@ class Builder:
         made = element_class(rule)
         if made is not None:
             return self._element(node, made)
-        return self._build(next(each for each in node if each.rule_name))
+        return self._build(next(part for part in node if part.rule_name))
 
     def _element(self, node: Node, made: Any) -> Any:
         element = made(source=self._source(node.position, node.position_end))
@@ -93,9 +95,10 @@ class Builder:
         if definition.is_attribute:
             literal = isinstance(element, ex.IntegerLiteral)
             setattr(element, feature, self._integer(node, literal=True) if literal else self._word(node))
+            if feature == "name":
+                self.declared[element] = self._name(node)
         elif not definition.containment:
-            start, end = node.position + self._offset, node.position_end + self._offset
-            self.references.setdefault(element, {})[feature] = Name(node.value.lstrip("^"), start, end)
+            self.references.setdefault(element, {})[feature] = self._name(node)
         elif definition.many:
             getattr(element, feature).append(self._build(node))
         else:
@@ -112,17 +115,20 @@ class Builder:
             made = waiting.pop()
             operands.append((made(left=left, right=right, source=self._source(start, end)), start, end))
 
-        for each in node[1:]:
-            operator = element_class(each[0].rule_name)
+        for (binary,) in node[1:]:
+            operator = element_class(binary.rule_name)
             assert operator is not None
             while waiting and _binds_first(waiting[-1], operator):
                 reduce()
             waiting.append(operator)
-            operand = next(child for child in each[0] if attribute(child) == "right")[0]
+            operand = next(child for child in binary if attribute(child) == "right")[0]
             operands.append((self._build(operand), operand.position, operand.position_end))
         while waiting:
             reduce()
         return operands[0][0]
+
+    def _name(self, node: Node) -> Name:
+        return Name(node.value.lstrip("^"), node.position + self._offset, node.position_end + self._offset)
 
     def _word(self, node: Node) -> Any:
         """The value of a match rule; a keyword that is assigned by itself is a flag that is set."""

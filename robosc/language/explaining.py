@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING
 
 from robosc.language.grammar import is_reserved
 from robosc.language.outline import RULES
+from robosc.language.text import Repair
 from robosc.language.tokens import Kind, Token
+from robosc.semantics.naming import written
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -103,20 +105,27 @@ def expected(wanted: Iterable[str], level: Level | None) -> str:
     return enumeration(dict.fromkeys(named))
 
 
+def did_you_mean(word: str, known: Iterable[str], *, cutoff: float) -> Repair | None:
+    """The name of those known that is most like a word; None where none is as like as `cutoff` (from 0 to 1)."""
+    close = get_close_matches(word, sorted(set(known)), n=1, cutoff=cutoff)
+    return Repair(f"did you mean `{written(close[0])}`?", written(close[0])) if close else None
+
+
 def enumeration(parts: Iterable[str]) -> str:
     """`a, b or c`."""
     *others, last = parts
     return f"{', '.join(others)} or {last}" if others else last
 
 
-def hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) -> str | None:
+def hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) -> Repair | str | None:
     """How to mend what stands at a token of an item, where that can be told."""
     token, before = tokens[index], tokens[index - 1]
     symbols = _symbols(token, wanted)
     if token.text in _FOREIGN:
-        return (
-            f"write `{_FOREIGN[token.text]}`" if _FOREIGN[token.text] else "leave it out: nothing ends with a semicolon"
-        )
+        own = _FOREIGN[token.text]
+        # A quotation mark has another one at the other end.
+        text = None if own == '"' else own
+        return Repair(f"write `{own}`" if own else "leave it out: nothing ends with a semicolon", text)
     if token.text == ":" and tokens[block.first].is_keyword("provide"):
         return "the properties of an object stand in braces"
     if before.is_name and before.text in wanted and is_reserved(before.text):
@@ -128,7 +137,7 @@ def hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) -> str
     if "->" in wanted and block.level is RULES and (token.is_first or before.text == "default"):
         return "write `->` before the value that the rule gives"
     if token.text in {"=", ":", ":=", "=>", "->"} and len(symbols) == 1:
-        return f"write `{symbols[0]}`"
+        return Repair(f"write `{symbols[0]}`", symbols[0])
     if "." in {token.text, before.text} and Kind.NUMBER in {token.kind, before.kind, tokens[index + 1].kind}:
         return "a number has digits on both sides of its point, such as `0.5` or `1.0`"
     if token.kind is Kind.NUMBER and not token.text.replace(".", "").isdigit():
@@ -143,7 +152,7 @@ def _symbols(token: Token, wanted: Sequence[str]) -> list[str]:
     return [each for each in (":", ":=", "=", "->", "{", ",") if each in wanted or (each == "=" and "=(?!>)" in wanted)]
 
 
-def _word_hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) -> str | None:
+def _word_hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) -> Repair | str | None:
     token = tokens[index]
     words = {each for each in wanted if each.isalpha() and each.islower()} - {"end"}
     if "end" in wanted and block.level:
@@ -161,5 +170,5 @@ def _word_hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) 
         return "a transition with an event has no condition; use a variable, or a `transition if` from the next state"
     goes_on = tokens[index + 1].kind is not Kind.WORD or is_reserved(tokens[index + 1].text)
     if index < block.after and "UnreservedName" in wanted and is_reserved(token.text) and goes_on:
-        return f"write `^{token.text}` where a keyword is used as a name"
-    return f"did you mean `{close[0]}`?" if close else None
+        return Repair(f"write `^{token.text}` where a keyword is used as a name", f"^{token.text}")
+    return Repair(f"did you mean `{close[0]}`?", close[0]) if close else None

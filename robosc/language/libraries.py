@@ -7,11 +7,12 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from robosc.files import reading as files
 from robosc.files.resources import locate
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
+
+    from robosc.language.text import Documents
 
 _BLANK = rb"(?:\s|//[^\n]*|/\*[\s\S]*?\*/)"
 _HEADER = re.compile(rb"(?:\xef\xbb\xbf)?" + _BLANK + rb"*+library\b" + _BLANK + rb"*+\^?([A-Za-z_]\w*)")
@@ -19,16 +20,17 @@ _HEADER = re.compile(rb"(?:\xef\xbb\xbf)?" + _BLANK + rb"*+library\b" + _BLANK +
 
 def search_folders(given: Iterable[Path | str]) -> list[Path]:
     """The folders of a call, those of ROBOSC_PATH, and the one that ships with the tool."""
-    environment = [each for each in os.environ.get("ROBOSC_PATH", "").split(os.pathsep) if each]
+    environment = [folder for folder in os.environ.get("ROBOSC_PATH", "").split(os.pathsep) if folder]
     return [*map(Path, given), *map(Path, environment), locate("stdlib")]
 
 
 class LibraryPath:
     """The folders in which libraries are looked for, each listed once."""
 
-    def __init__(self, given: Iterable[Path | str]) -> None:
+    def __init__(self, given: Iterable[Path | str], documents: Documents) -> None:
         """`given` are the folders of the call; those of ROBOSC_PATH and the one that ships with the tool come after."""
         self._folders = search_folders(given)
+        self._documents = documents
         self._declared: dict[Path, Mapping[str, list[Path]]] = {}
 
     def find(self, name: str, beside: Path) -> list[Path]:
@@ -50,27 +52,17 @@ class LibraryPath:
     def declared(self, folder: Path) -> Mapping[str, list[Path]]:
         """The libraries that the files of a folder declare, by name; their paths start with the folder's."""
         if folder not in self._declared:
-            self._declared[folder] = _declared(folder)
+            libraries: dict[str, list[Path]] = {}
+            for path in self._documents.models(folder):
+                name = self._declared_name(path)
+                if name is not None:
+                    libraries.setdefault(name, []).append(path)
+            self._declared[folder] = libraries
         return self._declared[folder]
 
-
-def _declared(folder: Path) -> Mapping[str, list[Path]]:
-    libraries: dict[str, list[Path]] = {}
-    try:
-        with os.scandir(folder) as entries:
-            names = sorted(each.name for each in entries if each.name.endswith(".rscd") and each.is_file())
-    except OSError:
-        return {}
-    for each in names:
-        name = _declared_name(folder / each)
-        if name is not None:
-            libraries.setdefault(name, []).append(folder / each)
-    return libraries
-
-
-def _declared_name(path: Path) -> str | None:
-    try:
-        found = _HEADER.match(files.read(path, is_input=False))
-    except OSError:
-        return None
-    return found[1].decode("ascii") if found else None
+    def _declared_name(self, path: Path) -> str | None:
+        try:
+            found = _HEADER.match(self._documents.read(path, is_input=False))
+        except OSError:
+            return None
+        return found[1].decode("ascii") if found else None

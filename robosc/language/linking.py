@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from robosc.language.explaining import BASIC_TYPES, enumeration
+from robosc.language.explaining import BASIC_TYPES, did_you_mean, enumeration
 from robosc.language.interface_types import declare, is_made, link_interface, ros_properties, ros_property
 from robosc.language.scopes import File, Names, Scope
+from robosc.language.text import Repair
 from robosc.language.unread import Declared
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
@@ -84,7 +84,7 @@ class _Linker:
                     linked = "interface" in self._file.references.get(each, ())
                     if isinstance(each, rsc.CommunicationType) and not linked:
                         link_interface(each)
-        for element, names in self._file.references.items():
+        for element, names in list(self._file.references.items()):
             self._use(element, names)
 
     def _declaration(self, element: ex.Located, names: Mapping[str, Name]) -> None:
@@ -135,7 +135,8 @@ class _Linker:
         if len(found) > 1:
             self._ambiguous(what, name, [file for file, _ in found])
         elif not found and not self._file.may_declare(name.text, declared):
-            hint = f"write `{BASIC_TYPES[name.text]}`" if name.text in BASIC_TYPES else None
+            basic = BASIC_TYPES.get(name.text)
+            hint = Repair(f"write `{basic}`", basic) if basic else None
             self._missing(name, f"there is no {what}", self._scope.usable(kind), hint)
         return found[0][1] if len(found) == 1 else None
 
@@ -296,6 +297,8 @@ class _Linker:
         start = self._file.text.content.rfind(".", 0, name.start)
         segment = rsc.PropertySegment(source=self._file.text.source(start, name.end))
         access.segments.insert(0, segment)
+        names = self._file.references
+        names[access], names[segment] = {"item": names[access]["component"]}, {"property": name}
         self._segment(segment, name)
 
     # Properties
@@ -364,16 +367,20 @@ class _Linker:
     # Findings
 
     def _missing(
-        self, name: Name, message: str, known: Iterable[str], hint: str | None = None, *, listed: bool = True
+        self,
+        name: Name,
+        message: str,
+        known: Iterable[str],
+        hint: Repair | str | None = None,
+        *,
+        listed: bool = True,
     ) -> None:
         names = list(dict.fromkeys(known))
-        close = get_close_matches(name.text, sorted(names), n=1)
-        if hint is None and close:
-            hint = f"did you mean `{written(close[0])}`?"
-        elif hint is None and listed and 0 < len(names) <= _FEW:
-            hint = f"there is {enumeration(f'`{written(each)}`' for each in names)}"
-        self._report(name, f"{message} `{name.text}`", hint)
+        repair = hint or did_you_mean(name.text, names, cutoff=0.6)
+        if repair is None and listed and 0 < len(names) <= _FEW:
+            repair = f"there is {enumeration(f'`{written(other)}`' for other in names)}"
+        self._report(name, f"{message} `{name.text}`", repair)
 
-    def _report(self, name: Name, message: str, hint: str | None = None) -> None:
+    def _report(self, name: Name, message: str, repair: Repair | str | None = None) -> None:
         if not self._file.unread.is_doubtful(name.start):
-            self.findings.append(self._file.text.error(RULE, name.start, name.end, message, hint))
+            self.findings.append(self._file.text.error(RULE, name.start, name.end, message, repair))

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from difflib import get_close_matches
+from dataclasses import dataclass
 from pathlib import Path, PurePath
 from typing import TYPE_CHECKING
 
 from robosc.diagnostics import in_order
-from robosc.files import reading as files
 from robosc.files.resources import locate
+from robosc.language.explaining import did_you_mean
 from robosc.language.libraries import LibraryPath
 from robosc.language.linking import RULE, link
 from robosc.language.recovery import parse_file
 from robosc.language.scopes import File
-from robosc.language.text import decode
+from robosc.language.text import Documents, Repair, decode
 from robosc.metamodel import robosc as rsc
 from robosc.metamodel.files import set_path
 from robosc.ros_types import RosTypes
@@ -34,26 +33,37 @@ class Reading:
 
     `base` is its robot or library, as far as its text could be read; None where not even its first line could.
     `findings` are the faults of the text and of its names, those of imported libraries included, in order.
-    `texts` holds what was read, by the paths that the findings carry.
+    `files` holds all that was read, the file itself first, by the paths that the findings carry.
     """
 
     base: rsc.Base | None
-    findings: list[Diagnostic] = field(default_factory=list)
-    texts: dict[str, str] = field(default_factory=dict)
+    findings: list[Diagnostic]
+    files: dict[str, File]
+
+    @property
+    def texts(self) -> dict[str, str]:
+        """What was read, by the paths that the findings carry."""
+        return {path: file.text.content for path, file in self.files.items()}
 
 
 @deep_recursion()
-def read(path: Path | str, library_paths: Iterable[Path | str] = (), interfaces: RosTypes | None = None) -> Reading:
+def read(
+    path: Path | str,
+    library_paths: Iterable[Path | str] = (),
+    ros_types: RosTypes | None = None,
+    documents: Documents | None = None,
+) -> Reading:
     """Reads a robot or a library and all that it imports, and links its names.
 
     `library_paths` are searched after the file's own folder and before ROBOSC_PATH and the standard library.
-    `interfaces` is what is known of ROS types; None: what is known without folders of the call. Raises
-    OSError where the file itself can't be read; all other faults are findings of the rules `syntax`,
-    `unresolved-reference` and `import-cycle`.
+    `ros_types` is what is known of ROS types; None: what is known without folders of the call. `documents` are texts
+    that stand in place of files; None: there are only files. Raises OSError where the file itself can't be read; all
+    other faults are findings of the rules `syntax`, `unresolved-reference` and `import-cycle`.
     """
-    reader = _Reader(Path(path).parent.resolve(), library_paths, interfaces or RosTypes())
+    folder = Path(path).parent.resolve()
+    reader = _Reader(folder, library_paths, ros_types or RosTypes(), documents or Documents())
     file = reader.read(Path(path), str(path))
-    return Reading(file.base, in_order(reader.findings), reader.texts)
+    return Reading(file.base, in_order(reader.findings), reader.files)
 
 
 class _Reader:
@@ -62,13 +72,16 @@ class _Reader:
     No chain of imports is too long: files wait for their libraries in a list.
     """
 
-    def __init__(self, home: Path, library_paths: Iterable[Path | str], interfaces: RosTypes) -> None:
-        self._home = home
+    def __init__(
+        self, folder: Path, library_paths: Iterable[Path | str], ros_types: RosTypes, documents: Documents
+    ) -> None:
+        self._folder = folder
         self.findings: list[Diagnostic] = []
-        self.texts: dict[str, str] = {}
-        self._path = LibraryPath(library_paths)
+        self.files: dict[str, File] = {}
+        self._documents = documents
+        self._path = LibraryPath(library_paths, documents)
         self._names: dict[str, Path] = {}
-        self._interfaces = interfaces
+        self._ros_types = ros_types
         self._files: dict[Path, File] = {}
         self._paths: dict[Path, Path] = {}
         self._reading: dict[Path, Iterator[Name]] = {}
@@ -85,19 +98,18 @@ class _Reader:
                 file.libraries[name.text] = self._library(file, self._paths[identity], name)
                 continue
             if file.base is not None:
-                self.findings += link(file, self._interfaces, self._resolved)
+                self.findings += link(file, self._ros_types, self._resolved)
             del self._reading[identity]
         return first
 
     def _open(self, path: Path, shown: str) -> File:
         """A file whose libraries are read next, in the order of its text."""
         identity = path.resolve()
-        text, findings = decode(shown, files.read(path))
+        text, findings = decode(shown, self._documents.read(path))
         self.findings += findings
-        self.texts[shown] = text.content
         parsed = parse_file(text)
         self.findings += parsed.findings
-        file = File(text, parsed.base, parsed.references, parsed.unread)
+        file = self.files[shown] = File(text, parsed.base, parsed.references, parsed.declared, parsed.unread)
         self._files[identity] = file
         self._paths[identity] = path
         references = file.references.items() if file.base is not None else ()
@@ -116,7 +128,9 @@ class _Reader:
         whole = path.parent.resolve() / path.name
         shipped = whole.parent == locate("stdlib")
         name = (
-            path.name if shipped or not whole.is_relative_to(self._home) else whole.relative_to(self._home).as_posix()
+            path.name
+            if shipped or not whole.is_relative_to(self._folder)
+            else whole.relative_to(self._folder).as_posix()
         )
         parts = len(PurePath(name).parts)
         while self._names.setdefault(name, whole) != whole:
@@ -132,21 +146,22 @@ class _Reader:
         identity = found[0].resolve()
         if identity in self._reading:
             reading = list(self._reading)
-            cycle = [self._files[each] for each in reading[reading.index(identity) :]]
-            names = [each.base.name for each in cycle if each.base is not None]
+            cycle = [self._files[imported] for imported in reading[reading.index(identity) :]]
+            names = [file.base.name for file in cycle if file.base is not None]
             message = f"libraries import each other in a circle: {' -> '.join([*names, name.text])}"
             self._report(file, name, message, "move what both need to a library of its own", "import-cycle")
             return None
         return self._files[identity] if identity in self._files else self._open(found[0], str(found[0]))
 
     def _several(self, name: Name, found: list[Path]) -> tuple[str, str]:
-        files = " and ".join(f"`{each}`" for each in found)
-        return f"library `{name.text}` is declared by several files of one folder: {files}", "keep one of them"
+        paths = " and ".join(f"`{path}`" for path in found)
+        return f"library `{name.text}` is declared by several files of one folder: {paths}", "keep one of them"
 
-    def _none(self, name: Name, path: Path) -> tuple[str, str]:
-        close = get_close_matches(name.text, sorted(set(self._path.known(path))), n=1, cutoff=0.75)
+    def _none(self, name: Name, path: Path) -> tuple[str, Repair | str]:
         where = "libraries are looked for beside this file, in the folders of -I and of ROBOSC_PATH"
-        return f"there is no library `{name.text}`", f"did you mean `{close[0]}`?" if close else where
+        return f"there is no library `{name.text}`", did_you_mean(
+            name.text, self._path.known(path), cutoff=0.75
+        ) or where
 
-    def _report(self, file: File, name: Name, message: str, hint: str | None, rule: str = RULE) -> None:
-        self.findings.append(file.text.error(rule, name.start, name.end, message, hint))
+    def _report(self, file: File, name: Name, message: str, repair: Repair | str, rule: str = RULE) -> None:
+        self.findings.append(file.text.error(rule, name.start, name.end, message, repair))

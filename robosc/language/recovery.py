@@ -14,6 +14,7 @@ from robosc.language.building import Builder
 from robosc.language.explaining import expected, found, hint
 from robosc.language.grammar import Failure, is_reserved, parse
 from robosc.language.outline import DECLARED, DEFINITIONS, PROPERTIES, RULES, Block, Brace, Outline
+from robosc.language.text import Repair
 from robosc.language.tokens import Kind, Token, Tokens, too_complex
 from robosc.language.unread import Declared, Unread
 
@@ -33,12 +34,13 @@ _DECLARING_NOTHING = ("requirement", "provide", "on", "transition")
 class Parsed:
     """The model of a text, its names not linked.
 
-    `base` is None where nothing could be read. `references`: the names by element and feature; `unread`: what was
-    skipped.
+    `base` is None where nothing could be read. `references`: the names by element and feature; `declared`: the names
+    of elements; `unread`: what was skipped.
     """
 
     base: rsc.Base | None
-    references: Mapping[Any, Mapping[str, Name]] = field(default_factory=dict)
+    references: dict[Any, dict[str, Name]] = field(default_factory=dict)
+    declared: Mapping[Any, Name] = field(default_factory=dict)
     findings: list[Diagnostic] = field(default_factory=list)
     unread: Unread = field(default_factory=Unread)
 
@@ -51,7 +53,7 @@ def parse_file(text: Text) -> Parsed:
         return recovered(text, tokens)
     builder = Builder(text)
     base = builder.build(tree)
-    return Parsed(base, builder.references, builder.findings)
+    return Parsed(base, builder.references, builder.declared, builder.findings)
 
 
 def recovered(text: Text, tokens: Tokens) -> Parsed:
@@ -93,7 +95,7 @@ class _Recovery:
         builder = Builder(self._text)
         base = self._base(root, builder)
         findings = sorted([*self._findings, *builder.findings], key=lambda each: each.span)
-        return Parsed(base, builder.references, findings, self._unread)
+        return Parsed(base, builder.references, builder.declared, findings, self._unread)
 
     # Braces
 
@@ -106,7 +108,7 @@ class _Recovery:
             token = tokens[each.index]
             if each.surplus:
                 why = "what follows belongs inside" if each.text == "}" else "one stands before it"
-                self._report(each.index, f"this `{each.text}` is one too many: {why}", "leave it out")
+                self._report(each.index, f"this `{each.text}` is one too many: {why}", Repair("leave it out", ""))
                 self._blank(token.start, token.end)
                 continue
             # Of the braces that are missing at the end, the innermost is reported.
@@ -194,7 +196,8 @@ class _Recovery:
             # What is missing belongs where the item ends, not to the next one.
             end = tokens[index - 1].end
             message = f"found {found(token)} in line {self._text.span(token.start, token.end).line}, {wanted}"
-            self._findings.append(self._text.error("syntax", end, end, message, repair))
+            said = repair.hint if isinstance(repair, Repair) else repair
+            self._findings.append(self._text.error("syntax", end, end, message, said))
         else:
             self._report(index, message, repair)
 
@@ -284,9 +287,9 @@ class _Recovery:
 
     # Findings
 
-    def _report(self, index: int, message: str, hint: str | None = None) -> None:
+    def _report(self, index: int, message: str, repair: Repair | str | None = None) -> None:
         token = self._tokens[index]
-        self._findings.append(self._text.error("syntax", token.start, token.end, message, hint))
+        self._findings.append(self._text.error("syntax", token.start, token.end, message, repair))
 
 
 def _meant(token: Token) -> str | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeAlias
@@ -30,16 +31,61 @@ def by_name(elements: Iterable[Any]) -> dict[str, Any]:
     return names
 
 
+@dataclass(frozen=True)
+class Reference:
+    """A name in a text: where it stands (offsets, the end exclusive) and the element that it stands for.
+
+    `target` is None where the name is not resolved. Its `source` is its whole declaration; the reference that
+    `is_declaration` is the name in there.
+    """
+
+    name: str
+    start: int
+    end: int
+    target: Any
+    is_declaration: bool = False
+
+
 @dataclass(eq=False)
 class File:
-    """One file that was read, and what the linker has to know of it."""
+    """One file that was read: its text, and what could be read of it.
+
+    `base` is None where not even the first line could be read. `references` has where names stand that refer to
+    something, by element and feature, `declared_names` where the names of elements stand.
+    """
 
     text: Text
     base: rsc.Base | None
-    references: Mapping[Any, Mapping[str, Name]]
+    references: dict[Any, dict[str, Name]]
+    declared_names: Mapping[Any, Name] = field(default_factory=dict)
     unread: Unread = field(default_factory=Unread)
     #: The files of the libraries that it imports from, by the libraries' names; None: none that can be used.
     libraries: dict[str, File | None] = field(default_factory=dict)
+
+    @cached_property
+    def names(self) -> list[Reference]:
+        """All names in the text that stand for something, in order; those in skipped text are not known."""
+        found = [
+            Reference(name.text, name.start, name.end, element, is_declaration=True)
+            for element, name in self.declared_names.items()
+        ]
+        found += (
+            Reference(name.text, name.start, name.end, getattr(element, feature))
+            for element, names in self.references.items()
+            for feature, name in names.items()
+        )
+        return sorted(found, key=lambda name: name.start)
+
+    def name_at(self, offset: int) -> Reference | None:
+        """The name that an offset lies in or right behind; None where there is none."""
+        after = bisect_right(self.names, offset, key=lambda name: name.start)
+        found = self.names[after - 1] if after else None
+        return found if found is not None and offset <= found.end else None
+
+    @property
+    def skipped(self) -> list[tuple[int, int]]:
+        """The ranges of the text that no element was made of because of their faults: offsets, in order."""
+        return sorted(self.unread.ranges)
 
     @cached_property
     def declared(self) -> Mapping[type[Any], Names]:

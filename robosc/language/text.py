@@ -1,18 +1,37 @@
-"""The text of a file, and where in it a position is."""
+"""Texts of files and of editors' buffers, and where in a text a position is."""
 
 from __future__ import annotations
 
 import codecs
+import os
 from bisect import bisect_right
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
 
-from robosc.diagnostics import Diagnostic, Severity, Span
+from robosc.diagnostics import Diagnostic, Edit, Severity, Span
+from robosc.files import reading as files
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+
+class Repair(NamedTuple):
+    """How to mend a fault: in words, and the text to write in its place (None: that takes more than another text)."""
+
+    hint: str
+    text: str | None = None
 
 
 @dataclass(frozen=True, eq=False)
 class Text:
-    """What a file holds, its line breaks all line feeds; `file` is its path as the user wrote it."""
+    """What a file holds, its line breaks all line feeds; `file` is its path as the user wrote it.
+
+    An offset counts code points from 0. A `Span` counts lines and code points from 1. A UTF-16 position, as the
+    Language Server Protocol has it, counts lines from 0, and in a line units of UTF-16 from 0: a character beyond
+    U+FFFF takes two.
+    """
 
     file: str
     content: str
@@ -27,7 +46,7 @@ class Text:
         return starts
 
     def span(self, start: int, end: int) -> Span:
-        """The span between two offsets, counted from 0 in code points."""
+        """The span between two offsets."""
         return Span(*self._place(start), *self._place(end))
 
     def _place(self, offset: int) -> tuple[int, int]:
@@ -35,14 +54,75 @@ class Text:
         line = bisect_right(self._line_starts, offset)
         return line, offset - self._line_starts[line - 1] + 1
 
+    def offset(self, line: int, column: int) -> int:
+        """The offset of a line and a column, both counted from 1; what lies behind the end of a line is its end."""
+        if line < 1 or column < 1:
+            return 0
+        start, end = self._line(line - 1)
+        return min(start + column - 1, end)
+
+    def to_utf16(self, offset: int) -> tuple[int, int]:
+        """The UTF-16 position of an offset."""
+        line, column = self._place(offset)
+        start = self._line_starts[line - 1]
+        return line - 1, len(self.content[start : start + column - 1].encode("utf-16-le", "surrogatepass")) // 2
+
+    def from_utf16(self, line: int, unit: int) -> int:
+        """The offset of a UTF-16 position. Between the units of one character it is that of the character.
+
+        What lies behind the end of a line is its end, what lies behind the last line the end of the text.
+        """
+        start, end = self._line(line)
+        units = self.content[start:end].encode("utf-16-le", "surrogatepass")[: 2 * max(unit, 0)]
+        # A first half alone is left out, and so is the character that it belongs to.
+        return start + len(units.decode("utf-16-le", "ignore"))
+
+    def _line(self, number: int) -> tuple[int, int]:
+        """The offsets of the start and the end of a line, counted from 0, its line break left out."""
+        if number >= len(self._line_starts):
+            return len(self.content), len(self.content)
+        ends = self._line_starts[number + 1 :][:1]
+        return self._line_starts[number], ends[0] - 1 if ends else len(self.content)
+
     def source(self, start: int, end: int) -> str:
         """The span between two offsets as a model element keeps it."""
         span = self.span(start, end)
         return f"{span.line}:{span.column}-{span.end_line}:{span.end_column}"
 
-    def error(self, rule: str, start: int, end: int, message: str, hint: str | None = None) -> Diagnostic:
-        """A finding between two offsets."""
-        return Diagnostic(self.file, self.span(start, end), Severity.ERROR, rule, message, hint)
+    def error(self, rule: str, start: int, end: int, message: str, repair: Repair | str | None = None) -> Diagnostic:
+        """A finding between two offsets; a `Repair` with a text is an edit of all that stands between them."""
+        span = self.span(start, end)
+        hint, text = repair if isinstance(repair, Repair) else (repair, None)
+        edits = () if text is None else (Edit(span, text),)
+        return Diagnostic(self.file, span, Severity.ERROR, rule, message, hint, edits)
+
+
+class Documents:
+    """The texts that a reading looks at: those in memory, such as the buffers of an editor, over the files on disk."""
+
+    def __init__(self, texts: Mapping[str, str] | None = None) -> None:
+        """`texts` are those in memory, by their paths. A path needs no file, and its folder need not be there."""
+        self._texts = {Path(path).resolve(): text for path, text in (texts or {}).items()}
+
+    def read(self, path: Path, *, is_input: bool = True) -> bytes:
+        """The text at a path in UTF-8. Without `is_input` a file may be written over afterwards.
+
+        Raises OSError where there is none that can be read.
+        """
+        text = self._texts.get(path.resolve()) if self._texts else None
+        return files.read(path, is_input=is_input) if text is None else text.encode("utf-8", "surrogatepass")
+
+    def models(self, folder: Path) -> list[Path]:
+        """The paths of all `.rscd` texts right in a folder, in order. A folder that can't be read has none on disk."""
+        try:
+            with os.scandir(folder) as entries:
+                names = {entry.name for entry in entries if entry.name.endswith(".rscd") and entry.is_file()}
+        except OSError:
+            names = set()
+        if self._texts:
+            whole = folder.resolve()
+            names |= {path.name for path in self._texts if path.parent == whole and path.suffix == ".rscd"}
+        return [folder / name for name in sorted(names)]
 
 
 def decode(file: str, content: bytes) -> tuple[Text, list[Diagnostic]]:
