@@ -43,10 +43,6 @@ SHARED = {
     "models": set(),
     "templates": set(),
     "c": {"models", "templates"},
-    "cpp": {"c", "models", "templates"},
-    "layer": {"c", "cpp", "models", "templates"},
-    "roscpp": set(),
-    "rclcpp": set(),
 }
 
 LIBRARIES = {
@@ -150,8 +146,9 @@ OPENERS = {
     "files.writing",
     "cli",  # the null device, for streams that are closed
     "cli.format",  # the standard output
-    "diagnostics.rules",  # what ships with the tool, here and in the next three
+    "diagnostics.rules",  # what ships with the tool, here and in the next five
     "synthesis.memory",  # what the kernel tells of the process
+    "m2t.ros.packages",
     "metamodel._ecore",
     "metamodel.stubs",
     "node_tests.trace_test",
@@ -183,16 +180,16 @@ def test_files_that_others_name_go_through_one_place() -> None:
         ("checks.rule", "language"),
         ("synthesis.bdd", "engine"),
         ("m2m.trace", "synthesis"),
-        ("m2t.ros1", "m2t.ros2"),
-        ("m2t.cpp", "m2t.ros1"),
-        ("m2t.c", "m2t.cpp"),
+        ("m2t.cif", "m2t.ros"),
+        ("m2t.ros", "m2t.supervisor"),
+        ("m2t.c", "m2t.ros"),
         ("m2t.cif", "m2m"),
         ("semantics.typing", "checks"),
         ("metamodel.sct", "cli"),
         ("m2t.cif", "cli"),
         ("engine", "runtime"),
-        ("runtime", "m2t.cpp"),
-        ("m2t.ros1", "node_tests"),
+        ("runtime", "m2t.ros"),
+        ("m2t.ros", "node_tests"),
         ("runtime", "node_tests"),
         ("checks.rule", "__version__"),
     ],
@@ -203,8 +200,8 @@ def test_the_rule_forbids(importer: str, imported: str) -> None:
 
 def test_the_rule_allows() -> None:
     for importer, imported in [
-        ("m2t.ros1", "m2t.cpp"),
-        ("m2t.cpp", "m2t.c"),
+        ("m2t.ros", "m2t.c"),
+        ("m2t.ros.ros1", "m2t.ros.node"),
         ("m2t.cif", "m2t.templates"),
         ("m2t.cif", "configuration"),
         ("m2t.cif.edges", "m2t.cif.names"),

@@ -1,4 +1,4 @@
-"""What can be generated: each target is a room of `robosc.m2t`, found by its name."""
+"""What can be generated: a target is a room of `robosc.m2t` of its name; those that are ROS packages share one."""
 
 from __future__ import annotations
 
@@ -65,9 +65,10 @@ class Target:
         graph = models.rosgraph
         if not self.needs_graph or graph is None:
             return found
-        topics = [each.topic for each in graph.subscriptions] + [each.topic for each in graph.publishers]
-        topics += [each.identifier for each in graph.serviceClients] + [each.identifier for each in graph.actionClients]
-        return [*found, *configuration.unknown_names([each.removeprefix("/") for each in topics])]
+        names = [topic.topic for topics in (graph.subscriptions, graph.publishers) for topic in topics]
+        names += [service.identifier for service in graph.serviceClients]
+        names += [action.identifier for action in graph.actionClients]
+        return [*found, *configuration.unknown_names([name.removeprefix("/") for name in names])]
 
     @property
     def tested_ros(self) -> int | None:
@@ -93,8 +94,10 @@ class Target:
         return cast("TestedGenerator", self.generator()).generate(models, configuration, tests)
 
     def generator(self) -> Generator:
-        """The module that generates it; loaded when it is asked for."""
-        return cast("Generator", import_module(f"robosc.m2t.{self.name.replace('-', '_')}"))
+        """What generates it: a module of its name, or a target of the room for ROS; loaded when it is asked for."""
+        if self.package is None:
+            return cast("Generator", import_module(f"robosc.m2t.{self.name}"))
+        return cast("Generator", import_module("robosc.m2t.ros").TARGETS[self.name])
 
 
 TARGETS = {

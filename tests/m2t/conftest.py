@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 
 import robosc
 from robosc import configuration as config
 
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
 HERE = Path(__file__).parent / "cpp"
+SHIPPED = Path(robosc.__file__).parent / "m2t" / "ros" / "include"
 
 
 def models(name: str) -> robosc.Models:
@@ -38,3 +44,23 @@ def settings() -> config.Configuration:
 @pytest.fixture(scope="session")
 def porter_settings() -> config.Configuration:
     return config.read(HERE / "porter-config.json")
+
+
+@pytest.fixture
+def golden_package(golden: Callable[[Path, str], None]) -> Callable[[Path, dict[str, str]], None]:
+    """`golden_package(folder, files)`: a package but for what others pin: the engine in C, headers that are copied."""
+
+    def compare(folder: Path, files: dict[str, str]) -> None:
+        copied = {path for path in files if (SHIPPED / path.removeprefix("include/")).exists()}
+        engine = {path for path in files if re.fullmatch(r"src/\w+_supervisor\.[ch]", path)}
+        assert "include/robosc/json.hpp" in copied
+        assert len(engine) == 2
+        for path in copied:
+            assert files[path] == (SHIPPED / path.removeprefix("include/")).read_text(encoding="utf-8")
+        decided = set(files) - copied - engine
+        for path in sorted(decided):
+            golden(folder / path, files[path])
+        kept = {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}
+        assert kept == decided
+
+    return compare

@@ -24,7 +24,12 @@ def test_clang_tidy_is_content(ros2_workspace: Workspace, package: str) -> None:
     command = ["cmake", "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON", "."]
     subprocess.run(command, cwd=build, env=environment, check=True, capture_output=True)
     source = ros2_workspace.folder / "src" / package / "src" / f"{package}_node.cpp"
-    options = [f"--config-file={HERE / '.clang-tidy'}", "-p", build, f"--header-filter=include/{package}/.*"]
+    options = [
+        f"--config-file={HERE / '.clang-tidy'}",
+        "-p",
+        build,
+        f"--header-filter=include/({package}|robosc_?[a-z0-9]*)/.*",
+    ]
     done = subprocess.run(
         ["clang-tidy", *options, "--extra-arg=-std=c++17", "--quiet", source.resolve()],
         env=environment,

@@ -7,14 +7,14 @@
 #include <string>
 #include <vector>
 
-#include "courier_controller/data.hpp"
-#include "courier_controller/event_log.hpp"
-#include "courier_controller/fields.hpp"
-#include "courier_controller/json.hpp"
+#include "robosc/data.hpp"
+#include "robosc/event_log.hpp"
+#include "robosc/fields.hpp"
+#include "robosc/json.hpp"
 
 namespace {
 
-using namespace courier_controller;
+using namespace robosc;
 
 int faults = 0;
 

@@ -1,10 +1,13 @@
-"""What every node brings with it, compiled and called."""
+"""The headers that generated packages share: in good form, compiled one by one, called."""
 
 from __future__ import annotations
 
 import json
+import os
+import re
 import shutil
 import subprocess
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,6 +22,8 @@ if TYPE_CHECKING:
 
 pytestmark = pytest.mark.build
 
+INCLUDE = Path(robosc.__file__).parent / "m2t" / "ros" / "include"
+HEADERS = sorted(path.relative_to(INCLUDE).as_posix() for path in INCLUDE.rglob("*.hpp"))
 WARNINGS = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror"]
 
 
@@ -35,6 +40,48 @@ def run(compiler: str, source: str, sanitizers: str, files: dict[str, str], fold
     command = ["setarch", "--addr-no-randomize", program, folder]
     done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=300)
     return done.returncode, done.stdout, done.stderr
+
+
+def test_clang_format_leaves_them_as_they_are() -> None:
+    command = [Path(sys.executable).parent / "clang-format", "--dry-run", "-Werror", *HEADERS]
+    done = subprocess.run(command, cwd=INCLUDE, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+
+
+def test_all_are_of_one_version_and_guarded_by_their_names() -> None:
+    """Two packages of one process may come from two releases: what differs has another name for the linker."""
+    for header in HEADERS:
+        text = (INCLUDE / header).read_text(encoding="utf-8")
+        guard = re.sub(r"\W", "_", header).upper() + "_"
+        assert f"#ifndef {guard}\n#define {guard}\n" in text
+        assert "\nnamespace robosc {\ninline namespace v1 {\n" in text
+
+
+def middleware(header: str) -> list[str] | None:
+    """Options that find what a header includes of its middleware; None where that is not installed."""
+    if header.startswith("robosc_ros1/"):
+        return [] if Path("/usr/include/ros/ros.h").exists() and Path("/usr/include/actionlib").exists() else None
+    if header.startswith("robosc_ros2/"):
+        prefixes = [Path(prefix) for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if prefix]
+        folders = [folder for prefix in prefixes for folder in (prefix / "include").glob("*") if folder.is_dir()]
+        return [f"-isystem{folder}" for folder in folders] if any(f.name == "rclcpp" for f in folders) else None
+    return []
+
+
+@pytest.mark.parametrize("header", HEADERS)
+def test_compiles_alone(header: str) -> None:
+    found = middleware(header)
+    if found is None or shutil.which("g++") is None:
+        pytest.skip(f"no g++, or no {header.partition('/')[0].removeprefix('robosc_')}")
+    command = ["g++", "-std=c++17", "-fsyntax-only", *WARNINGS, f"-I{INCLUDE}", *found, "-x", "c++", "-"]
+    text = f'#include "{header}"\n'
+    done = subprocess.run(command, input=text, capture_output=True, text=True, check=False, timeout=300)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_hidden_characters_are_those_of_the_tool() -> None:
+    rows = re.findall(r"\{0x([0-9A-F]+), 0x([0-9A-F]+)\},", (INCLUDE / "robosc/json.hpp").read_text(encoding="utf-8"))
+    assert [(int(first, 16), int(last, 16)) for first, last in rows] == list(HIDDEN)
 
 
 @pytest.mark.parametrize("compiler", ["g++", "clang++"])

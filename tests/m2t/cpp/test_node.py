@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import robosc
-from robosc.m2t.cpp.node import Node
+from robosc.m2t.ros.node import Node
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph
 

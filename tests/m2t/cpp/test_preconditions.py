@@ -9,7 +9,7 @@ import pytest
 import robosc
 from robosc import configuration as config
 from robosc.diagnostics import Severity
-from robosc.m2t.cpp.preconditions import preconditions
+from robosc.m2t.ros.preconditions import preconditions
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -50,7 +50,8 @@ def found(
     robosc.synthesize(model)
     file = tmp_path / "controller-config.json"
     file.write_text(settings, encoding="utf-8")
-    findings = preconditions(robosc.Models(model, robosc.to_rosgraph(robot), robot), config.read(file))
+    graph = robosc.to_rosgraph(robot)
+    findings = preconditions(robosc.Models(model, graph, robot), config.read(file), "controller", 1)
     return [
         f"{each.file.rpartition('/')[2]}:{each.span.line}: {each.message}"
         for each in findings

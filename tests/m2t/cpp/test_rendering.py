@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robosc.m2t.cpp.rendering import fold, line_comment, raw_literal, xml_attribute, xml_text
+from robosc.m2t.ros.rendering import fold, line_comment, raw_literal, xml_attribute, xml_text
 
 LITERAL = re.compile(r'"(?:\\.|[^"\\])*"')
 

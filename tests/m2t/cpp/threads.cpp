@@ -14,11 +14,11 @@
 #include <thread>
 #include <vector>
 
-#include "courier_controller/callback_guard.hpp"
-#include "courier_controller/event_log.hpp"
-#include "courier_controller/hangup.hpp"
+#include "robosc/callback_guard.hpp"
+#include "robosc/event_log.hpp"
+#include "robosc/hangup.hpp"
 
-using namespace courier_controller;
+using namespace robosc;
 
 namespace {
 

@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 HERE = Path(__file__).parent
-ENGINE = ("src/usher_supervisor.c", "src/usher_supervisor.h")
 LAYERS = ("ros1-layer", "ros2-layer")
 
 
@@ -45,19 +44,16 @@ def models_of(path: Path) -> robosc.Models:
 
 @pytest.mark.parametrize("target", LAYERS)
 def test_every_file(
-    target: str, usher: robosc.Models, settings: Configuration, golden: Callable[[Path, str], None]
+    target: str,
+    usher: robosc.Models,
+    settings: Configuration,
+    golden_package: Callable[[Path, dict[str, str]], None],
 ) -> None:
-    # The engine in C and what all nodes have in common have goldens of their own.
-    shared = {*ENGINE, *(f"include/usher_layer/{each}.hpp" for each in ("data", "json", "definition"))}
     files = robosc.generate(target, usher, settings)
-    assert shared < set(files)
     for path, text in files.items():
         assert text.endswith("\n"), path
         assert not any(line != line.rstrip() for line in text.split("\n")), path
-        if path not in shared:
-            golden(HERE / target / path, text)
-    kept = {path.relative_to(HERE / target).as_posix() for path in (HERE / target).rglob("*") if path.is_file()}
-    assert kept == set(files) - shared
+    golden_package(HERE / target, files)
     assert robosc.generate(target, usher, settings) == files
 
 
@@ -172,9 +168,10 @@ def test_leaves_out_what_is_not_asked_for(usher: robosc.Models, tmp_path: Path) 
         assert "state_report_" not in silent["src/usher_layer_node.cpp"]
         assert "Threads" not in robosc.generate(target, models_of(ear))["CMakeLists.txt"]
         headers = {path for path in robosc.generate(target, models_of(ear)) if path.startswith("include")}
-        names = {"data", "definition", "event_log", "json", "message_relay", "parameters"}
-        names |= {"callback_guard", "hangup"} if target == "ros2-layer" else set()
-        assert headers == {f"include/ear_layer/{each}.hpp" for each in names}
+        ros = f"robosc_{target.removesuffix('-layer')}"
+        names = {"robosc/data", "robosc/event_log", "robosc/json", f"{ros}/message_relay", f"{ros}/parameters"}
+        names |= {"robosc/callback_guard", "robosc/hangup"} if target == "ros2-layer" else set()
+        assert headers == {f"include/{name}.hpp" for name in (*names, "ear_layer/definition")}
 
 
 def test_quality_of_service(usher: robosc.Models) -> None:

@@ -38,12 +38,14 @@ def managed_files(porter: robosc.Models) -> dict[str, str]:
     return robosc.generate("ros2", porter, config.read(HERE.parent / "cpp" / "managed-porter-config.json"))
 
 
-def test_every_file(files: dict[str, str], golden: Callable[[Path, str], None]) -> None:
-    compare(files, "courier", golden)
+def test_every_file(files: dict[str, str], golden_package: Callable[[Path, dict[str, str]], None]) -> None:
+    golden_package(HERE / "courier", files)
 
 
-def test_every_file_for_services_and_actions(porter_files: dict[str, str], golden: Callable[[Path, str], None]) -> None:
-    compare(porter_files, "porter", golden)
+def test_every_file_for_services_and_actions(
+    porter_files: dict[str, str], golden_package: Callable[[Path, dict[str, str]], None]
+) -> None:
+    golden_package(HERE / "porter", porter_files)
 
 
 def test_what_is_special_in_a_managed_node(
@@ -63,17 +65,6 @@ def test_what_is_special_in_a_managed_node(
     ]
     for path in special:
         golden(HERE / "managed" / path, managed_files[path])
-
-
-def compare(files: dict[str, str], name: str, golden: Callable[[Path, str], None]) -> None:
-    # The engine in C has goldens of its own.
-    engine = {f"src/{name}_supervisor.{ending}" for ending in "ch"}
-    assert engine < set(files)
-    for path, text in files.items():
-        if path not in engine:
-            golden(HERE / name / path, text)
-    kept = {path.relative_to(HERE / name).as_posix() for path in (HERE / name).rglob("*") if path.is_file()}
-    assert kept == set(files) - engine
 
 
 def test_package_lists_what_is_used(files: dict[str, str]) -> None:

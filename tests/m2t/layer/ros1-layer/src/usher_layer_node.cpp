@@ -24,22 +24,20 @@
 #include <std_msgs/String.h>
 #include <std_srvs/SetBool.h>
 
-#include "usher_layer/action_proxy.hpp"
-#include "usher_layer/blocked.hpp"
-#include "usher_layer/countdown.hpp"
-#include "usher_layer/data.hpp"
-#include "usher_layer/deadline.hpp"
+#include "robosc/block_reasons.hpp"
+#include "robosc/data.hpp"
+#include "robosc/event_log.hpp"
+#include "robosc/json.hpp"
+#include "robosc_ros1/action_proxy.hpp"
+#include "robosc_ros1/message_relay.hpp"
+#include "robosc_ros1/parameters.hpp"
+#include "robosc_ros1/service_proxy.hpp"
 #include "usher_layer/definition.hpp"
-#include "usher_layer/event_log.hpp"
-#include "usher_layer/event_queue.hpp"
-#include "usher_layer/json.hpp"
-#include "usher_layer/message_relay.hpp"
-#include "usher_layer/parameters.hpp"
-#include "usher_layer/service_client.hpp"
-#include "usher_layer/service_proxy.hpp"
 #include "usher_supervisor.h"
 
 namespace usher_layer {
+
+using namespace robosc;  // NOLINT: what all generated nodes share, see include/robosc
 
 namespace model {
 
@@ -86,7 +84,9 @@ class Layer {
     usher_hooks hooks = {};
     hooks.context = this;
     hooks.after = [](void* self, usher_event event) { static_cast<Layer*>(self)->after(event); };
-    hooks.livelock = [](void*) { ROS_ERROR("internal transitions follow each other without end"); };
+    hooks.livelock = [](void*) {
+      ROS_ERROR("internal transitions follow each other without end");
+    };
     usher_init(&supervisor_, nullptr, &hooks);
     usher_settle(&supervisor_);
 
@@ -111,14 +111,14 @@ class Layer {
         [this](const auto&) { return pass_message_label(); });
     ServiceProxy<std_srvs::SetBool>::Handlers service_light;
     service_light.call = [this](const auto&) { return pass_service_light(); };
-    service_light.busy = [this] { block(usher_service_light_c_trigger, "Lamp.light", Reasons::busy()); };
+    service_light.busy = [this] { block(usher_service_light_c_trigger, "Lamp.light", BlockReasons::busy()); };
     service_light.response = [this](const auto& message) { on_service_light_response(message); };
     service_light.error = [this](const std::string& why) { on_service_light_error(why); };
     service_light_ = std::make_unique<ServiceProxy<std_srvs::SetBool>>(
         node_, callers_, self + "/controller/lamp/light", "/lamp/light", service_timeout, service_light);
     ActionProxy<nav2_msgs::NavigateToPoseAction>::Handlers action_go_to;
     action_go_to.goal = [this](const auto&) { return pass_action_go_to(); };
-    action_go_to.busy = [this] { block(usher_action_go_to_c_trigger, "Navigation.go_to", Reasons::busy()); };
+    action_go_to.busy = [this] { block(usher_action_go_to_c_trigger, "Navigation.go_to", BlockReasons::busy()); };
     action_go_to.feedback = [this](const auto& message) { on_action_go_to_feedback(message); };
     action_go_to.response = [this](const auto& message) { on_action_go_to_response(message); };
     action_go_to.error = [this](const std::string& why) { on_action_go_to_error(why); };
@@ -131,7 +131,7 @@ class Layer {
   }
 
  private:
-  // What the robot tells. The supervisor hears it first; then silent transitions and cancels that became possible run.
+  // What the robot tells. The supervisor hears it first; then internal transitions and cancels that became possible run.
 
   bool on_message_stop(const std_msgs::Empty&) {
     usher_perform(&supervisor_, usher_message_stop_u_response);
@@ -216,7 +216,7 @@ class Layer {
       usher_settle(&supervisor_);
       return true;
     }
-    Reasons reasons;
+    BlockReasons reasons;
     if (!(supervisor_.state.component_Guard == usher_component_Guard_clear)) {
       reasons.add_requirement("requirement speed needs Guard.clear");
     }
@@ -232,7 +232,7 @@ class Layer {
       usher_settle(&supervisor_);
       return true;
     }
-    Reasons reasons;
+    BlockReasons reasons;
     block(usher_message_label_c_trigger, "Drive.label", reasons);
     return false;
   }
@@ -243,7 +243,7 @@ class Layer {
       usher_settle(&supervisor_);
       return true;
     }
-    Reasons reasons;
+    BlockReasons reasons;
     if (!(supervisor_.state.component_Guard == usher_component_Guard_clear)) {
       reasons.add_requirement("requirement light needs Guard.clear");
     }
@@ -261,7 +261,7 @@ class Layer {
       usher_settle(&supervisor_);
       return true;
     }
-    Reasons reasons;
+    BlockReasons reasons;
     if (!(supervisor_.state.component_Guard == usher_component_Guard_clear)) {
       reasons.add_requirement("requirement go_to needs Guard.clear");
     }
@@ -277,7 +277,7 @@ class Layer {
     return false;
   }
 
-  void block(usher_event event, const char* name, const Reasons& reasons) {
+  void block(usher_event event, const char* name, const BlockReasons& reasons) {
     std_msgs::String report;
     report.data = to_json(Json::object()
                               .add("robot", "Usher")
@@ -326,7 +326,7 @@ class Layer {
     log_.write(seconds(), direction, usher_event_name(event));
     if (const std::size_t lost = log_.lost(); lost > 0) ROS_WARN("the event log lost %zu events", lost);
     transitions_.push_back(event);
-    // Where the period is long, many come before the next report.
+    // Where simulated time stands still, or the period is long, many come before the next report.
     if (transitions_.size() > kTransitionsKept) transitions_.pop_front();
   }
 
@@ -374,7 +374,7 @@ class Layer {
 
   ros::NodeHandle node_;
   ros::NodeHandle private_{"~"};
-  // Who calls a service waits in a thread: one for each service, and one to turn away who calls meanwhile.
+  // Who calls a service waits in a thread: one for each service, and one to reject who calls meanwhile.
   ros::CallbackQueue calls_;
   ros::NodeHandle callers_ = [this] {
     ros::NodeHandle handle;

@@ -25,11 +25,11 @@ NAMES = [
 
 
 def remappings(context):
-    name, namespace = (LaunchConfiguration(each).perform(context) for each in ("name", "namespace"))
+    name, namespace = (LaunchConfiguration(argument).perform(context) for argument in ("name", "namespace"))
     # What this file is included into may have pushed a namespace; an absolute one does not care.
     pushed = "" if namespace.startswith("/") else context.launch_configurations.get("ros_namespace", "")
-    layer = "/".join(filter(None, (each.strip("/") for each in (pushed, namespace, name))))
-    return [(each, f"/{layer}/controller/{each.lstrip('/')}") for each in NAMES]
+    layer = "/".join(filter(None, (part.strip("/") for part in (pushed, namespace, name))))
+    return [(topic, f"/{layer}/controller/{topic.lstrip('/')}") for topic in NAMES]
 
 
 def start(context):

@@ -24,23 +24,22 @@
 #include <std_msgs/msg/string.hpp>
 #include <std_srvs/srv/set_bool.hpp>
 
-#include "usher_layer/action_proxy.hpp"
-#include "usher_layer/blocked.hpp"
-#include "usher_layer/callback_guard.hpp"
-#include "usher_layer/clock.hpp"
-#include "usher_layer/countdown.hpp"
-#include "usher_layer/data.hpp"
+#include "robosc/block_reasons.hpp"
+#include "robosc/callback_guard.hpp"
+#include "robosc/data.hpp"
+#include "robosc/event_log.hpp"
+#include "robosc/hangup.hpp"
+#include "robosc/json.hpp"
+#include "robosc_ros2/action_proxy.hpp"
+#include "robosc_ros2/message_relay.hpp"
+#include "robosc_ros2/parameters.hpp"
+#include "robosc_ros2/service_proxy.hpp"
 #include "usher_layer/definition.hpp"
-#include "usher_layer/event_log.hpp"
-#include "usher_layer/hangup.hpp"
-#include "usher_layer/json.hpp"
-#include "usher_layer/message_relay.hpp"
-#include "usher_layer/parameters.hpp"
-#include "usher_layer/service_client.hpp"
-#include "usher_layer/service_proxy.hpp"
 #include "usher_supervisor.h"
 
 namespace usher_layer {
+
+using namespace robosc;  // NOLINT: what all generated nodes share, see include/robosc
 
 namespace model {
 
@@ -120,7 +119,7 @@ class Layer : public rclcpp::Node {
     using service_light_type = std_srvs::srv::SetBool;
     ServiceProxy<service_light_type>::Handlers service_light;
     service_light.call = [this](const auto&) { return pass_service_light(); };
-    service_light.busy = [this] { block(usher_service_light_c_trigger, "Lamp.light", Reasons::busy()); };
+    service_light.busy = [this] { block(usher_service_light_c_trigger, "Lamp.light", BlockReasons::busy()); };
     service_light.response = [this](const auto& message) { on_service_light_response(message); };
     service_light.error = [this](const std::string& why) { on_service_light_error(why); };
     service_light_ = std::make_unique<ServiceProxy<service_light_type>>(
@@ -129,7 +128,7 @@ class Layer : public rclcpp::Node {
     using action_go_to_type = nav2_msgs::action::NavigateToPose;
     ActionProxy<action_go_to_type>::Handlers action_go_to;
     action_go_to.goal = [this](const auto&) { return pass_action_go_to(); };
-    action_go_to.busy = [this] { block(usher_action_go_to_c_trigger, "Navigation.go_to", Reasons::busy()); };
+    action_go_to.busy = [this] { block(usher_action_go_to_c_trigger, "Navigation.go_to", BlockReasons::busy()); };
     action_go_to.feedback = [this](const auto& message) { on_action_go_to_feedback(message); };
     action_go_to.response = [this](const auto& message) { on_action_go_to_response(message); };
     action_go_to.error = [this](const std::string& why) { on_action_go_to_error(why); };
@@ -152,7 +151,7 @@ class Layer : public rclcpp::Node {
   }
 
  private:
-  // What the robot tells. The supervisor hears it first; then silent transitions and cancels that became possible run.
+  // What the robot tells. The supervisor hears it first; then internal transitions and cancels that became possible run.
 
   bool on_message_stop(const std_msgs::msg::Empty&) {
     usher_perform(&supervisor_, usher_message_stop_u_response);
@@ -237,7 +236,7 @@ class Layer : public rclcpp::Node {
       usher_settle(&supervisor_);
       return true;
     }
-    Reasons reasons;
+    BlockReasons reasons;
     if (!(supervisor_.state.component_Guard == usher_component_Guard_clear)) {
       reasons.add_requirement("requirement speed needs Guard.clear");
     }
@@ -253,7 +252,7 @@ class Layer : public rclcpp::Node {
       usher_settle(&supervisor_);
       return true;
     }
-    Reasons reasons;
+    BlockReasons reasons;
     block(usher_message_label_c_trigger, "Drive.label", reasons);
     return false;
   }
@@ -264,7 +263,7 @@ class Layer : public rclcpp::Node {
       usher_settle(&supervisor_);
       return true;
     }
-    Reasons reasons;
+    BlockReasons reasons;
     if (!(supervisor_.state.component_Guard == usher_component_Guard_clear)) {
       reasons.add_requirement("requirement light needs Guard.clear");
     }
@@ -282,7 +281,7 @@ class Layer : public rclcpp::Node {
       usher_settle(&supervisor_);
       return true;
     }
-    Reasons reasons;
+    BlockReasons reasons;
     if (!(supervisor_.state.component_Guard == usher_component_Guard_clear)) {
       reasons.add_requirement("requirement go_to needs Guard.clear");
     }
@@ -298,7 +297,7 @@ class Layer : public rclcpp::Node {
     return false;
   }
 
-  void block(usher_event event, const char* name, const Reasons& reasons) {
+  void block(usher_event event, const char* name, const BlockReasons& reasons) {
     std_msgs::msg::String report;
     report.data = to_json(Json::object()
                               .add("robot", "Usher")
@@ -348,7 +347,7 @@ class Layer : public rclcpp::Node {
     if (const std::size_t lost = log_.lost(); lost > 0)
         RCLCPP_WARN(get_logger(), "the event log lost %zu events", lost);
     transitions_.push_back(event);
-    // Where the period is long, many come before the next report.
+    // Where simulated time stands still, or the period is long, many come before the next report.
     if (transitions_.size() > kTransitionsKept) transitions_.pop_front();
   }
 

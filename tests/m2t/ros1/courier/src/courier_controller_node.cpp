@@ -24,20 +24,22 @@
 #include <std_msgs/String.h>
 #include <std_msgs/UInt8.h>
 
-#include "courier_controller/countdown.hpp"
-#include "courier_controller/data.hpp"
-#include "courier_controller/defaults.hpp"
 #include "courier_controller/definition.hpp"
-#include "courier_controller/event_log.hpp"
-#include "courier_controller/fields.hpp"
-#include "courier_controller/interruption.hpp"
-#include "courier_controller/json.hpp"
-#include "courier_controller/parameters.hpp"
-#include "courier_controller/watchdog.hpp"
-#include "courier_controller/wiring.hpp"
+#include "robosc/data.hpp"
+#include "robosc/event_log.hpp"
+#include "robosc/fields.hpp"
+#include "robosc/json.hpp"
+#include "robosc/watchdog.hpp"
+#include "robosc_ros1/countdown.hpp"
+#include "robosc_ros1/defaults.hpp"
+#include "robosc_ros1/graph_monitor.hpp"
+#include "robosc_ros1/interruption.hpp"
+#include "robosc_ros1/parameters.hpp"
 #include "courier_supervisor.h"
 
 namespace courier_controller {
+
+using namespace robosc;  // NOLINT: what all generated nodes share, see include/robosc
 
 namespace model {
 
@@ -104,15 +106,15 @@ class Controller {
     const double period = std::chrono::duration<double>(milliseconds("period_ms", 100)).count();
 
     target_publisher_ = node_.advertise<geometry_msgs::PoseStamped>("target", 10);
-    wiring_.commands<geometry_msgs::PoseStamped>("target");
+    monitor_.commands<geometry_msgs::PoseStamped>("target");
     sum_publisher_ = node_.advertise<std_msgs::UInt8>("sum", 10);
-    wiring_.commands<std_msgs::UInt8>("sum");
+    monitor_.commands<std_msgs::UInt8>("sum");
     ratio_publisher_ = node_.advertise<std_msgs::Float32>("ratio", 10);
-    wiring_.commands<std_msgs::Float32>("ratio");
+    monitor_.commands<std_msgs::Float32>("ratio");
     report_publisher_ = node_.advertise<std_msgs::String>("report", 10);
-    wiring_.commands<std_msgs::String>("report");
+    monitor_.commands<std_msgs::String>("report");
     busy_publisher_ = node_.advertise<std_msgs::Bool>("busy", 10);
-    wiring_.commands<std_msgs::Bool>("busy");
+    monitor_.commands<std_msgs::Bool>("busy");
     state_report_ = private_.advertise<std_msgs::String>("state", 10);
     definition_report_ = private_.advertise<std_msgs::String>("definition", 1, true);
     std_msgs::String definition;
@@ -123,33 +125,35 @@ class Controller {
     hooks.context = this;
     hooks.before = [](void* self, courier_event event) { return static_cast<Controller*>(self)->before(event); };
     hooks.after = [](void* self, courier_event event) { static_cast<Controller*>(self)->after(event); };
-    hooks.livelock = [](void*) { ROS_ERROR("internal transitions follow each other without end"); };
+    hooks.livelock = [](void*) {
+      ROS_ERROR("internal transitions follow each other without end");
+    };
     courier_init(&supervisor_, &settings, &hooks);
 
     watchdog_stops_ = parameter<bool>(private_, "watchdog_stops", false);
     const auto hints = ros::TransportHints().tcpNoDelay();
     scan_watchdog_.emplace(parameter(private_, "watchdog_ms/scan", 0, 0, kDay),
-        [this](const Watchdog& watchdog) { on_silence("/scan", watchdog); }, node_);
+        [this](const auto& watchdog) { on_silence("/scan", watchdog); }, node_);
     scan_subscription_ = node_.subscribe("/scan", 10, &Controller::on_scan, this, hints);
     scan_watchdog_->start();
-    wiring_.listens_to<sensor_msgs::LaserScan>("/scan");
+    monitor_.listens_to<sensor_msgs::LaserScan>("/scan");
     count_watchdog_.emplace(parameter(private_, "watchdog_ms/count", 0, 0, kDay),
-        [this](const Watchdog& watchdog) { on_silence("count", watchdog); }, node_);
+        [this](const auto& watchdog) { on_silence("count", watchdog); }, node_);
     count_subscription_ = node_.subscribe("count", 10, &Controller::on_count, this, hints);
     count_watchdog_->start();
-    wiring_.listens_to<std_msgs::Int16>("count");
+    monitor_.listens_to<std_msgs::Int16>("count");
     word_watchdog_.emplace(parameter(private_, "watchdog_ms/word", 0, 0, kDay),
-        [this](const Watchdog& watchdog) { on_silence("word", watchdog); }, node_);
+        [this](const auto& watchdog) { on_silence("word", watchdog); }, node_);
     word_subscription_ = node_.subscribe("word", 10, &Controller::on_word, this, hints);
     word_watchdog_->start();
-    wiring_.listens_to<std_msgs::String>("word");
+    monitor_.listens_to<std_msgs::String>("word");
     if (ros::Time::isSimTime()) {
       timer_ = node_.createTimer(ros::Duration(period), [this](const ros::TimerEvent&) { tick(); });
     } else {
       steady_timer_ =
           node_.createSteadyTimer(ros::WallDuration(period), [this](const ros::SteadyTimerEvent&) { tick(); });
     }
-    wiring_.start();
+    monitor_.start();
     warn_of_no_stop();
   }
 
@@ -359,7 +363,7 @@ class Controller {
     log_.write(seconds(), direction, courier_event_name(event));
     if (const std::size_t lost = log_.lost(); lost > 0) ROS_WARN("the event log lost %zu events", lost);
     transitions_.push_back(event);
-    // Where simulated time stands still, nobody is told for long.
+    // Where simulated time stands still, or the period is long, many come before the next report.
     if (transitions_.size() > kTransitionsKept) transitions_.pop_front();
   }
 
@@ -368,7 +372,7 @@ class Controller {
     publish_state();
   }
 
-  void on_silence(const char* topic, const Watchdog& watchdog) {
+  void on_silence(const char* topic, const Watchdog<Countdown>& watchdog) {
     ROS_WARN("%s: silent for %d ms", topic, watchdog.patience());
     if (watchdog_stops_) halt();
   }
@@ -393,19 +397,25 @@ class Controller {
     ros::WallDuration(0.2).sleep();  // nothing tells when a message has left the node
   }
 
-  // On every change, and to everyone who begins to listen.
+  // On every change, at most once in a period, and to everyone who begins to listen.
   void publish_state() {
     const std::size_t listeners = state_report_.getNumSubscribers();
     if (listeners > listeners_ || (listeners > 0 && !transitions_.empty())) {
+      Json transitions = Json::array();
+      for (const courier_event event : transitions_) transitions.add(courier_event_name(event));
       std_msgs::String report;
-      report.data = to_json(state());
+      report.data = to_json(Json::object()
+                                .add("robot", "Courier")
+                                .add("time", seconds())
+                                .add("components", components())
+                                .add("transitions", transitions));
       state_report_.publish(report);
     }
     listeners_ = listeners;
     transitions_.clear();
   }
 
-  Json state() const {
+  Json components() const {
     Json components = Json::object();
     components.add("Scanner",
                    Json::object()
@@ -421,13 +431,7 @@ class Controller {
                            .add("limited", Integer(supervisor_.state.component_Counter_limited))
                            .add("total", data_.Counter.total).add("capped", data_.Counter.capped)
                            .add("class", literal_name(data_.Counter.class_)).add("text", data_.Counter.text)));
-    Json transitions = Json::array();
-    for (const courier_event event : transitions_) transitions.add(courier_event_name(event));
-    return Json::object()
-        .add("robot", "Courier")
-        .add("time", seconds())
-        .add("components", components)
-        .add("transitions", transitions);
+    return components;
   }
 
   std::chrono::milliseconds milliseconds(const std::string& name, int value) const {
@@ -477,30 +481,30 @@ class Controller {
   ros::Publisher busy_publisher_;
   ros::Publisher state_report_;
   ros::Publisher definition_report_;
-  std::optional<Watchdog> scan_watchdog_;
+  std::optional<Watchdog<Countdown>> scan_watchdog_;
   ros::Subscriber scan_subscription_;
-  std::optional<Watchdog> count_watchdog_;
+  std::optional<Watchdog<Countdown>> count_watchdog_;
   ros::Subscriber count_subscription_;
-  std::optional<Watchdog> word_watchdog_;
+  std::optional<Watchdog<Countdown>> word_watchdog_;
   ros::Subscriber word_subscription_;
   ros::Timer timer_;
   ros::SteadyTimer steady_timer_;
-  Wiring wiring_{node_};
+  GraphMonitor monitor_{node_};
 };
 
 }  // namespace courier_controller
 
 int main(int argc, char** argv) {
-  courier_controller::Interruption interruption;
+  robosc::Interruption interruption;
   ros::init(argc, argv, "courier_controller", ros::init_options::NoSigintHandler);
-  courier_controller::Interruption::take_requests();
+  robosc::Interruption::take_requests();
   if (!interruption.wait_until([] { return ros::master::check(); })) return 0;
   ros::CallbackQueue queue;
   ros::NodeHandle node;
   node.setCallbackQueue(&queue);
   if (!interruption.wait_until([] { return ros::Time::isValid(); })) return 0;
   try {
-    courier_controller::set_log_level(ros::NodeHandle("~"));
+    robosc::set_log_level(ros::NodeHandle("~"));
     std::optional<courier_controller::Controller> controller(std::in_place, node);
     ros::AsyncSpinner spinner(1, &queue);
     spinner.start();

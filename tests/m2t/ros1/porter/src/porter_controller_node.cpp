@@ -26,23 +26,24 @@
 #include <std_srvs/SetBool.h>
 #include <std_srvs/Trigger.h>
 
-#include "porter_controller/action_client.hpp"
-#include "porter_controller/countdown.hpp"
-#include "porter_controller/data.hpp"
-#include "porter_controller/defaults.hpp"
 #include "porter_controller/definition.hpp"
-#include "porter_controller/event_log.hpp"
-#include "porter_controller/event_queue.hpp"
-#include "porter_controller/fields.hpp"
-#include "porter_controller/interruption.hpp"
-#include "porter_controller/json.hpp"
-#include "porter_controller/parameters.hpp"
-#include "porter_controller/service_client.hpp"
-#include "porter_controller/watchdog.hpp"
-#include "porter_controller/wiring.hpp"
+#include "robosc/data.hpp"
+#include "robosc/event_log.hpp"
+#include "robosc/fields.hpp"
+#include "robosc/json.hpp"
+#include "robosc/watchdog.hpp"
+#include "robosc_ros1/action_client.hpp"
+#include "robosc_ros1/countdown.hpp"
+#include "robosc_ros1/defaults.hpp"
+#include "robosc_ros1/graph_monitor.hpp"
+#include "robosc_ros1/interruption.hpp"
+#include "robosc_ros1/parameters.hpp"
+#include "robosc_ros1/service_client.hpp"
 #include "porter_supervisor.h"
 
 namespace porter_controller {
+
+using namespace robosc;  // NOLINT: what all generated nodes share, see include/robosc
 
 // Distance: the first rule that holds; one that reads past the end of an array does not.
 template <typename Data>
@@ -68,7 +69,7 @@ class Controller {
     const double period = std::chrono::duration<double>(milliseconds("period_ms", 100)).count();
 
     cmd_vel_publisher_ = node_.advertise<geometry_msgs::Twist>("cmd_vel", 10);
-    wiring_.commands<geometry_msgs::Twist>("cmd_vel");
+    monitor_.commands<geometry_msgs::Twist>("cmd_vel");
     state_report_ = private_.advertise<std_msgs::String>("state", 10);
     definition_report_ = private_.advertise<std_msgs::String>("definition", 1, true);
     std_msgs::String definition;
@@ -79,7 +80,9 @@ class Controller {
     hooks.context = this;
     hooks.before = [](void* self, porter_event event) { return static_cast<Controller*>(self)->before(event); };
     hooks.after = [](void* self, porter_event event) { static_cast<Controller*>(self)->after(event); };
-    hooks.livelock = [](void*) { ROS_ERROR("internal transitions follow each other without end"); };
+    hooks.livelock = [](void*) {
+      ROS_ERROR("internal transitions follow each other without end");
+    };
     porter_init(&supervisor_, &settings, &hooks);
 
     const auto retry = milliseconds("retry_ms", 500);
@@ -106,22 +109,22 @@ class Controller {
     watchdog_stops_ = parameter<bool>(private_, "watchdog_stops", true);
     const auto hints = ros::TransportHints().tcpNoDelay();
     order_watchdog_.emplace(parameter(private_, "watchdog_ms/order", 0, 0, kDay),
-        [this](const Watchdog& watchdog) { on_silence("order", watchdog); }, node_);
+        [this](const auto& watchdog) { on_silence("order", watchdog); }, node_);
     order_subscription_ = node_.subscribe("order", 10, &Controller::on_order, this, hints);
     order_watchdog_->start();
-    wiring_.listens_to<std_msgs::Float32>("order");
+    monitor_.listens_to<std_msgs::Float32>("order");
     stop_watchdog_.emplace(parameter(private_, "watchdog_ms/stop", 400, 0, kDay),
-        [this](const Watchdog& watchdog) { on_silence("/stop", watchdog); }, node_);
+        [this](const auto& watchdog) { on_silence("/stop", watchdog); }, node_);
     stop_subscription_ = node_.subscribe("/stop", 10, &Controller::on_stop, this, hints);
     stop_watchdog_->start();
-    wiring_.listens_to<std_msgs::Empty>("/stop");
+    monitor_.listens_to<std_msgs::Empty>("/stop");
     if (ros::Time::isSimTime()) {
       timer_ = node_.createTimer(ros::Duration(period), [this](const ros::TimerEvent&) { tick(); });
     } else {
       steady_timer_ =
           node_.createSteadyTimer(ros::WallDuration(period), [this](const ros::SteadyTimerEvent&) { tick(); });
     }
-    wiring_.start();
+    monitor_.start();
   }
 
   // When nothing is delivered any more, but ROS still runs.
@@ -327,8 +330,8 @@ class Controller {
 
   // After an event: what it sends goes out, and what happened is noted.
   void after(porter_event event) {
-    for (auto each = withheld_.begin(); each != withheld_.end();) {
-      each = porter_enabled(&supervisor_, *each) ? std::next(each) : withheld_.erase(each);
+    for (auto command = withheld_.begin(); command != withheld_.end();) {
+      command = porter_enabled(&supervisor_, *command) ? std::next(command) : withheld_.erase(command);
     }
     const char* direction = "internal";
     switch (event) {
@@ -374,7 +377,7 @@ class Controller {
     log_.write(seconds(), direction, porter_event_name(event));
     if (const std::size_t lost = log_.lost(); lost > 0) ROS_WARN("the event log lost %zu events", lost);
     transitions_.push_back(event);
-    // Where simulated time stands still, nobody is told for long.
+    // Where simulated time stands still, or the period is long, many come before the next report.
     if (transitions_.size() > kTransitionsKept) transitions_.pop_front();
   }
 
@@ -383,7 +386,7 @@ class Controller {
     publish_state();
   }
 
-  void on_silence(const char* topic, const Watchdog& watchdog) {
+  void on_silence(const char* topic, const Watchdog<Countdown>& watchdog) {
     ROS_WARN("%s: silent for %d ms", topic, watchdog.patience());
     if (watchdog_stops_) halt();
   }
@@ -409,19 +412,25 @@ class Controller {
     ros::WallDuration(0.2).sleep();  // nothing tells when a message has left the node
   }
 
-  // On every change, and to everyone who begins to listen.
+  // On every change, at most once in a period, and to everyone who begins to listen.
   void publish_state() {
     const std::size_t listeners = state_report_.getNumSubscribers();
     if (listeners > listeners_ || (listeners > 0 && !transitions_.empty())) {
+      Json transitions = Json::array();
+      for (const porter_event event : transitions_) transitions.add(porter_event_name(event));
       std_msgs::String report;
-      report.data = to_json(state());
+      report.data = to_json(Json::object()
+                                .add("robot", "Porter")
+                                .add("time", seconds())
+                                .add("components", components())
+                                .add("transitions", transitions));
       state_report_.publish(report);
     }
     listeners_ = listeners;
     transitions_.clear();
   }
 
-  Json state() const {
+  Json components() const {
     Json components = Json::object();
     components.add("Desk",
                    Json::object()
@@ -436,13 +445,7 @@ class Controller {
                        .add("state", porter_location_name_component_Base(supervisor_.state.component_Base))
                        .add("variables", Json::object()
                            .add("left", porter_literal_name_Distance(supervisor_.state.component_Base_left))));
-    Json transitions = Json::array();
-    for (const porter_event event : transitions_) transitions.add(porter_event_name(event));
-    return Json::object()
-        .add("robot", "Porter")
-        .add("time", seconds())
-        .add("components", components)
-        .add("transitions", transitions);
+    return components;
   }
 
   std::chrono::milliseconds milliseconds(const std::string& name, int value) const {
@@ -490,28 +493,28 @@ class Controller {
   std::optional<Countdown> release_retry_;
   std::optional<ActionClient<nav2_msgs::NavigateToPoseAction>> travel_client_;
   std::optional<Countdown> travel_retry_;
-  std::optional<Watchdog> order_watchdog_;
+  std::optional<Watchdog<Countdown>> order_watchdog_;
   ros::Subscriber order_subscription_;
-  std::optional<Watchdog> stop_watchdog_;
+  std::optional<Watchdog<Countdown>> stop_watchdog_;
   ros::Subscriber stop_subscription_;
   ros::Timer timer_;
   ros::SteadyTimer steady_timer_;
-  Wiring wiring_{node_};
+  GraphMonitor monitor_{node_};
 };
 
 }  // namespace porter_controller
 
 int main(int argc, char** argv) {
-  porter_controller::Interruption interruption;
+  robosc::Interruption interruption;
   ros::init(argc, argv, "porter_controller", ros::init_options::NoSigintHandler);
-  porter_controller::Interruption::take_requests();
+  robosc::Interruption::take_requests();
   if (!interruption.wait_until([] { return ros::master::check(); })) return 0;
   ros::CallbackQueue queue;
   ros::NodeHandle node;
   node.setCallbackQueue(&queue);
   if (!interruption.wait_until([] { return ros::Time::isValid(); })) return 0;
   try {
-    porter_controller::set_log_level(ros::NodeHandle("~"));
+    robosc::set_log_level(ros::NodeHandle("~"));
     std::optional<porter_controller::Controller> controller(std::in_place, node);
     ros::AsyncSpinner spinner(1, &queue);
     spinner.start();

@@ -24,22 +24,24 @@
 #include <std_msgs/msg/string.hpp>
 #include <std_msgs/msg/u_int8.hpp>
 
-#include "courier_controller/callback_guard.hpp"
-#include "courier_controller/countdown.hpp"
-#include "courier_controller/data.hpp"
-#include "courier_controller/defaults.hpp"
 #include "courier_controller/definition.hpp"
-#include "courier_controller/event_log.hpp"
-#include "courier_controller/fields.hpp"
-#include "courier_controller/hangup.hpp"
-#include "courier_controller/json.hpp"
-#include "courier_controller/parameters.hpp"
-#include "courier_controller/shutdown_hook.hpp"
-#include "courier_controller/watchdog.hpp"
-#include "courier_controller/wiring.hpp"
+#include "robosc/callback_guard.hpp"
+#include "robosc/data.hpp"
+#include "robosc/event_log.hpp"
+#include "robosc/fields.hpp"
+#include "robosc/hangup.hpp"
+#include "robosc/json.hpp"
+#include "robosc/watchdog.hpp"
+#include "robosc_ros2/countdown.hpp"
+#include "robosc_ros2/defaults.hpp"
+#include "robosc_ros2/graph_monitor.hpp"
+#include "robosc_ros2/parameters.hpp"
+#include "robosc_ros2/shutdown_hook.hpp"
 #include "courier_supervisor.h"
 
 namespace courier_controller {
+
+using namespace robosc;  // NOLINT: what all generated nodes share, see include/robosc
 
 namespace model {
 
@@ -313,7 +315,7 @@ class Controller : public rclcpp::Node {
     if (const std::size_t lost = log_.lost(); lost > 0)
         RCLCPP_WARN(get_logger(), "the event log lost %zu events", lost);
     transitions_.push_back(event);
-    // Where simulated time stands still, nobody is told for long.
+    // Where simulated time stands still, or the period is long, many come before the next report.
     if (transitions_.size() > kTransitionsKept) transitions_.pop_front();
   }
 
@@ -322,7 +324,7 @@ class Controller : public rclcpp::Node {
     publish_state();
   }
 
-  void on_silence(const char* topic, const Watchdog& watchdog) {
+  void on_silence(const char* topic, const Watchdog<Countdown>& watchdog) {
     RCLCPP_WARN(get_logger(), "%s: silent for %d ms", topic, watchdog.patience());
     if (watchdog_stops_) halt();
   }
@@ -345,22 +347,28 @@ class Controller : public rclcpp::Node {
   void stop() {
     if (std::exchange(stopping_, true)) return;
     halt();
-    if (wiring_) wiring_->stop();
+    if (monitor_) monitor_->stop();
   }
 
-  // On every change, and to everyone who begins to listen.
+  // On every change, at most once in a period, and to everyone who begins to listen.
   void publish_state() {
     const std::size_t listeners = state_report_->get_subscription_count();
     if (listeners > listeners_ || (listeners > 0 && !transitions_.empty())) {
+      Json transitions = Json::array();
+      for (const courier_event event : transitions_) transitions.add(courier_event_name(event));
       std_msgs::msg::String report;
-      report.data = to_json(state());
+      report.data = to_json(Json::object()
+                                .add("robot", "Courier")
+                                .add("time", seconds())
+                                .add("components", components())
+                                .add("transitions", transitions));
       state_report_->publish(report);
     }
     listeners_ = listeners;
     transitions_.clear();
   }
 
-  Json state() const {
+  Json components() const {
     Json components = Json::object();
     components.add("Scanner",
                    Json::object()
@@ -376,13 +384,7 @@ class Controller : public rclcpp::Node {
                            .add("limited", Integer(supervisor_.state.component_Counter_limited))
                            .add("total", data_.Counter.total).add("capped", data_.Counter.capped)
                            .add("class", literal_name(data_.Counter.class_)).add("text", data_.Counter.text)));
-    Json transitions = Json::array();
-    for (const courier_event event : transitions_) transitions.add(courier_event_name(event));
-    return Json::object()
-        .add("robot", "Courier")
-        .add("time", seconds())
-        .add("components", components)
-        .add("transitions", transitions);
+    return components;
   }
 
   // Connects the node to everything that the model names.
@@ -413,22 +415,22 @@ class Controller : public rclcpp::Node {
     };
     courier_init(&supervisor_, &settings, &hooks);
 
-    wiring_.emplace(*this, guard_);
+    monitor_.emplace(*this, guard_);
     rclcpp::PublisherOptions sending;
     sending.qos_overriding_options = rclcpp::QosOverridingOptions::with_default_policies();
-    sending.use_default_callbacks = false;  // The wiring says what does not fit.
+    sending.use_default_callbacks = false;  // The graph monitor says what does not fit.
     target_publisher_ = create_publisher<geometry_msgs::msg::PoseStamped>("target", rclcpp::QoS(10), sending);
-    wiring_->command("target", "geometry_msgs/msg/PoseStamped", target_publisher_->get_actual_qos(),
+    monitor_->command("target", "geometry_msgs/msg/PoseStamped", target_publisher_->get_actual_qos(),
         target_publisher_->get_gid());
     sum_publisher_ = create_publisher<std_msgs::msg::UInt8>("sum", rclcpp::QoS(10), sending);
-    wiring_->command("sum", "std_msgs/msg/UInt8", sum_publisher_->get_actual_qos(), sum_publisher_->get_gid());
+    monitor_->command("sum", "std_msgs/msg/UInt8", sum_publisher_->get_actual_qos(), sum_publisher_->get_gid());
     ratio_publisher_ = create_publisher<std_msgs::msg::Float32>("ratio", rclcpp::QoS(10), sending);
-    wiring_->command("ratio", "std_msgs/msg/Float32", ratio_publisher_->get_actual_qos(), ratio_publisher_->get_gid());
+    monitor_->command("ratio", "std_msgs/msg/Float32", ratio_publisher_->get_actual_qos(), ratio_publisher_->get_gid());
     report_publisher_ = create_publisher<std_msgs::msg::String>("report", rclcpp::QoS(10), sending);
-    wiring_->command("report", "std_msgs/msg/String", report_publisher_->get_actual_qos(),
+    monitor_->command("report", "std_msgs/msg/String", report_publisher_->get_actual_qos(),
         report_publisher_->get_gid());
     busy_publisher_ = create_publisher<std_msgs::msg::Bool>("busy", rclcpp::QoS(10), sending);
-    wiring_->command("busy", "std_msgs/msg/Bool", busy_publisher_->get_actual_qos(), busy_publisher_->get_gid());
+    monitor_->command("busy", "std_msgs/msg/Bool", busy_publisher_->get_actual_qos(), busy_publisher_->get_gid());
 
     rclcpp::PublisherOptions reporting;
     reporting.use_intra_process_comm = rclcpp::IntraProcessSetting::Disable;
@@ -447,26 +449,26 @@ class Controller : public rclcpp::Node {
     hearing.qos_overriding_options = rclcpp::QosOverridingOptions::with_default_policies();
     hearing.use_default_callbacks = false;
     scan_watchdog_.emplace(parameter(*this, "watchdog_ms.scan", 0, 0, 24 * 3600 * 1000,
-        "Longest silence of the topic; 0: any."), [this](const Watchdog& watchdog) { on_silence("/scan", watchdog); },
+        "Longest silence of the topic; 0: any."), [this](const auto& watchdog) { on_silence("/scan", watchdog); },
         *this, guard_);
     scan_subscription_ = create_subscription<sensor_msgs::msg::LaserScan>(
         "/scan", rclcpp::SensorDataQoS().keep_last(20).reliable(),
         guard_([this](const sensor_msgs::msg::LaserScan& message) { on_scan(message); }), hearing);
-    wiring_->hear("/scan", "sensor_msgs/msg/LaserScan", scan_subscription_->get_actual_qos());
+    monitor_->hear("/scan", "sensor_msgs/msg/LaserScan", scan_subscription_->get_actual_qos());
     count_watchdog_.emplace(parameter(*this, "watchdog_ms.count", 0, 0, 24 * 3600 * 1000,
-        "Longest silence of the topic; 0: any."), [this](const Watchdog& watchdog) { on_silence("count", watchdog); },
+        "Longest silence of the topic; 0: any."), [this](const auto& watchdog) { on_silence("count", watchdog); },
         *this, guard_);
     count_subscription_ = create_subscription<std_msgs::msg::Int16>(
         "count", rclcpp::QoS(10),
         guard_([this](const std_msgs::msg::Int16& message) { on_count(message); }), hearing);
-    wiring_->hear("count", "std_msgs/msg/Int16", count_subscription_->get_actual_qos());
+    monitor_->hear("count", "std_msgs/msg/Int16", count_subscription_->get_actual_qos());
     word_watchdog_.emplace(parameter(*this, "watchdog_ms.word", 0, 0, 24 * 3600 * 1000,
-        "Longest silence of the topic; 0: any."), [this](const Watchdog& watchdog) { on_silence("word", watchdog); },
-        *this, guard_);
+        "Longest silence of the topic; 0: any."), [this](const auto& watchdog) { on_silence("word", watchdog); }, *this,
+        guard_);
     word_subscription_ = create_subscription<std_msgs::msg::String>(
         "word", rclcpp::QoS(10),
         guard_([this](const std_msgs::msg::String& message) { on_word(message); }), hearing);
-    wiring_->hear("word", "std_msgs/msg/String", word_subscription_->get_actual_qos());
+    monitor_->hear("word", "std_msgs/msg/String", word_subscription_->get_actual_qos());
 
     warn_of_no_stop();
     const auto tick = guard_([this] { this->tick(); });
@@ -523,13 +525,13 @@ class Controller : public rclcpp::Node {
   rclcpp::Publisher<std_msgs::msg::Bool>::SharedPtr busy_publisher_;
   rclcpp::Publisher<std_msgs::msg::String>::SharedPtr state_report_;
   rclcpp::Publisher<std_msgs::msg::String>::SharedPtr definition_report_;
-  std::optional<Watchdog> scan_watchdog_;
+  std::optional<Watchdog<Countdown>> scan_watchdog_;
   rclcpp::Subscription<sensor_msgs::msg::LaserScan>::SharedPtr scan_subscription_;
-  std::optional<Watchdog> count_watchdog_;
+  std::optional<Watchdog<Countdown>> count_watchdog_;
   rclcpp::Subscription<std_msgs::msg::Int16>::SharedPtr count_subscription_;
-  std::optional<Watchdog> word_watchdog_;
+  std::optional<Watchdog<Countdown>> word_watchdog_;
   rclcpp::Subscription<std_msgs::msg::String>::SharedPtr word_subscription_;
-  std::optional<Wiring> wiring_;
+  std::optional<GraphMonitor> monitor_;
   rclcpp::TimerBase::SharedPtr timer_;
   bool active_ = false;
   Hangup hangup_;

@@ -22,7 +22,7 @@ def start(context):
         name=LaunchConfiguration("name"),
         namespace=LaunchConfiguration("namespace"),
         parameters=parameters,
-        remappings=[tuple(each.split(":=", 1)) for each in remappings],
+        remappings=[tuple(remapping.split(":=", 1)) for remapping in remappings],
         arguments=["--ros-args", "--log-level", LaunchConfiguration("log_level")],
         output="screen",
     )

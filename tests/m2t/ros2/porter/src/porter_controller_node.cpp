@@ -26,24 +26,26 @@
 #include <std_srvs/srv/set_bool.hpp>
 #include <std_srvs/srv/trigger.hpp>
 
-#include "porter_controller/action_client.hpp"
-#include "porter_controller/callback_guard.hpp"
-#include "porter_controller/countdown.hpp"
-#include "porter_controller/data.hpp"
-#include "porter_controller/defaults.hpp"
 #include "porter_controller/definition.hpp"
-#include "porter_controller/event_log.hpp"
-#include "porter_controller/fields.hpp"
-#include "porter_controller/hangup.hpp"
-#include "porter_controller/json.hpp"
-#include "porter_controller/parameters.hpp"
-#include "porter_controller/service_client.hpp"
-#include "porter_controller/shutdown_hook.hpp"
-#include "porter_controller/watchdog.hpp"
-#include "porter_controller/wiring.hpp"
+#include "robosc/callback_guard.hpp"
+#include "robosc/data.hpp"
+#include "robosc/event_log.hpp"
+#include "robosc/fields.hpp"
+#include "robosc/hangup.hpp"
+#include "robosc/json.hpp"
+#include "robosc/watchdog.hpp"
+#include "robosc_ros2/action_client.hpp"
+#include "robosc_ros2/countdown.hpp"
+#include "robosc_ros2/defaults.hpp"
+#include "robosc_ros2/graph_monitor.hpp"
+#include "robosc_ros2/parameters.hpp"
+#include "robosc_ros2/service_client.hpp"
+#include "robosc_ros2/shutdown_hook.hpp"
 #include "porter_supervisor.h"
 
 namespace porter_controller {
+
+using namespace robosc;  // NOLINT: what all generated nodes share, see include/robosc
 
 // Distance: the first rule that holds; one that reads past the end of an array does not.
 template <typename Data>
@@ -275,8 +277,8 @@ class Controller : public rclcpp::Node {
 
   // After an event: what it sends goes out, and what happened is noted.
   void after(porter_event event) {
-    for (auto each = withheld_.begin(); each != withheld_.end();) {
-      each = porter_enabled(&supervisor_, *each) ? std::next(each) : withheld_.erase(each);
+    for (auto command = withheld_.begin(); command != withheld_.end();) {
+      command = porter_enabled(&supervisor_, *command) ? std::next(command) : withheld_.erase(command);
     }
     const char* direction = "internal";
     switch (event) {
@@ -323,7 +325,7 @@ class Controller : public rclcpp::Node {
     if (const std::size_t lost = log_.lost(); lost > 0)
         RCLCPP_WARN(get_logger(), "the event log lost %zu events", lost);
     transitions_.push_back(event);
-    // Where simulated time stands still, nobody is told for long.
+    // Where simulated time stands still, or the period is long, many come before the next report.
     if (transitions_.size() > kTransitionsKept) transitions_.pop_front();
   }
 
@@ -332,7 +334,7 @@ class Controller : public rclcpp::Node {
     publish_state();
   }
 
-  void on_silence(const char* topic, const Watchdog& watchdog) {
+  void on_silence(const char* topic, const Watchdog<Countdown>& watchdog) {
     RCLCPP_WARN(get_logger(), "%s: silent for %d ms", topic, watchdog.patience());
     if (watchdog_stops_) halt();
   }
@@ -354,23 +356,29 @@ class Controller : public rclcpp::Node {
   void stop() {
     if (std::exchange(stopping_, true)) return;
     halt();
-    if (wiring_) wiring_->stop();
+    if (monitor_) monitor_->stop();
     flush(*cmd_vel_publisher_);
   }
 
-  // On every change, and to everyone who begins to listen.
+  // On every change, at most once in a period, and to everyone who begins to listen.
   void publish_state() {
     const std::size_t listeners = state_report_->get_subscription_count();
     if (listeners > listeners_ || (listeners > 0 && !transitions_.empty())) {
+      Json transitions = Json::array();
+      for (const porter_event event : transitions_) transitions.add(porter_event_name(event));
       std_msgs::msg::String report;
-      report.data = to_json(state());
+      report.data = to_json(Json::object()
+                                .add("robot", "Porter")
+                                .add("time", seconds())
+                                .add("components", components())
+                                .add("transitions", transitions));
       state_report_->publish(report);
     }
     listeners_ = listeners;
     transitions_.clear();
   }
 
-  Json state() const {
+  Json components() const {
     Json components = Json::object();
     components.add("Desk",
                    Json::object()
@@ -385,13 +393,7 @@ class Controller : public rclcpp::Node {
                        .add("state", porter_location_name_component_Base(supervisor_.state.component_Base))
                        .add("variables", Json::object()
                            .add("left", porter_literal_name_Distance(supervisor_.state.component_Base_left))));
-    Json transitions = Json::array();
-    for (const porter_event event : transitions_) transitions.add(porter_event_name(event));
-    return Json::object()
-        .add("robot", "Porter")
-        .add("time", seconds())
-        .add("components", components)
-        .add("transitions", transitions);
+    return components;
   }
 
   // Whether a goal may still be accepted, to be cancelled then.
@@ -431,12 +433,12 @@ class Controller : public rclcpp::Node {
     };
     porter_init(&supervisor_, &settings, &hooks);
 
-    wiring_.emplace(*this, guard_);
+    monitor_.emplace(*this, guard_);
     rclcpp::PublisherOptions sending;
     sending.qos_overriding_options = rclcpp::QosOverridingOptions::with_default_policies();
-    sending.use_default_callbacks = false;  // The wiring says what does not fit.
+    sending.use_default_callbacks = false;  // The graph monitor says what does not fit.
     cmd_vel_publisher_ = create_publisher<geometry_msgs::msg::Twist>("cmd_vel", rclcpp::QoS(10), sending);
-    wiring_->command("cmd_vel", "geometry_msgs/msg/Twist", cmd_vel_publisher_->get_actual_qos(),
+    monitor_->command("cmd_vel", "geometry_msgs/msg/Twist", cmd_vel_publisher_->get_actual_qos(),
         cmd_vel_publisher_->get_gid());
 
     grip_client_.emplace(*this, guard_, "/gripper/grip", rclcpp::ServicesQoS(), service_timeout,
@@ -474,19 +476,19 @@ class Controller : public rclcpp::Node {
     hearing.qos_overriding_options = rclcpp::QosOverridingOptions::with_default_policies();
     hearing.use_default_callbacks = false;
     order_watchdog_.emplace(parameter(*this, "watchdog_ms.order", 0, 0, 24 * 3600 * 1000,
-        "Longest silence of the topic; 0: any."), [this](const Watchdog& watchdog) { on_silence("order", watchdog); },
+        "Longest silence of the topic; 0: any."), [this](const auto& watchdog) { on_silence("order", watchdog); },
         *this, guard_);
     order_subscription_ = create_subscription<std_msgs::msg::Float32>(
         "order", rclcpp::QoS(10),
         guard_([this](const std_msgs::msg::Float32& message) { on_order(message); }), hearing);
-    wiring_->hear("order", "std_msgs/msg/Float32", order_subscription_->get_actual_qos());
+    monitor_->hear("order", "std_msgs/msg/Float32", order_subscription_->get_actual_qos());
     stop_watchdog_.emplace(parameter(*this, "watchdog_ms.stop", 400, 0, 24 * 3600 * 1000,
-        "Longest silence of the topic; 0: any."), [this](const Watchdog& watchdog) { on_silence("/stop", watchdog); },
+        "Longest silence of the topic; 0: any."), [this](const auto& watchdog) { on_silence("/stop", watchdog); },
         *this, guard_);
     stop_subscription_ = create_subscription<std_msgs::msg::Empty>(
         "/stop", rclcpp::QoS(10),
         guard_([this](const std_msgs::msg::Empty& message) { on_stop(message); }), hearing);
-    wiring_->hear("/stop", "std_msgs/msg/Empty", stop_subscription_->get_actual_qos());
+    monitor_->hear("/stop", "std_msgs/msg/Empty", stop_subscription_->get_actual_qos());
 
     const auto tick = guard_([this] { this->tick(); });
     if (get_parameter("use_sim_time").as_bool()) {
@@ -539,11 +541,11 @@ class Controller : public rclcpp::Node {
   std::optional<Countdown> release_retry_;
   std::optional<ActionClient<nav2_msgs::action::NavigateToPose>> travel_client_;
   std::optional<Countdown> travel_retry_;
-  std::optional<Watchdog> order_watchdog_;
+  std::optional<Watchdog<Countdown>> order_watchdog_;
   rclcpp::Subscription<std_msgs::msg::Float32>::SharedPtr order_subscription_;
-  std::optional<Watchdog> stop_watchdog_;
+  std::optional<Watchdog<Countdown>> stop_watchdog_;
   rclcpp::Subscription<std_msgs::msg::Empty>::SharedPtr stop_subscription_;
-  std::optional<Wiring> wiring_;
+  std::optional<GraphMonitor> monitor_;
   rclcpp::TimerBase::SharedPtr timer_;
   bool active_ = false;
   Hangup hangup_;

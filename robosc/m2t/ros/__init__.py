@@ -1,0 +1,22 @@
+"""ROS packages: controllers and supervisory layers, for ROS 1 and ROS 2.
+
+`include` holds real C++ headers, the same in every package: `robosc` needs no middleware, `robosc_ros1` and
+`robosc_ros2` put it on one. `templates` prints what the model decides; `ros1` and `ros2` are what differs. What this
+room offers are its targets.
+"""
+
+from __future__ import annotations
+
+from robosc.m2t.ros.packages import RosTarget
+from robosc.m2t.ros.ros1 import Ros1
+from robosc.m2t.ros.ros2 import Ros2
+
+__all__ = ["TARGETS"]
+
+#: Generators by the names of their targets.
+TARGETS = {
+    "ros1": RosTarget("controller", Ros1()),
+    "ros2": RosTarget("controller", Ros2()),
+    "ros1-layer": RosTarget("layer", Ros1()),
+    "ros2-layer": RosTarget("layer", Ros2()),
+}

@@ -1,0 +1,71 @@
+// Callbacks that end with what they belong to.
+#ifndef ROBOSC_CALLBACK_GUARD_HPP_
+#define ROBOSC_CALLBACK_GUARD_HPP_
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+namespace robosc {
+inline namespace v1 {
+
+/// Keeps callbacks off what is being destroyed. A multi-threaded container unloads a component in one thread while
+/// another one still calls back, or is about to. Guarded callbacks run one at a time; none begins after `close`, which
+/// waits for the one that runs.
+class CallbackGuard {
+ public:
+  CallbackGuard() = default;
+  CallbackGuard(const CallbackGuard&) = delete;
+  CallbackGuard& operator=(const CallbackGuard&) = delete;
+  ~CallbackGuard() { close(); }
+
+  /// The function, doing nothing once the guard was closed after this.
+  template <typename Function>
+  auto operator()(Function function) const {
+    return guarded(std::function(std::move(function)));
+  }
+
+  /// While this is held, no guarded callback runs in another thread.
+  std::unique_lock<std::recursive_mutex> hold() const { return std::unique_lock<std::recursive_mutex>(state_->mutex); }
+
+  void close() {
+    const auto lock = hold();
+    ++state_->closed;
+  }
+
+ private:
+  struct State {
+    std::recursive_mutex mutex;
+    std::uint64_t closed = 0;  ///< How often.
+  };
+
+  template <typename... Arguments>
+  std::function<void(Arguments...)> guarded(std::function<void(Arguments...)> function) const {
+    const auto lock = hold();
+    return [state = state_, closed = state_->closed, function = std::move(function)](Arguments... arguments) {
+      const std::lock_guard<std::recursive_mutex> running(state->mutex);
+      if (state->closed == closed) function(std::forward<Arguments>(arguments)...);
+    };
+  }
+
+  std::shared_ptr<State> state_ = std::make_shared<State>();
+};
+
+/// Takes a callback group from its executor for good, as soon as nothing of it runs: what rclcpp itself has in it (the
+/// services of parameters, of a managed node) can't be guarded.
+template <typename Group>
+void withdraw(Group& group) {
+  const auto patience = std::chrono::steady_clock::now() + std::chrono::seconds(5);
+  while (!group.can_be_taken_from().exchange(false) && std::chrono::steady_clock::now() < patience) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+}
+
+}  // namespace v1
+}  // namespace robosc
+
+#endif  // ROBOSC_CALLBACK_GUARD_HPP_

@@ -1,0 +1,94 @@
+// Data of the model on its way into a message.
+#ifndef ROBOSC_FIELDS_HPP_
+#define ROBOSC_FIELDS_HPP_
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <type_traits>
+
+#include "robosc/data.hpp"
+#include "robosc/json.hpp"
+
+namespace robosc {
+inline namespace v1 {
+
+/// Fills the fields of a message, and remembers the first one whose value is no finite number.
+class FieldWriter {
+ public:
+  /// `noted`: whether what is set is kept as JSON, too.
+  explicit FieldWriter(bool noted) : noted_(noted) {}
+
+  template <typename Field, typename Value>
+  void set(const char* path, Field& field, const Value& value) {
+    if constexpr (std::is_same_v<Value, Integer> || std::is_floating_point_v<Value>) {
+      fill(path, field, value);
+      if constexpr (std::is_floating_point_v<Field>) {
+        note(path, static_cast<double>(field));
+      } else {
+        note(path, Integer(field));
+      }
+    } else {
+      field = value;
+      note(path, value);
+    }
+  }
+
+  /// The first field whose value is not finite; null: there is none.
+  const char* fault() const { return fault_; }
+
+  /// What was set, as it is in the message; of basic data the value itself.
+  friend std::string to_json(const FieldWriter& writer) {
+    return writer.fields_ == 1 && !writer.basic_.empty() ? writer.basic_ : to_json(writer.tree_);
+  }
+
+ private:
+  template <typename Field>
+  void fill(const char* path, Field& field, Integer value) {
+    if constexpr (std::is_integral_v<Field>) {
+      field = value.to<Field>();
+    } else {
+      fill(path, field, static_cast<double>(value));
+    }
+  }
+
+  template <typename Field>
+  void fill(const char* path, Field& field, double value) {
+    if constexpr (std::is_floating_point_v<Field>) {
+      field = static_cast<Field>(value);
+      check(path, static_cast<double>(field));
+    } else if (check(path, value)) {
+      // The largest number of a field may have no double of its own: compare with the next power of two.
+      const double end = std::ldexp(1.0, std::numeric_limits<Field>::digits);
+      const double least = static_cast<double>(std::numeric_limits<Field>::min());
+      field = value >= end     ? std::numeric_limits<Field>::max()
+              : value <= least ? std::numeric_limits<Field>::min()
+                               : static_cast<Field>(value);
+    }
+  }
+
+  bool check(const char* path, double value) {
+    const bool finite = std::isfinite(value);
+    if (!finite && fault_ == nullptr) fault_ = path;
+    return finite;
+  }
+
+  template <typename Value>
+  void note(const char* path, const Value& value) {
+    if (!noted_) return;
+    ++fields_;
+    tree_.add(path, value);
+    if (std::string(path) == "data") basic_ = to_json(value);
+  }
+
+  bool noted_;
+  const char* fault_ = nullptr;
+  JsonTree tree_;
+  std::string basic_;
+  int fields_ = 0;
+};
+
+}  // namespace v1
+}  // namespace robosc
+
+#endif  // ROBOSC_FIELDS_HPP_

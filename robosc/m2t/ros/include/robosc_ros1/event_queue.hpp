@@ -1,0 +1,50 @@
+// What other threads have to say, in line with what ROS delivers.
+#ifndef ROBOSC_ROS1_EVENT_QUEUE_HPP_
+#define ROBOSC_ROS1_EVENT_QUEUE_HPP_
+
+#include <cstdint>
+#include <functional>
+#include <utility>
+
+#include <ros/callback_queue_interface.h>
+#include <ros/node_handle.h>
+#include <boost/make_shared.hpp>
+
+namespace robosc {
+inline namespace v1 {
+
+/// Puts calls into a node's callback queue, from any thread; they run one at a time with its messages and timers.
+/// What has not run when this ends never runs.
+class EventQueue {
+ public:
+  explicit EventQueue(const ros::NodeHandle& node) : queue_(node.getCallbackQueue()) {}
+  ~EventQueue() { queue_->removeByID(id()); }
+  EventQueue(const EventQueue&) = delete;
+  EventQueue& operator=(const EventQueue&) = delete;
+
+  void push(std::function<void()> function) {
+    queue_->addCallback(boost::make_shared<Call>(std::move(function)), id());
+  }
+
+ private:
+  class Call : public ros::CallbackInterface {
+   public:
+    explicit Call(std::function<void()> function) : function_(std::move(function)) {}
+    CallResult call() override {
+      function_();
+      return Success;
+    }
+
+   private:
+    std::function<void()> function_;
+  };
+
+  std::uint64_t id() const { return reinterpret_cast<std::uintptr_t>(this); }
+
+  ros::CallbackQueueInterface* queue_;
+};
+
+}  // namespace v1
+}  // namespace robosc
+
+#endif  // ROBOSC_ROS1_EVENT_QUEUE_HPP_

@@ -1,0 +1,152 @@
+// Who else is on the node's topics.
+#ifndef ROBOSC_ROS1_GRAPH_MONITOR_HPP_
+#define ROBOSC_ROS1_GRAPH_MONITOR_HPP_
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <map>
+#include <mutex>
+#include <set>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <ros/console.h>
+#include <ros/master.h>
+#include <ros/message_traits.h>
+#include <ros/network.h>
+#include <ros/node_handle.h>
+#include <ros/this_node.h>
+#include <xmlrpcpp/XmlRpcClient.h>
+#include <xmlrpcpp/XmlRpcDispatch.h>
+#include <xmlrpcpp/XmlRpcException.h>
+#include <xmlrpcpp/XmlRpcValue.h>
+
+namespace robosc {
+inline namespace v1 {
+
+/// Asks the master every second, on a thread of its own, and reports by name, once: a publisher of another type, a
+/// topic that nobody publishes, a foreign publisher on a topic that the node commands.
+class GraphMonitor {
+ public:
+  explicit GraphMonitor(const ros::NodeHandle& node) : node_(node) {}
+
+  ~GraphMonitor() {
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      ending_ = true;
+    }
+    changed_.notify_one();
+    if (thread_.joinable()) thread_.join();
+  }
+
+  GraphMonitor(const GraphMonitor&) = delete;
+  GraphMonitor& operator=(const GraphMonitor&) = delete;
+
+  template <typename Message>
+  void listens_to(const std::string& topic) {
+    listened_[node_.resolveName(topic)] = ros::message_traits::datatype<Message>();
+  }
+
+  template <typename Message>
+  void commands(const std::string& topic) {
+    commanded_[node_.resolveName(topic)] = ros::message_traits::datatype<Message>();
+  }
+
+  /// Begins to ask; all topics are known.
+  void start() {
+    thread_ = std::thread([this] { work(); });
+  }
+
+ private:
+  using Types = std::map<std::string, std::string>;
+
+  void work() {
+    const auto begin = std::chrono::steady_clock::now();
+    std::unique_lock<std::mutex> lock(mutex_);
+    while (!changed_.wait_for(lock, std::chrono::seconds(1), [this] { return ending_; })) {
+      lock.unlock();
+      try {
+        look(std::chrono::steady_clock::now() - begin >= std::chrono::seconds(5));
+      } catch (const XmlRpc::XmlRpcException& error) {
+        ROS_DEBUG("an answer of another shape than expected: %s", error.getMessage().c_str());
+      }
+      lock.lock();
+    }
+  }
+
+  void look(bool patient) {
+    XmlRpc::XmlRpcValue name(ros::this_node::getName()), answer, state;
+    if (!ros::master::execute("getSystemState", name, answer, state, false)) return;
+    std::map<std::string, std::vector<std::string>> publishers;
+    for (int entry = 0; entry < state[0].size(); ++entry) {
+      XmlRpc::XmlRpcValue& nodes = state[0][entry][1];
+      for (int node = 0; node < nodes.size(); ++node) {
+        const std::string& other = nodes[node];
+        if (other != ros::this_node::getName()) publishers[state[0][entry][0]].push_back(other);
+      }
+    }
+    for (const auto& [topic, type] : listened_) {
+      if (!publishers[topic].empty()) published_.insert(topic);
+      if (patient && published_.count(topic) == 0 && is_new(topic, "nobody publishes it after 5 s")) {
+        // It may tell what seldom happens, such as that a button was pressed.
+        ROS_INFO("%s: nobody publishes it after 5 s", topic.c_str());
+      }
+      for (const std::string& other : publishers[topic]) {
+        if (!asked_.emplace(topic, other).second) continue;
+        const std::string found = type_at(other, topic);
+        if (!found.empty() && found != type) report(topic, other + " publishes " + found + ", not " + type);
+      }
+    }
+    for (const auto& [topic, type] : commanded_) {
+      for (const std::string& other : publishers[topic]) report(topic, other + " publishes it, too");
+    }
+  }
+
+  // What a node sends on a topic, in its own words: the master knows one type for all of them. Empty: it does not
+  // answer.
+  static std::string type_at(const std::string& node, const std::string& topic) {
+    XmlRpc::XmlRpcValue name(ros::this_node::getName()), request, answer, place;
+    request[0] = name;
+    request[1] = node;
+    std::string host;
+    std::uint32_t port = 0;
+    if (!ros::master::execute("lookupNode", request, answer, place, false)) return "";
+    if (!ros::network::splitURI(place, host, port)) return "";
+    XmlRpc::XmlRpcClient client(host.c_str(), static_cast<int>(port), "/");
+    if (!client.executeNonBlock("getPublications", name)) return "";
+    XmlRpc::XmlRpcDispatch dispatch;
+    dispatch.addSource(&client, XmlRpc::XmlRpcDispatch::WritableEvent | XmlRpc::XmlRpcDispatch::Exception);
+    dispatch.work(1.0);
+    if (!client.executeCheckDone(answer) || answer.size() < 3) return "";
+    XmlRpc::XmlRpcValue& types = answer[2];
+    for (int entry = 0; entry < types.size(); ++entry) {
+      if (static_cast<std::string&>(types[entry][0]) == topic) return types[entry][1];
+    }
+    return "";
+  }
+
+  void report(const std::string& topic, const std::string& what) {
+    if (is_new(topic, what)) ROS_WARN("%s: %s", topic.c_str(), what.c_str());
+  }
+
+  bool is_new(const std::string& topic, const std::string& what) { return reported_.emplace(topic, what).second; }
+
+  ros::NodeHandle node_;
+  Types listened_;
+  Types commanded_;
+  std::set<std::string> published_;  // at some time
+  std::set<std::pair<std::string, std::string>> asked_;
+  std::set<std::pair<std::string, std::string>> reported_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool ending_ = false;
+  std::thread thread_;
+};
+
+}  // namespace v1
+}  // namespace robosc
+
+#endif  // ROBOSC_ROS1_GRAPH_MONITOR_HPP_

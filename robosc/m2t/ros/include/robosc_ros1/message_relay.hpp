@@ -1,0 +1,54 @@
+// Hands messages on that the supervisor lets through.
+#ifndef ROBOSC_ROS1_MESSAGE_RELAY_HPP_
+#define ROBOSC_ROS1_MESSAGE_RELAY_HPP_
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <utility>
+
+#include <ros/ros.h>
+
+namespace robosc {
+inline namespace v1 {
+
+/// Takes messages from one topic to another. What is published is latched from the first message on that comes latched.
+template <typename Message>
+class MessageRelay {
+ public:
+  /// `pass`: whether a message goes on.
+  MessageRelay(const std::string& from, const std::string& to, std::function<bool(const Message&)> pass)
+      : to_(to), pass_(std::move(pass)) {
+    publisher_ = node_.advertise<Message>(to_, kDepth);
+    subscription_ =
+        node_.subscribe<Event>(from, kDepth, boost::function<void(Event)>([this](Event event) { received(event); }),
+                               ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay());
+  }
+
+ private:
+  static constexpr std::uint32_t kDepth = 10;
+  using Event = const ros::MessageEvent<const Message>&;
+
+  void received(Event event) {
+    if (!pass_(*event.getConstMessage())) return;
+    const auto latching = event.getConnectionHeader().find("latching");
+    if (!latched_ && latching != event.getConnectionHeader().end() && latching->second == "1") {
+      latched_ = true;
+      publisher_.shutdown();
+      publisher_ = node_.advertise<Message>(to_, kDepth, true);
+    }
+    publisher_.publish(event.getConstMessage());
+  }
+
+  ros::NodeHandle node_;
+  std::string to_;
+  std::function<bool(const Message&)> pass_;
+  bool latched_ = false;
+  ros::Publisher publisher_;
+  ros::Subscriber subscription_;
+};
+
+}  // namespace v1
+}  // namespace robosc
+
+#endif  // ROBOSC_ROS1_MESSAGE_RELAY_HPP_

@@ -1,0 +1,54 @@
+// Parameters with their type and their range.
+#ifndef ROBOSC_ROS1_PARAMETERS_HPP_
+#define ROBOSC_ROS1_PARAMETERS_HPP_
+
+#include <cstddef>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+
+#include <ros/console.h>
+#include <ros/node_handle.h>
+
+namespace robosc {
+inline namespace v1 {
+
+/// A parameter, or a value where it is not set; throws std::invalid_argument where it has another type.
+template <typename Value>
+Value parameter(const ros::NodeHandle& node, const std::string& name, const Value& value) {
+  Value found = value;
+  if (node.getParam(name, found) || !node.hasParam(name)) return found;
+  const char* type = std::is_same_v<Value, bool>  ? "true or false"
+                     : std::is_same_v<Value, int> ? "a whole number"
+                                                  : "a text";
+  throw std::invalid_argument("the parameter " + node.resolveName(name) + " must be " + type);
+}
+
+/// The same for a whole number between two bounds.
+inline int parameter(const ros::NodeHandle& node, const std::string& name, int value, int low, int high) {
+  const int found = parameter(node, name, value);
+  if (found >= low && found <= high) return found;
+  throw std::invalid_argument("the parameter " + node.resolveName(name) + " is " + std::to_string(found) +
+                              ", not between " + std::to_string(low) + " and " + std::to_string(high));
+}
+
+/// Sets how much the node prints to what the parameter `log_level` says.
+inline void set_log_level(const ros::NodeHandle& node) {
+  const std::string wanted = parameter<std::string>(node, "log_level", "");
+  if (wanted.empty()) return;
+  const char* const names[] = {"debug", "info", "warn", "error", "fatal"};
+  for (std::size_t level = 0; level < std::size(names); ++level) {
+    if (wanted != names[level]) continue;
+    if (ros::console::set_logger_level(ROSCONSOLE_DEFAULT_NAME, static_cast<ros::console::Level>(level))) {
+      ros::console::notifyLoggerLevelsChanged();
+    }
+    return;
+  }
+  throw std::invalid_argument("the parameter " + node.resolveName("log_level") + " is " + wanted +
+                              ", not debug, info, warn, error or fatal");
+}
+
+}  // namespace v1
+}  // namespace robosc
+
+#endif  // ROBOSC_ROS1_PARAMETERS_HPP_

@@ -1,0 +1,197 @@
+// Calls a service without waiting for it.
+#ifndef ROBOSC_ROS1_SERVICE_CLIENT_HPP_
+#define ROBOSC_ROS1_SERVICE_CLIENT_HPP_
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include <ros/connection.h>
+#include <ros/node_handle.h>
+#include <ros/serialization.h>
+#include <ros/service_manager.h>
+#include <ros/service_server_link.h>
+#include <ros/service_traits.h>
+
+#include "robosc_ros1/countdown.hpp"
+#include "robosc_ros1/event_queue.hpp"
+
+namespace robosc {
+inline namespace v1 {
+
+/// A client of one service. ROS 1 calls block: a thread of its own makes them, and the answer comes through the node's
+/// callback queue. All functions belong to the thread that serves this queue.
+template <typename Type>
+class ServiceClient {
+ public:
+  using Request = typename Type::Request;
+  using Response = typename Type::Response;
+
+  /// Exactly one of them follows a call, never from inside it.
+  struct Handlers {
+    std::function<void(const Response&)> response;
+    std::function<void(const std::string& why)> error;  // no server, a failed call, no answer in time
+  };
+
+  ServiceClient(ros::NodeHandle& node, const std::string& name, std::chrono::milliseconds timeout, Handlers handlers)
+      : name_(node.resolveName(name)),
+        within_(" within " + std::to_string(timeout.count()) + " ms"),
+        handlers_(std::move(handlers)),
+        events_(node),
+        deadline_(node, timeout, [this] { expire(); }),
+        worker_([this] { work(); }) {}
+
+  ~ServiceClient() {
+    stop();
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      ending_ = true;
+    }
+    changed_.notify_one();
+    worker_.join();
+  }
+
+  ServiceClient(const ServiceClient&) = delete;
+  ServiceClient& operator=(const ServiceClient&) = delete;
+
+  /// Calls the service; a call that is still under way is given up.
+  void call(const Request& request) {
+    stop();
+    waiting_ = true;
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      request_ = request;
+      current_ = ++number_;
+      found_ = false;
+    }
+    changed_.notify_one();
+    deadline_.start();
+  }
+
+  /// Gives up the call that is under way: nothing follows it.
+  void stop() {
+    waiting_ = false;
+    deadline_.stop();
+    ros::ServiceServerLinkPtr link;
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      request_.reset();
+      current_ = 0;
+      link.swap(link_);
+    }
+    changed_.notify_one();
+    if (link) link->getConnection()->drop(ros::Connection::Destructing);  // what the worker waits for
+  }
+
+ private:
+  // On the worker's thread: one call after the other.
+  void work() {
+    std::unique_lock<std::mutex> lock(mutex_);
+    while (true) {
+      changed_.wait(lock, [this] { return ending_ || request_; });
+      if (ending_) return;
+      const ros::SerializedMessage request = ros::serialization::serializeMessage(*request_);
+      const std::uint64_t number = current_;
+      request_.reset();
+      lock.unlock();
+      ask(number, request);
+      lock.lock();
+    }
+  }
+
+  void ask(std::uint64_t number, const ros::SerializedMessage& request) {
+    const ros::ServiceServerLinkPtr link = find(number);
+    if (!link) return;
+    ros::SerializedMessage answer;
+    const bool answered = link->call(request, answer);
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      if (link_ == link) link_.reset();
+    }
+    const auto response = std::make_shared<Response>();
+    if (answered && read(answer, *response)) {
+      events_.push([this, number, response] { succeed(number, *response); });
+    } else {
+      events_.push([this, number] { fail(number, "the call failed"); });
+    }
+  }
+
+  // A connection to the server, as soon as there is one; null where nobody waits for this call any more.
+  ros::ServiceServerLinkPtr find(std::uint64_t number) {
+    const std::string type = ros::service_traits::md5sum<Type>();
+    std::unique_lock<std::mutex> lock(mutex_);
+    while (current_ == number) {
+      lock.unlock();
+      const auto link = ros::ServiceManager::instance()->createServiceServerLink(name_, false, type, type, {});
+      lock.lock();
+      if (link && current_ == number) {
+        found_ = true;
+        link_ = link;  // lets `stop` end the call
+        return link;
+      }
+      if (link) link->getConnection()->drop(ros::Connection::Destructing);
+      changed_.wait_for(lock, std::chrono::milliseconds(100), [this, number] { return current_ != number; });
+    }
+    return {};
+  }
+
+  static bool read(const ros::SerializedMessage& answer, Response& response) {
+    try {
+      ros::serialization::deserializeMessage(answer, response);
+      return true;
+    } catch (const std::exception&) {
+      return false;
+    }
+  }
+
+  // On the node's thread. What comes late belongs to no call any more.
+  void succeed(std::uint64_t number, const Response& response) {
+    if (!waiting_ || number != number_) return;
+    stop();
+    handlers_.response(response);
+  }
+
+  void fail(std::uint64_t number, const std::string& why) {
+    if (!waiting_ || number != number_) return;
+    stop();
+    handlers_.error(why);
+  }
+
+  void expire() {
+    std::unique_lock<std::mutex> lock(mutex_);
+    const std::string what = found_ ? "no answer" : "no server";
+    lock.unlock();
+    fail(number_, what + within_);
+  }
+
+  const std::string name_;
+  const std::string within_;
+  const Handlers handlers_;
+  bool waiting_ = false;
+  std::uint64_t number_ = 0;
+
+  std::mutex mutex_;  // of what both threads use, up to `ending_`
+  std::condition_variable changed_;
+  std::optional<Request> request_;
+  std::uint64_t current_ = 0;  // the call that somebody waits for; 0: none
+  bool found_ = false;         // its server
+  ros::ServiceServerLinkPtr link_;
+  bool ending_ = false;
+
+  EventQueue events_;
+  Countdown deadline_;
+  std::thread worker_;
+};
+
+}  // namespace v1
+}  // namespace robosc
+
+#endif  // ROBOSC_ROS1_SERVICE_CLIENT_HPP_

@@ -1,0 +1,110 @@
+"""What the elements of a ROS graph are called in C++; the sct model's are called as in C."""
+
+from __future__ import annotations
+
+import re
+from itertools import count
+from typing import TYPE_CHECKING, TypeVar
+
+from robosc.m2t.c.names import KEYWORDS, CNames
+from robosc.metamodel import expression as ex
+from robosc.metamodel import rosgraph, sct
+from robosc.semantics.naming import Names
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+_Element = TypeVar("_Element", bound=ex.NamedElement)
+
+#: Macros of the standard headers that could stand where a model's name stands.
+_MACROS = frozenset(["EOF", "INFINITY", "NAN", "NULL", "assert", "errno", "stderr", "stdin", "stdout"])
+
+
+class CppNames:
+    """The C++ names of the elements of one graph. No two in one scope are the same, none is a keyword."""
+
+    def __init__(self, graph: rosgraph.RosGraph) -> None:
+        self.c = CNames(graph.model)
+        self._enumerations = _fresh(graph.enumerations)
+        self._literals = {
+            literal: name
+            for enumeration in graph.enumerations
+            for literal, name in _fresh(enumeration.literals).items()
+        }
+        self._conversions = _fresh(graph.conversions)
+        components = Names(KEYWORDS | _MACROS)
+        self.components = {
+            name: components.fresh(identifier(name))
+            for name in dict.fromkeys(variable.component for variable in graph.variables)
+        }
+        self._variables = {
+            variable: name
+            for component in self.components
+            for variable, name in _fresh(kept_for(graph.variables, component)).items()
+        }
+        topics: list[rosgraph.Subscription | rosgraph.Publisher] = [*graph.subscriptions, *graph.publishers]
+        self._words: dict[rosgraph.Subscription | rosgraph.Publisher, str] = {}
+        for topic in topics:
+            word, taken = _word(topic.topic), self._words.values()
+            alternatives = (f"{word}_{number}" for number in count(2))
+            self._words[topic] = word if word not in taken else next(name for name in alternatives if name not in taken)
+
+    def enumeration(self, enumeration: ex.Enumeration) -> str | None:
+        """The type of an enumeration that only the node knows; None for one of the sct model."""
+        name = self._enumerations.get(enumeration)
+        return None if name is None else f"model::{name}"
+
+    def literal(self, literal: ex.EnumerationLiteral) -> str:
+        """A literal, wherever it is used."""
+        name = self._literals.get(literal)
+        return self.c.enumerator(literal) if name is None else f"{self.enumeration(literal.eContainer())}::{name}"
+
+    def literal_name(self, enumeration: ex.Enumeration) -> str:
+        """The function that gives the model's name of a literal."""
+        return self.c.lookup(enumeration) if self.enumeration(enumeration) is None else "literal_name"
+
+    def conversion(self, conversion: rosgraph.Conversion) -> str:
+        """The function that makes a literal of data."""
+        return f"to_{self._conversions[conversion]}"
+
+    def member(self, variable: rosgraph.NodeVariable) -> str:
+        """A variable of the node, in its component."""
+        return self._variables[variable]
+
+    def variable(self, variable: rosgraph.NodeVariable) -> str:
+        """A variable of the node, in the struct of all."""
+        return f"{self.components[variable.component]}.{self.member(variable)}"
+
+    def word(self, topic: rosgraph.Subscription | rosgraph.Publisher) -> str:
+        """A word for a subscription or publisher: its topic's name, as far as C++ can write it."""
+        return self._words[topic]
+
+    def state(self, element: sct.Plant | sct.DiscreteVariable) -> str:
+        """A variable of the supervisor's state, or the location of a plant that has several."""
+        return f"supervisor_.state.{self.c.member(element)}"
+
+    def is_in(self, location: sct.Location) -> str:
+        """Whether a plant is in a location; without parentheses."""
+        plant: sct.Plant = location.eContainer()
+        if len(plant.locations) == 1:
+            return "true"
+        return f"{self.state(plant)} == {self.c.enumerator(location)}"
+
+
+def kept_for(variables: Sequence[rosgraph.NodeVariable], component: str | None) -> list[rosgraph.NodeVariable]:
+    """The variables that a node keeps for one component."""
+    return [variable for variable in variables if variable.component == component]
+
+
+def identifier(name: str) -> str:
+    """The name in ASCII letters, digits and underscores; other characters become their code."""
+    return re.sub(r"[^A-Za-z0-9_]", lambda found: f"_u{ord(found[0]):04x}", name)
+
+
+def _fresh(elements: Sequence[_Element]) -> dict[_Element, str]:
+    names = Names(KEYWORDS | _MACROS)
+    return {element: names.fresh(identifier(element.name)) for element in elements}
+
+
+def _word(topic: str) -> str:
+    return re.sub(r"[^A-Za-z0-9]+", "_", topic).strip("_") or "topic"

@@ -1,0 +1,413 @@
+"""What the templates of a node print: a ROS graph with every expression, name and type as text of C++."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from robosc.m2t.c.types import type_name
+from robosc.m2t.ros import reports
+from robosc.m2t.ros.events import Reasons, message_named
+from robosc.m2t.ros.expressions import CppPrinter, parts
+from robosc.m2t.ros.names import CppNames, kept_for
+from robosc.metamodel import expression as ex
+from robosc.metamodel import rosgraph, sct
+from robosc.metamodel.expression_types import is_double
+from robosc.semantics.headers import parts_with_headers
+from robosc.semantics.printing import PRECEDENCE
+from robosc.semantics.received import reads_elements
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+
+@dataclass(frozen=True)
+class Assignment:
+    """`target = value`."""
+
+    target: str
+    value: str
+
+
+@dataclass(frozen=True)
+class Reaction:
+    """Assignments under a condition on the state before the event; None: always."""
+
+    condition: str | None
+    assignments: list[Assignment]
+
+
+@dataclass(frozen=True)
+class EventHandler:
+    """What the node does when an event happens: its inputs, its data and what it changes in the node.
+
+    `copy` of the node's variables: `old`, which values read while the variables change; `next`, which changes while
+    values read the variables; or none. One that `reads_elements` of arrays changes a copy only, and does not happen
+    where one is not there; inputs that do are among the reactions, where a transition reads them.
+    """
+
+    event: str
+    name: str
+    inputs: list[Assignment]
+    reads_elements: bool
+    copy: str
+    reactions: list[Reaction]
+    data: reports.EventData | None
+
+
+@dataclass(frozen=True)
+class Subscription:
+    """A topic that the node listens to; `word` is fit for names. `unread`: nothing in its messages matters."""
+
+    word: str
+    topic: str
+    interface: rosgraph.Interface
+    receptions: list[EventHandler]
+    unread: bool
+
+    @property
+    def reads_elements(self) -> bool:
+        """Whether a message may be one that can't be read."""
+        return any(handler.reads_elements for handler in self.receptions)
+
+
+@dataclass(frozen=True)
+class Alternative:
+    """The data of one provide statement: names of fields and their values, under a condition on the state."""
+
+    condition: str
+    fields: list[tuple[str, str]]
+
+
+@dataclass(frozen=True)
+class Message:
+    """Data that the node sends: a message, a request or a goal.
+
+    It may fail where a double could be no finite number. `reaction` is what sending it changes in the node; `parts`
+    may hold headers that are the node's to fill in, "" is the whole.
+    """
+
+    word: str
+    event: str
+    requirements: list[str]
+    alternatives: list[Alternative]
+    may_fail: bool
+    reaction: EventHandler | None
+    parts: list[str]
+
+
+@dataclass(frozen=True)
+class Publisher:
+    """A topic that the node sends to."""
+
+    word: str
+    topic: str
+    interface: rosgraph.Interface
+    messages: list[Message]
+
+
+@dataclass(frozen=True)
+class Client:
+    """A service that the node calls, or an action that it starts: only these have feedback and are cancelled."""
+
+    word: str
+    name: str
+    interface: rosgraph.Interface
+    request: Message
+    response: EventHandler
+    error: EventHandler
+    feedback: EventHandler | None
+    cancel: str | None
+    cancel_requirements: list[str]
+    reset: str
+
+    @property
+    def data(self) -> str:
+        """The member that holds what is sent."""
+        return f"{self.word}_{'goal' if self.cancel else 'request'}_"
+
+
+@dataclass(frozen=True)
+class LastMessage:
+    """A message that goes out whatever is required of it, and the requirements that this overrides."""
+
+    publisher: Publisher
+    message: Message
+    overrides: list[str]
+
+
+@dataclass(frozen=True)
+class Enumeration:
+    """An enumeration that only the node knows: literals in C++ and in the model."""
+
+    name: str
+    literals: list[tuple[str, str]]
+
+
+@dataclass(frozen=True)
+class Rule:
+    """A rule of a conversion."""
+
+    condition: str
+    literal: str
+    reads_elements: bool
+
+
+@dataclass(frozen=True)
+class Conversion:
+    """A function from data to a literal."""
+
+    name: str
+    function: str
+    type: str
+    rules: list[Rule]
+    default: str
+
+
+@dataclass(frozen=True)
+class Variable:
+    """A variable of the node."""
+
+    name: str
+    type: str
+    initial: str
+
+
+class Node:
+    """The node of one graph; everything is ready to be printed, in the order of the model.
+
+    `on_shutdown` names the messages that go out when the node stops the robot, `on_withheld` those when data of a
+    command can't be sent; each must be one that it sends.
+    """
+
+    def __init__(
+        self, graph: rosgraph.RosGraph, on_shutdown: Sequence[str] = (), on_withheld: Sequence[str] = ()
+    ) -> None:
+        self._graph = graph
+        self._names = CppNames(graph)
+        self._printer = CppPrinter(self._names)
+        self._reasons = Reasons(graph.model)
+        self.robot = graph.name
+        self.prefix = self._names.c.prefix
+        self.enumerations = [self._enumeration(enumeration) for enumeration in graph.enumerations]
+        self.conversions = [self._conversion(conversion) for conversion in graph.conversions]
+        self.components = [
+            (member, [self._variable(variable) for variable in kept_for(graph.variables, component)])
+            for component, member in self._names.components.items()
+        ]
+        self.subscriptions = [self._subscription(subscription) for subscription in graph.subscriptions]
+        self.publishers = [self._publisher(publisher) for publisher in graph.publishers]
+        self.services = [self._client(client, None, None) for client in graph.serviceClients]
+        self.actions = [self._client(client, client.feedback, client.cancel) for client in graph.actionClients]
+        self.shutdown = [self._last(name) for name in on_shutdown]
+        self.instead = [self._last(name) for name in on_withheld]
+        outside = {reception.event for topic in graph.subscriptions for reception in topic.receptions}
+        outside |= {sending.event for topic in graph.publishers for sending in topic.sendings}
+        for service in graph.serviceClients:
+            outside |= {service.request.event, service.response.event, service.error}
+        for action in graph.actionClients:
+            outside |= {action.request.event, action.feedback.event, action.response.event, action.error}
+        internal = dict.fromkeys(reaction.event for reaction in graph.reactions if reaction.event not in outside)
+        self.internal = [self._handler(event) for event in internal]
+        self.reported = [
+            reports.component(plant, kept_for(graph.variables, plant.origin), self._names)
+            for plant in graph.model.plants
+            if plant.kind == sct.PlantKind.behaviour
+        ]
+
+    @property
+    def clients(self) -> list[Client]:
+        """Services, then actions."""
+        return [*self.services, *self.actions]
+
+    @property
+    def interfaces(self) -> list[rosgraph.Interface]:
+        """The types in use, each once, by package and name."""
+        used: list[Subscription | Publisher | Client] = [*self.subscriptions, *self.publishers, *self.clients]
+        found = {(kind.package, kind.type, kind.kind.name): kind for kind in (end.interface for end in used)}
+        return [found[key] for key in sorted(found)]
+
+    # Types
+
+    def _type(self, kind: ex.Type) -> str:
+        match kind:
+            case ex.BooleanType():
+                return "bool"
+            case ex.IntegerType():
+                return "Integer"
+            case ex.DoubleType():
+                return "double"
+            case ex.StringType():
+                return "std::string"
+        assert isinstance(kind, ex.EnumerationType)
+        return self._names.enumeration(kind.enumeration) or f"std::{type_name(kind)}"
+
+    def _variable(self, variable: rosgraph.NodeVariable) -> Variable:
+        return Variable(self._names.member(variable), self._type(variable.type), self._printer(variable.initial))
+
+    def _enumeration(self, enumeration: ex.Enumeration) -> Enumeration:
+        names = {literal.name: self._names.literal(literal) for literal in enumeration.literals}
+        literals = [(text.rpartition("::")[2], name) for name, text in names.items()]
+        return Enumeration(str(self._names.enumeration(enumeration)).rpartition("::")[2], literals)
+
+    def _conversion(self, conversion: rosgraph.Conversion) -> Conversion:
+        printer = CppPrinter(self._names, data="value")
+        return Conversion(
+            conversion.name,
+            self._names.conversion(conversion),
+            self._type(ex.EnumerationType(enumeration=conversion.enumeration)),
+            [
+                Rule(self._tested(rule, printer), self._names.literal(rule.literal), reads_elements(rule.condition))
+                for rule in conversion.rules
+            ],
+            self._names.literal(conversion.default),
+        )
+
+    @staticmethod
+    def _tested(rule: rosgraph.ConversionRule, printer: CppPrinter) -> str:
+        """A rule's condition, fit to stand before `&& read.complete()`."""
+        loose = printer.precedence(rule.condition) < PRECEDENCE[ex.Conjunction] and reads_elements(rule.condition)
+        return printer.tight(rule.condition) if loose else printer(rule.condition)
+
+    # What comes in
+
+    def _subscription(self, subscription: rosgraph.Subscription) -> Subscription:
+        receptions = [self._reception(reception) for reception in subscription.receptions]
+        return Subscription(
+            self._names.word(subscription),
+            subscription.topic,
+            subscription.interface,
+            receptions,
+            unread=not any(handler.data for handler in receptions),
+        )
+
+    def _reception(self, reception: rosgraph.Reception) -> EventHandler:
+        values = [assignment.value for assignment in reception.inputs]
+        for reaction in self._reactions(reception.event):
+            values += [assignment.value for assignment in reaction.assignments]
+        inputs = [self._input(assignment) for assignment in reception.inputs]
+        return self._handler(reception.event, inputs, reports.received(values, self._names))
+
+    def _input(self, assignment: rosgraph.InputAssignment) -> Assignment:
+        kind = assignment.input.type
+        value = self._printer(assignment.value)
+        if isinstance(kind, ex.IntegerType):
+            value = f"{self._printer.integer(assignment.value, kind)}.to<std::{type_name(kind)}>()"
+        return Assignment(f"supervisor_.inputs.{self._names.c.member(assignment.input)}", value)
+
+    def _reactions(self, event: sct.Event) -> list[rosgraph.Reaction]:
+        return [reaction for reaction in self._graph.reactions if reaction.event == event]
+
+    def _handler(
+        self,
+        event: sct.Event,
+        inputs: Sequence[Assignment] = (),
+        data: reports.EventData | None = None,
+    ) -> EventHandler:
+        reactions = self._reactions(event)
+        assignments = [assignment for reaction in reactions for assignment in reaction.assignments]
+        assigned = {assignment.variable for assignment in assignments}
+        keeps_old = any(
+            isinstance(part, rosgraph.NodeVariableReference) and part.variable in assigned
+            for assignment in assignments
+            for part in parts(assignment.value)
+        )
+        reads = any(reads_elements(assignment.value) for assignment in assignments)
+        copy = ("next" if assignments else "") if reads else "old" if keeps_old else ""
+        return EventHandler(
+            self._names.c.enumerator(event),
+            f"{event.eContainer().name}.{event.name}",
+            list(inputs),
+            reads,
+            copy,
+            self._merged(reactions, copy),
+            data,
+        )
+
+    def _merged(self, reactions: Sequence[rosgraph.Reaction], copy: str) -> list[Reaction]:
+        """Reactions of one component that do the same become one."""
+        places: dict[tuple[sct.Plant, tuple[Assignment, ...]], list[sct.Location]] = {}
+        for reaction in reactions:
+            assignments = tuple(self._assignment(assignment, copy) for assignment in reaction.assignments)
+            places.setdefault((reaction.locations[0].eContainer(), assignments), []).extend(reaction.locations)
+        return [Reaction(self._are_in(where), list(what)) for (_, what), where in places.items()]
+
+    def _are_in(self, locations: Sequence[sct.Location]) -> str | None:
+        """That a plant is in one of these locations of its own; None where one always is."""
+        plants: dict[sct.Plant, int] = {}
+        for location in locations:
+            plants[location.eContainer()] = plants.get(location.eContainer(), 0) + 1
+        if any(number == len(plant.locations) for plant, number in plants.items()):
+            return None
+        return " || ".join(self._names.is_in(location) for location in locations)
+
+    def _assignment(self, assignment: rosgraph.NodeAssignment, copy: str) -> Assignment:
+        kind = assignment.variable.type
+        printer = CppPrinter(self._names, node="old") if copy == "old" else self._printer
+        return Assignment(
+            f"{'next' if copy == 'next' else 'data_'}.{self._names.variable(assignment.variable)}",
+            printer.integer(assignment.value, kind) if isinstance(kind, ex.IntegerType) else printer(assignment.value),
+        )
+
+    # What goes out
+
+    def _publisher(self, publisher: rosgraph.Publisher) -> Publisher:
+        return Publisher(
+            self._names.word(publisher),
+            publisher.topic,
+            publisher.interface,
+            [self._message(sending) for sending in publisher.sendings],
+        )
+
+    def _client(
+        self,
+        client: rosgraph.ServiceClient | rosgraph.ActionClient,
+        feedback: rosgraph.Reception | None,
+        cancel: sct.Event | None,
+    ) -> Client:
+        request = self._message(client.request)
+        return Client(
+            request.word,
+            client.identifier,
+            client.interface,
+            request,
+            self._reception(client.response),
+            self._handler(client.error),
+            self._reception(feedback) if feedback else None,
+            self._names.c.enumerator(cancel) if cancel else None,
+            self._reasons.of(cancel) if cancel else [],
+            self._names.c.enumerator(client.reset),
+        )
+
+    def _last(self, name: str) -> LastMessage:
+        sending = message_named(self._graph, name)
+        assert sending is not None
+        event = self._names.c.enumerator(sending.event)
+        publisher, message = next(
+            (topic, message) for topic in self.publishers for message in topic.messages if message.event == event
+        )
+        return LastMessage(publisher, message, self._reasons.requirements(sending.event))
+
+    def _message(self, sending: rosgraph.Sending) -> Message:
+        plant: sct.Plant = sending.event.eContainer()
+        return Message(
+            self._names.c.member(plant).removeprefix(f"{plant.kind.name}_"),
+            self._names.c.enumerator(sending.event),
+            self._reasons.of(sending.event),
+            [self._alternative(provided) for provided in sending.alternatives],
+            any(is_double(field.value) for provided in sending.alternatives for field in provided.fields),
+            self._handler(sending.event) if self._reactions(sending.event) else None,
+            [".".join(path) for path in parts_with_headers(sending)],
+        )
+
+    def _alternative(self, provided: rosgraph.ProvidedData) -> Alternative:
+        return Alternative(
+            self._names.is_in(provided.location),
+            [(".".join(field.path), self._field(field)) for field in provided.fields],
+        )
+
+    def _field(self, assignment: rosgraph.FieldAssignment) -> str:
+        kind = assignment.type
+        if isinstance(kind, ex.IntegerType):
+            return self._printer.integer(assignment.value, kind)
+        return self._printer(assignment.value)

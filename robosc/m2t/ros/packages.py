@@ -1,0 +1,214 @@
+"""The packages of controllers and supervisory layers: names, dependencies, files, the engine."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol
+
+from robosc.configuration import NO_STOP, NO_STOP_ON_SILENCE
+from robosc.files.resources import locate
+from robosc.m2t.c import engine
+from robosc.m2t.ros import preconditions
+from robosc.m2t.ros.layer import LayerNode
+from robosc.m2t.ros.node import Node
+from robosc.m2t.ros.rendering import fold, node_environment
+from robosc.semantics.definition import definition_text
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from robosc.configuration import Configuration
+    from robosc.diagnostics import Diagnostic
+    from robosc.m2t.models import Models, TraceTest
+    from robosc.metamodel import rosgraph
+
+    Values = Mapping[str, Any]
+
+#: Types of geometry_msgs that hold numbers only: no header, no quaternion.
+_PLAIN = frozenset(["Accel", "Inertia", "Point", "Point32", "Polygon", "Twist", "Vector3", "Wrench"])
+_INCLUDED = re.compile(r'^#include "(robosc[^"]*)"$', re.MULTILINE)
+
+#: The headers that nodes include from `include`, each with what of a node it is there for; empty: always.
+#: `{ros}` is the version of ROS.
+_HEADERS = {
+    "robosc/block_reasons": {"gates"},
+    "robosc/callback_guard": {"ros2"},
+    "robosc/data": set(),
+    "robosc/event_log": set(),
+    "robosc/fields": {"controller"},
+    "robosc/hangup": {"ros2"},
+    "robosc/json": set(),
+    "robosc/watchdog": {"controller", "subscriptions"},
+    "robosc_ros{ros}/action_client": {"controller", "actions"},
+    "robosc_ros{ros}/action_proxy": {"layer", "actions"},
+    "robosc_ros{ros}/countdown": {"controller", "waits"},
+    "robosc_ros{ros}/defaults": {"controller", "defaults"},
+    "robosc_ros{ros}/graph_monitor": {"controller"},
+    "robosc_ros{ros}/interruption": {"controller", "ros1"},
+    "robosc_ros{ros}/message_relay": {"layer", "topics"},
+    "robosc_ros{ros}/parameters": set(),
+    "robosc_ros{ros}/service_client": {"controller", "services"},
+    "robosc_ros{ros}/service_proxy": {"layer", "services"},
+    "robosc_ros{ros}/shutdown_hook": {"controller", "ros2"},
+}
+
+
+class Middleware(Protocol):
+    """What differs between ROS 1 and ROS 2; a room of its name beside this file has its templates."""
+
+    #: 1 or 2.
+    version: ClassVar[int]
+    #: How the names of its launch files end.
+    launch_file: ClassVar[str]
+    #: What `--with-tests` adds to a controller: path to template.
+    test_files: ClassVar[Mapping[str, str]]
+
+    def controller(self, node: Node, configuration: Configuration, types: set[str], *, tests: bool) -> Values:
+        """What only the templates of a controller read; `types` are the packages of the types that it uses."""
+
+    def layer(self, layer: LayerNode, configuration: Configuration, types: set[str]) -> Values:
+        """What only the templates of a layer read; `types` likewise."""
+
+
+@dataclass(frozen=True)
+class RosTarget:
+    """A target that is a ROS package: a controller or a layer, for one ROS."""
+
+    kind: Literal["controller", "layer"]
+    ros: Middleware
+
+    def preconditions(self, models: Models, configuration: Configuration) -> list[Diagnostic]:
+        """What keeps these models from becoming such a node, and settings that have no effect."""
+        return preconditions.preconditions(models, configuration, self.kind, self.ros.version)
+
+    def generate(self, models: Models, configuration: Configuration, tests: TraceTest | None = None) -> dict[str, str]:
+        """The files of the package, by their path in it. `preconditions` must have found nothing."""
+        graph = models.rosgraph
+        assert graph is not None
+        if self.kind == "layer":
+            layer = LayerNode(graph)
+            name = configuration.layer_name(graph)
+            return self._files(graph, name, configuration, layer.node, layer, None)
+        node = Node(graph, configuration.on_shutdown, configuration.on_withheld)
+        return self._files(graph, configuration.package_name(graph), configuration, node, None, tests)
+
+    def _files(  # noqa: PLR0913, PLR0917
+        self,
+        graph: rosgraph.RosGraph,
+        name: str,
+        configuration: Configuration,
+        node: Node,
+        layer: LayerNode | None,
+        tests: TraceTest | None,
+    ) -> dict[str, str]:
+        kind, ros = self.kind, self.ros
+        included = self._included(node, layer)
+        source, definition = f"src/{name}_node.cpp", f"include/{name}/definition.hpp"
+        files = {
+            "package.xml": "package.xml.j2",
+            "CMakeLists.txt": "CMakeLists.txt.j2",
+            f"launch/{name}{ros.launch_file}": f"{kind}_launch.j2",
+            source: f"{kind}_node.cpp.j2",
+            **({f"config/{name}.yaml": "parameters.yaml.j2"} if kind == "controller" else {}),
+            **({definition: "definition.hpp.j2"} if configuration.publish_state_information else {}),
+            **(ros.test_files if tests else {}),
+        }
+        reports = {"std_msgs"} if configuration.publish_state_information or (layer and layer.gates) else set()
+        types = {interface.package for interface in node.interfaces} | reports
+        own = [definition.removeprefix("include/")] if configuration.publish_state_information else []
+        text = f"The {'supervisory controller' if kind == 'controller' else 'supervisory layer'} of {graph.name}."
+        values = {
+            "kind": kind,
+            "node": node,
+            "layer": layer,
+            "tests": tests,
+            "package": name,
+            "about": configuration.package,
+            "description": configuration.package.description or text,
+            "included": sorted([*own, *(f"{header}.hpp" for header in included)]),
+            "settings": configuration,
+            "period_ms": configuration.control_loop.period_ms,
+            "publishes_state": configuration.publish_state_information,
+            "writes_log": configuration.write_events_to_log,
+            "definition": definition_text(graph),
+            "no_stop": _no_stop(node, configuration),
+            "watchdog_ms": lambda topic: configuration.watchdog_ms.get(topic.removeprefix("/"), 0),
+            "has_defaults": has_defaults,
+            "frame": lambda topic: configuration.frame_id.get(topic.removeprefix("/"), ""),
+            "controller": configuration.supervisor.controller,
+            **(
+                ros.layer(layer, configuration, types)
+                if layer
+                else ros.controller(node, configuration, types, tests=tests is not None)
+            ),
+        }
+        templates = node_environment(f"robosc.m2t.ros.ros{ros.version}")
+        texts = {path: templates.get_template(template).render(values) for path, template in files.items()}
+        texts[source] = fold(texts[source])
+        texts |= {f"include/{header}.hpp": text for header, text in shipped(included).items()}
+        supervisor = engine.generate(graph.model, configuration.control_loop)
+        texts |= {f"src/{file}": text for file, text in supervisor.items()}
+        return texts | ({f"test/{path}": text for path, text in tests.files.items()} if tests else {})
+
+    def _included(self, node: Node, layer: LayerNode | None) -> list[str]:
+        """The headers of `include` that the node includes, without their ending."""
+        sent = [publisher.interface for publisher in node.publishers] + [client.interface for client in node.clients]
+        present = {
+            self.kind: True,
+            f"ros{self.ros.version}": True,
+            "actions": node.actions,
+            "defaults": any(has_defaults(interface) for interface in sent),
+            "gates": layer and layer.gates,
+            "services": node.services,
+            "subscriptions": node.subscriptions,
+            "topics": node.subscriptions or node.publishers,
+            "waits": node.clients or node.subscriptions,
+        }
+        features = {feature for feature, is_there in present.items() if is_there}
+        return [name.format(ros=self.ros.version) for name, needed in _HEADERS.items() if needed <= features]
+
+
+def shipped(headers: Iterable[str]) -> dict[str, str]:
+    """Headers of `include` by name, such as `robosc/json`, and all that they include: text by name."""
+    found: dict[str, str] = {}
+    waiting = list(headers)
+    while waiting:
+        name = waiting.pop().removesuffix(".hpp")
+        if name not in found:
+            found[name] = (locate("m2t/ros/include") / f"{name}.hpp").read_text(encoding="utf-8")
+            waiting += _INCLUDED.findall(found[name])
+    return dict(sorted(found.items()))
+
+
+def has_defaults(interface: rosgraph.Interface) -> bool:
+    """Whether a message of this type may hold a header or a quaternion, which the node then sets."""
+    if interface.package == "std_msgs":
+        return interface.type == "Header"
+    if interface.package == "std_srvs":
+        return False
+    return interface.package != "geometry_msgs" or interface.type not in _PLAIN
+
+
+def controller_package(configuration: Configuration) -> set[str]:
+    """The package of the existing controller, where the configuration names one."""
+    controller = configuration.supervisor.controller
+    return {started.package_name for started in (controller.run, controller.launch) if started}
+
+
+def launch_path(configuration: Configuration) -> str:
+    """Where the launch file of the existing controller is in its package; empty where the configuration names none."""
+    launch = configuration.supervisor.controller.launch
+    if launch is None:
+        return ""
+    return launch.file if "/" in launch.file else f"launch/{launch.file}"
+
+
+def _no_stop(node: Node, configuration: Configuration) -> list[tuple[str, str]]:
+    """What the node says at its start, under which condition, where nothing would stop its robot."""
+    if node.shutdown or not node.publishers:
+        return []
+    silence = [("watchdog_stops_", NO_STOP_ON_SILENCE)] if node.subscriptions else []
+    if configuration.says_how_to_stop:
+        return silence
+    return [*silence, ("!watchdog_stops_" if silence else "", NO_STOP)]

@@ -1,0 +1,259 @@
+"""What keeps models and settings from becoming a ROS node: located errors; and settings without effect: warnings."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from robosc.configuration import Configuration
+from robosc.diagnostics import START, Diagnostic, Severity
+from robosc.m2t.c.preconditions import preconditions as engine_preconditions
+from robosc.m2t.ros.events import Reasons, message_named
+from robosc.metamodel import expression as ex
+from robosc.metamodel import rosgraph
+from robosc.metamodel.expression_types import is_double
+from robosc.metamodel.places import place
+from robosc.metamodel.reflection import tree
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from robosc.m2t.models import Models
+
+RULE, LAYER_RULE = "ros-node", "layer-topic"
+
+_PACKAGE = re.compile(r"[a-z]([a-z0-9]|_(?!_))*[a-z0-9]")
+_TYPE = re.compile(r"[A-Z][A-Za-z0-9]*")
+_EXECUTABLE = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.+-]*")
+_NODE = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+_NAMESPACE = re.compile(r"/?[A-Za-z][A-Za-z0-9_]*(/[A-Za-z][A-Za-z0-9_]*)*")
+_FILE = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.+-]*(/[A-Za-z0-9_][A-Za-z0-9_.+-]*)*")
+_FIELD = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+_TOPIC = re.compile(r"(/_*)?[A-Za-z][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*")
+#: What would end a string, or mean something in it, where the build tools copy it into CMake code.
+_RISKY = re.compile(r'["\\$;\n\r]')
+
+
+def preconditions(models: Models, configuration: Configuration, kind: str, ros: int) -> list[Diagnostic]:
+    """What keeps these models from becoming a node with these settings, and warnings about settings without effect.
+
+    `kind`: "controller" or "layer"; `ros`: the version of ROS, 1 or 2.
+    """
+    graph = models.rosgraph
+    if graph is None:
+        message = "there is no ROS graph beside this model: generate from the .rscd or the .rosgraph.xmi"
+        return [Diagnostic(models.sct.name, START, Severity.ERROR, RULE, message)]
+    found = [*engine_preconditions(models.sct), *_names(graph), *_types(graph)]
+    if kind == "controller":
+        name = configuration.package_name(graph)
+        return [*found, *_package(graph, configuration, name), *_settings(graph, configuration)]
+    return [
+        *found,
+        *_package(graph, configuration, configuration.layer_name(graph)),
+        *_shared_topics(graph),
+        *_controller(configuration, ros),
+        *_unused(configuration),
+    ]
+
+
+def _package(graph: rosgraph.RosGraph, configuration: Configuration, name: str) -> Iterator[Diagnostic]:
+    """What keeps a package from having this name and these settings."""
+    if not _PACKAGE.fullmatch(name):
+        yield _error(graph, f'"{name}" is no name of a ROS package', 'set "package.name" in controller-config.json')
+    if _RISKY.search(configuration.package.maintainer):
+        hint = 'leave out ", \\, $ and ;'
+        yield configuration.error(("package", "maintainer"), "the maintainer would break the package's build", hint)
+
+
+def _error(element: ex.Located, message: str, hint: str | None = None, rule: str = RULE) -> Diagnostic:
+    file, span = place(element)
+    return Diagnostic(file, span, Severity.ERROR, rule, message, hint)
+
+
+def _names(graph: rosgraph.RosGraph) -> Iterator[Diagnostic]:
+    """Names that stand in code as they are, and that ROS itself would refuse otherwise."""
+    for interface in graph.interfaces:
+        if not _PACKAGE.fullmatch(interface.package):
+            yield _error(interface, f'"{interface.package}" is no name of a ROS package')
+        if not _TYPE.fullmatch(interface.type):
+            yield _error(interface, f'"{interface.type}" is no name of a ROS type')
+    named: list[tuple[ex.Located, str, str]] = [
+        *((subscription, subscription.topic, "topic") for subscription in graph.subscriptions),
+        *((publisher, publisher.topic, "topic") for publisher in graph.publishers),
+        *((client, client.identifier, "service") for client in graph.serviceClients),
+        *((client, client.identifier, "action") for client in graph.actionClients),
+    ]
+    for element, name, kind in named:
+        if not _TOPIC.fullmatch(name):
+            hint = "write letters, digits and underscores, with single slashes between them"
+            yield _error(element, f'"{name}" is no name of a ROS {kind}', hint)
+    for element, name in _fields(graph):
+        if not _FIELD.fullmatch(name):
+            yield _error(element, f'"{name}" is no name of a field in ROS')
+
+
+def _types(graph: rosgraph.RosGraph) -> Iterator[Diagnostic]:
+    """Topics with more than one type: a node of ROS 1 that speaks of such a one ends when it starts."""
+    types: dict[str, str] = {}
+    ends: list[rosgraph.Subscription | rosgraph.Publisher] = [*graph.subscriptions, *graph.publishers]
+    for end in ends:
+        kind = f"{end.interface.package}/{end.interface.type}"
+        first = types.setdefault(end.topic.removeprefix("/"), kind)
+        if kind != first:
+            hint = "give it another topic, or one type to all that is on this topic"
+            yield _error(end, f'"{end.topic}" is a topic of {first} already, and can\'t be one of {kind}', hint)
+
+
+def _fields(graph: rosgraph.RosGraph) -> Iterator[tuple[ex.Located, str]]:
+    for _, element in tree(graph):
+        if isinstance(element, rosgraph.FieldAssignment):
+            yield from ((element, name) for name in element.path)
+        elif isinstance(element, rosgraph.FieldStep):
+            yield element, element.name
+
+
+def _settings(graph: rosgraph.RosGraph, configuration: Configuration) -> Iterator[Diagnostic]:
+    yield from _outside(graph, configuration, "onShutdown", configuration.on_shutdown)
+    yield from _outside(graph, configuration, "onWithheld", configuration.on_withheld)
+    yield from _nothing_safe(graph, configuration)
+    heard = {subscription.topic.removeprefix("/") for subscription in graph.subscriptions}
+    others = [publisher.topic for publisher in graph.publishers]
+    others += [service.identifier for service in graph.serviceClients]
+    others += [action.identifier for action in graph.actionClients]
+    for topic in configuration.watchdog_ms:
+        if topic not in heard and topic in {name.removeprefix("/") for name in others}:
+            yield configuration.warning(("watchdogMs", topic), f'"watchdogMs": the node does not listen to {topic}')
+    controller = configuration.supervisor.controller
+    unused = {
+        ("supervisor", "controller"): controller.run or controller.launch,
+        ("output", "ros2SupervisorNodeLocation"): configuration.output.ros2_supervisor_node_location,
+    }
+    for place_of_key, setting in unused.items():
+        if setting:
+            yield configuration.warning(place_of_key, f'"{".".join(place_of_key)}" has no effect on this target')
+
+
+def _outside(
+    graph: rosgraph.RosGraph, configuration: Configuration, setting: str, names: Sequence[str]
+) -> Iterator[Diagnostic]:
+    """What can't be sent where a setting names it; and what is sent then, requirements or not."""
+    reasons = Reasons(graph.model)
+    for place_of_name, name in enumerate(names):
+        key = (setting, place_of_name)
+        sending = message_named(graph, name)
+        if sending is None:
+            sent = [sending.name for publisher in graph.publishers for sending in publisher.sendings]
+            hint = f"messages to the robot: {', '.join(sent)}" if sent else None
+            yield configuration.error(key, f'"{setting}": {name} is no message that the node sends', hint)
+            continue
+        for requirement in reasons.requirements(sending.event):
+            yield configuration.warning(key, f'"{setting}": {name} is sent then in spite of "{requirement}"')
+
+
+def _nothing_safe(graph: rosgraph.RosGraph, configuration: Configuration) -> Iterator[Diagnostic]:
+    """Where the robot would go on as it was told last since nothing else is sent."""
+    if not graph.publishers:
+        return
+    if configuration.watchdog_stops and not configuration.on_shutdown:
+        message = '"watchdogStops" only holds commands back: "onShutdown" names nothing that stops the robot'
+        yield configuration.warning(
+            ("watchdogStops",), message, 'name the message that stops it: "onShutdown": ["halt"]'
+        )
+    elif not configuration.says_how_to_stop:
+        message = '"onShutdown" is not set: when the node ends, the robot goes on as it was told last'
+        hint = 'name the message that stops it, as in "onShutdown": ["halt"]; where nothing can, write []'
+        yield configuration.warning(("onShutdown",), message, hint)
+    if "on_withheld" not in configuration.model_fields_set:
+        outside = _from_outside(graph)
+        for sending in (sending for publisher in graph.publishers for sending in publisher.sendings):
+            fields = [field for provided in sending.alternatives for field in provided.fields]
+            found = next((field for field in fields if is_double(field.value) and _reads(field.value, outside)), None)
+            if found is not None:
+                message = (
+                    f"{sending.name} is not sent where its {'.'.join(found.path)} is no finite number, nor is anything"
+                    " else: the robot goes on as it was told last"
+                )
+                hint = 'name what is sent then in controller-config.json, as in "onWithheld": ["halt"]; or write []'
+                yield replace(_error(found, message, hint), severity=Severity.WARNING)
+
+
+def _from_outside(graph: rosgraph.RosGraph) -> set[rosgraph.NodeVariable]:
+    """The variables that get, in one step or several, a double that the robot sent or that a division made."""
+    assignments = [
+        assignment for reaction in graph.reactions for assignment in reaction.assignments if is_double(assignment.value)
+    ]
+    found: set[rosgraph.NodeVariable] = set()
+    more = True
+    while more:
+        reached = {assignment.variable for assignment in assignments if _reads(assignment.value, found)}
+        more = not reached <= found
+        found |= reached
+    return found
+
+
+def _reads(value: ex.Expression, outside: set[rosgraph.NodeVariable]) -> bool:
+    return any(
+        (isinstance(part, rosgraph.WireAccess) and isinstance(part.type, ex.DoubleType))
+        or (isinstance(part, rosgraph.NodeVariableReference) and part.variable in outside)
+        or (isinstance(part, ex.Division) and not isinstance(part.right, (ex.IntegerLiteral, ex.DoubleLiteral)))
+        for _, part in tree(value)
+    )
+
+
+def _shared_topics(graph: rosgraph.RosGraph) -> Iterator[Diagnostic]:
+    """A message that could be two things: a layer can't hand it on as one."""
+    named: dict[str, str] = {}
+    found: list[tuple[str, Sequence[rosgraph.Reception | rosgraph.Sending]]] = [
+        *((subscription.topic, subscription.receptions) for subscription in graph.subscriptions),
+        *((publisher.topic, publisher.sendings) for publisher in graph.publishers),
+    ]
+    for topic, message in ((topic, message) for topic, messages in found for message in messages):
+        first = named.get(topic.removeprefix("/"))
+        if first is None:
+            named[topic.removeprefix("/")] = message.name
+            continue
+        text = f'{first} and {message.name} are both on "{topic}": a supervisory layer would not know which one passes'
+        yield _error(message, text, "give each a topic of its own, or make one of them", LAYER_RULE)
+
+
+def _controller(configuration: Configuration, ros: int) -> Iterator[Diagnostic]:
+    """What stands in the launch file as it is."""
+    controller = configuration.supervisor.controller
+    run, launch = controller.run, controller.launch
+    key = ("supervisor", "controller")
+    if run and launch:
+        yield configuration.error(key, '"run" and "launch" both start the controller', "leave out one of them")
+    checked: list[tuple[str, str, str | None, re.Pattern[str]]] = []
+    if run:
+        checked += [
+            ("run", "packageName", run.package_name, _PACKAGE),
+            ("run", "executable", run.executable, _EXECUTABLE),
+            ("run", "name", run.name, _NODE),
+            ("run", "namespace", run.namespace, _NAMESPACE),
+        ]
+    if launch:
+        checked += [("launch", "packageName", launch.package_name, _PACKAGE), ("launch", "file", launch.file, _FILE)]
+    for form, name, value, pattern in checked:
+        if value is not None and not pattern.fullmatch(value):
+            message = f'"{".".join((*key, form, name))}" is no name that a launch file could use'
+            yield configuration.error((*key, form, name), message)
+    if launch and ros == 1 and launch.file.endswith((".py", ".yaml")):
+        message = f'"{launch.file}" is no launch file of ROS 1'
+        yield configuration.error((*key, "launch", "file"), message, 'name one in XML, or the node itself with "run"')
+
+
+def _unused(configuration: Configuration) -> Iterator[Diagnostic]:
+    """Settings that mean nothing to a layer."""
+    settings = {
+        "retryMs": configuration.retry_ms != Configuration().retry_ms,
+        "frameId": configuration.frame_id,
+        "watchdogMs": configuration.watchdog_ms,
+        "watchdogStops": configuration.watchdog_stops,
+        "onShutdown": configuration.on_shutdown,
+        "onWithheld": configuration.on_withheld,
+        "lifecycle": configuration.lifecycle,
+    }
+    for key, used in settings.items():
+        if used:
+            yield configuration.warning((key,), f'"{key}" has no effect on this target')

@@ -1,0 +1,102 @@
+"""Renders the templates of a node: those of one ROS on top of those of both."""
+
+from __future__ import annotations
+
+import re
+import textwrap
+from typing import TYPE_CHECKING
+from xml.sax.saxutils import escape, quoteattr
+
+from jinja2 import ChoiceLoader
+
+from robosc.m2t.c.comments import comment_text, string_literal
+from robosc.m2t.templates import environment
+from robosc.semantics.definition import TRANSITIONS_KEPT
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
+
+_WIDTH = 116
+_TOKEN = re.compile(r"""\"(?:\\.|[^"\\])*"|'(?:\\.|[^'\\])*'|[][(){}]| (?!\()|(?<=\))(?=\.)""")
+_OPENING, _CLOSING = "([{", ")]}"
+
+
+def node_environment(middleware: str) -> Environment:
+    """The templates of one ROS (`robosc.m2t.ros.ros1`), on top of those of this package."""
+    templates = environment(middleware)
+    shared = environment("robosc.m2t.ros")
+    templates.loader = ChoiceLoader([loader for loader in (templates.loader, shared.loader) if loader is not None])
+    templates.filters.update(
+        literal=string_literal,
+        raw_literal=raw_literal,
+        comment=line_comment,
+        shift=shift,
+        xml=xml_text,
+        attribute=xml_attribute,
+    )
+    templates.globals["transitions_kept"] = TRANSITIONS_KEPT
+    return templates
+
+
+def line_comment(text: str, indent: int = 0) -> str:
+    """The text as comment lines of C++, wrapped; nothing in it ends them or joins them with the line after."""
+    lines = textwrap.wrap(comment_text(text), _WIDTH - indent, break_long_words=False, break_on_hyphens=False)
+    margin = " " * indent + "// "
+    return "\n".join(f"{margin}{line}{'.' if line.endswith(chr(92)) else ''}" for line in lines)
+
+
+def raw_literal(json: str) -> str:
+    """A raw string literal with JSON text in ASCII, whose strings can't end it."""
+    return 'R"json(' + json.replace(')json"', '\\u0029json"') + ')json"'
+
+
+def fold(code: str, width: int = 120) -> str:
+    """C++ code with long lines broken, at blanks outside of literals and before the calls of a chain.
+
+    A line breaks where the least brackets are open, at the last of these places that fits; comments and directives
+    stay as they are.
+    """
+    return "".join(_folded(line, width) for line in code.splitlines(keepends=True))
+
+
+def _folded(line: str, width: int) -> str:
+    made: list[str] = []
+    continued = line[: len(line) - len(line.lstrip())] + "    "
+    while (at := _break(line, width)) is not None:
+        made += [line[:at], "\n"]
+        line = continued + line[at:].lstrip()
+    return "".join([*made, line])
+
+
+def _break(line: str, width: int) -> int | None:
+    code = line.lstrip()
+    if len(line.rstrip()) <= width or code.startswith(("//", "#")):
+        return None
+    depth = 0
+    places: list[tuple[int, int]] = []
+    for token in _TOKEN.finditer(line, len(line) - len(code)):
+        if token.start() > width:
+            break
+        depth += (token[0] in _OPENING) - (token[0] in _CLOSING) if token[0] else 0
+        if not token[0].strip():
+            places.append((-depth, token.start()))
+    return max(places)[1] if places else None
+
+
+def shift(text: str, indent: int) -> str:
+    """The text with every line that is not empty so much further to the right."""
+    return textwrap.indent(text, " " * indent)
+
+
+def xml_text(text: str) -> str:
+    """The text between tags, without the characters that XML can't hold."""
+    return escape(_printable(text))
+
+
+def xml_attribute(text: str) -> str:
+    """The text as the value of an attribute, in its quotes."""
+    return quoteattr(_printable(text))
+
+
+def _printable(text: str) -> str:
+    return "".join(character for character in text if character.isprintable() or character in "\n\t")

@@ -1,0 +1,139 @@
+"""What the node tells about itself: values, data of events and states as expressions of its `Json` type."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from robosc.m2t.c.comments import string_literal
+from robosc.m2t.ros.expressions import CppPrinter, parts
+from robosc.metamodel import expression as ex
+from robosc.metamodel import rosgraph, sct
+from robosc.semantics.received import reads_elements
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from robosc.m2t.ros.names import CppNames
+
+_Path = tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Member:
+    """A part of an event's data: its path as a literal, its value. One that `reads_elements` does so by `element`."""
+
+    path: str
+    value: str
+    reads_elements: bool
+
+
+@dataclass(frozen=True)
+class EventData:
+    """Data of an event, for the event log: as one expression, or, where elements of arrays are read, member by member.
+
+    Elements that are not there are left out.
+    """
+
+    json: str
+    members: list[Member]
+
+
+@dataclass(frozen=True)
+class Component:
+    """A component in `~/state`: its name as a literal, its state, and names and values of its variables."""
+
+    name: str
+    state: str
+    variables: list[tuple[str, str]]
+
+
+def received(values: Sequence[ex.Expression], names: CppNames) -> EventData | None:
+    """What the node reads of a message, in the shape of the message; basic data is the value itself."""
+    printer = CppPrinter(names, reader="element")
+    found: dict[_Path, tuple[ex.Expression, ex.Type | None]] = {}
+    for value in values:
+        remaining = iter(parts(value))
+        for part in remaining:
+            if isinstance(part, rosgraph.ConversionCall):
+                kind = ex.EnumerationType(enumeration=part.conversion.enumeration)
+                found.setdefault(_path(next(remaining)), (part, kind))  # its argument follows
+            elif isinstance(part, rosgraph.WireAccess):
+                found.setdefault(_path(part), (part, part.type))
+    if not found:
+        return None
+    if list(found) == [("data",)]:
+        found = {(): found["data",]}
+    texts = {path: _json(printer(part), kind, names) for path, (part, kind) in found.items()}
+    reading = {path for path, (part, _) in found.items() if reads_elements(part)}
+    if not reading:
+        return EventData(_nested(texts), [])
+    return EventData("", [Member(_dotted(path), texts[path], path in reading) for path in _grouped(texts)])
+
+
+def component(plant: sct.Plant, variables: Sequence[rosgraph.NodeVariable], names: CppNames) -> Component:
+    """A component with the variables that the supervisor and the node keep for it."""
+    if len(plant.locations) == 1:
+        state = string_literal(plant.locations[0].name)
+    else:
+        state = f"{names.c.lookup(plant)}({names.state(plant)})"
+    return Component(
+        string_literal(plant.origin or plant.name),
+        state,
+        [
+            *(
+                (string_literal(variable.name), _json(_state(variable, names), variable.type, names))
+                for variable in plant.variables
+            ),
+            *(
+                (string_literal(variable.name), _json(f"data_.{names.variable(variable)}", variable.type, names))
+                for variable in variables
+            ),
+        ],
+    )
+
+
+def _state(variable: sct.DiscreteVariable, names: CppNames) -> str:
+    return f"Integer({names.state(variable)})" if isinstance(variable.type, ex.IntegerType) else names.state(variable)
+
+
+def _json(value: str, kind: ex.Type | None, names: CppNames) -> str:
+    if isinstance(kind, ex.EnumerationType):
+        return f"{names.literal_name(kind.enumeration)}({value})"
+    return value
+
+
+def _path(access: ex.Expression) -> _Path:
+    assert isinstance(access, rosgraph.WireAccess)
+    return tuple(
+        step.name if isinstance(step, rosgraph.FieldStep) else str(step.index)  # type: ignore[attr-defined]
+        for step in access.steps
+    )
+
+
+def _dotted(path: _Path) -> str:
+    return string_literal(".".join(path))
+
+
+def _grouped(paths: Iterable[_Path]) -> list[_Path]:
+    """The paths, those of one object behind each other, objects where their first member was."""
+    heads: dict[_Path, list[_Path]] = {}
+    for path in paths:
+        heads.setdefault(path[:1], []).append(path)
+    return [
+        head + rest
+        for head, found in heads.items()
+        for rest in ([()] if found == [head] else _grouped(path[1:] for path in found))
+    ]
+
+
+def _nested(texts: Mapping[_Path, str]) -> str:
+    if () in texts:
+        return texts[()]
+    inner = {
+        head: {path[1:]: text for path, text in texts.items() if path[0] == head}
+        for head in dict.fromkeys(path[0] for path in texts)
+    }
+    return "Json::object()" + "".join(
+        f".add({string_literal(head)}, {_nested(below)})" for head, below in inner.items()
+    )

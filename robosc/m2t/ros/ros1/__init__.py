@@ -1,0 +1,88 @@
+"""What is ROS 1's own about a package: catkin, launch files in XML, callback queues."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from robosc.m2t.ros.packages import controller_package, launch_path
+from robosc.metamodel import rosgraph
+from robosc.semantics.naming import below_layer
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from robosc.configuration import Configuration
+    from robosc.m2t.ros.layer import LayerNode
+    from robosc.m2t.ros.node import Node
+
+#: The topics of an action: what ROS 1 re-maps is these, not the action's own name.
+_ACTION = ("goal", "cancel", "status", "feedback", "result")
+
+
+class Ros1:
+    """ROS 1, as `robosc.m2t.ros.packages.Middleware` asks for it."""
+
+    version: ClassVar[int] = 1
+    launch_file: ClassVar[str] = ".launch"
+    test_files: ClassVar[Mapping[str, str]] = {
+        "Dockerfile": "Dockerfile.j2",
+        "test/play_trace.py": "play_trace.py.j2",
+        "test/play_trace.test": "play_trace.test.j2",
+    }
+
+    def header(self, interface: rosgraph.Interface) -> str:
+        """The header of a type: `std_srvs/SetBool.h`, and of an action `nav2_msgs/NavigateToPoseAction.h`."""
+        action = "Action" if interface.kind == rosgraph.InterfaceKind.action else ""
+        return f"{interface.package}/{interface.type}{action}.h"
+
+    def controller(self, node: Node, configuration: Configuration, types: set[str], *, tests: bool) -> dict[str, Any]:
+        """What only the templates of a controller read; `types` are the packages of the types that it uses."""
+        libraries = {"rosconsole", "roscpp", "xmlrpcpp", *(["actionlib"] if node.actions else [])}
+        return {
+            "headers": self._headers(node, {"ros/callback_queue.h"}, strings=configuration.publish_state_information),
+            **_build(libraries | types, set(), ["rosgraph_msgs", "rospy", "rostest"] if tests else []),
+            "threads": True,
+            "names": list(_names(node)),
+        }
+
+    def layer(self, layer: LayerNode, configuration: Configuration, types: set[str]) -> dict[str, Any]:
+        """What only the templates of a layer read; `types` are the packages of the types that it uses."""
+        dependencies = {"rosconsole", "roscpp", *types, *(["actionlib_msgs"] if layer.actions else [])}
+        strings = bool(layer.gates) or configuration.publish_state_information
+        run = configuration.supervisor.controller.run
+        return {
+            "headers": self._headers(
+                layer.node, {"ros/callback_queue.h"} if layer.services else set(), strings=strings
+            ),
+            **_build(dependencies, controller_package(configuration) - dependencies),
+            "threads": bool(layer.services),
+            "names": [(name, below_layer(name)) for name in layer.remapped(_ACTION)],
+            "launch_path": launch_path(configuration),
+            # ROS 1 wants a name for the controller's node: the one in the configuration, else the executable's.
+            "controller_node": run and (run.name or re.sub(r"\W", "_", run.executable.partition(".")[0])),
+            "controller_side": lambda name: f"/{below_layer(name)}",
+        }
+
+    def _headers(self, node: Node, own: set[str], *, strings: bool) -> list[str]:
+        reports = {"std_msgs/String.h"} if strings else set()
+        return sorted({self.header(interface) for interface in node.interfaces} | reports | own | {"ros/ros.h"})
+
+
+def _build(dependencies: set[str], started: set[str], tested: Sequence[str] = ()) -> dict[str, Any]:
+    """What the build files read: the packages that a node is built with, that it is started with, of its tests."""
+    built = sorted(dependencies)
+    depends = [("build_", built), ("exec_", [*built, *sorted(started)]), ("test_", tested)]
+    return {"build_tool": "catkin", "dependencies": built, "package_depends": depends}
+
+
+def _names(node: Node) -> Iterator[tuple[str, str, str, list[str]]]:
+    """What a launch file re-maps, each name once: its kind, a word for it, the name, the ends of what it stands for."""
+    topics = {topic.topic: topic.word for topic in node.subscriptions}
+    topics |= {topic.topic: topic.word for topic in node.publishers}
+    for topic, word in topics.items():
+        yield "topic", word, topic, [""]
+    for service in node.services:
+        yield "service", service.word, service.name, [""]
+    for action in node.actions:
+        yield "action", action.word, action.name, [f"/{part}" for part in _ACTION]

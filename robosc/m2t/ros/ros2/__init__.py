@@ -1,0 +1,117 @@
+"""What is ROS 2's own about a package: ament, launch files in Python, components, qualities of service."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from robosc.configuration import QualityOfService
+from robosc.m2t.ros.packages import controller_package, launch_path
+from robosc.semantics.naming import below_layer
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Mapping, Sequence
+
+    from robosc.configuration import Configuration
+    from robosc.m2t.ros.layer import Inward, LayerNode, Outward
+    from robosc.m2t.ros.node import Node, Subscription
+    from robosc.metamodel import rosgraph
+
+_FOLDERS = {"message": "msg", "service": "srv", "action": "action"}
+#: The services and topics of an action: what a layer re-maps is these, not the action's own name.
+_ACTION = [f"_action/{part}" for part in ("send_goal", "cancel_goal", "get_result", "feedback", "status")]
+_TESTED = ["launch_testing", "launch_testing_ament_cmake", "rclpy", "rosgraph_msgs"]
+_DEPTH = 10
+_DURABILITY = {None: "", "volatile": ".durability_volatile()", "transient_local": ".transient_local()"}
+
+
+class Ros2:
+    """ROS 2, as `robosc.m2t.ros.packages.Middleware` asks for it."""
+
+    version: ClassVar[int] = 2
+    launch_file: ClassVar[str] = ".launch.py"
+    test_files: ClassVar[Mapping[str, str]] = {
+        "Dockerfile": "Dockerfile.j2",
+        "test/play_trace.py": "play_trace.py.j2",
+        "test/test_trace.py": "test_trace.py.j2",
+    }
+
+    def header(self, interface: rosgraph.Interface) -> str:
+        """The header of a type, in the spelling of rosidl (`LaserScan`: `sensor_msgs/msg/laser_scan.hpp`)."""
+        words = re.sub(r"(.)([A-Z][a-z]+)", r"\1_\2", interface.type)
+        name = re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", words).lower()
+        return f"{interface.package}/{_FOLDERS[interface.kind.name]}/{name}.hpp"
+
+    def controller(self, node: Node, configuration: Configuration, types: set[str], *, tests: bool) -> dict[str, Any]:
+        """What only the templates of a controller read; `types` are the packages of the types that it uses."""
+        headers: set[str] = set()
+        libraries, started = ["rclcpp"], ["launch", "launch_ros"]
+        if node.actions:
+            libraries.append("rclcpp_action")
+            types = types | {"action_msgs"}
+        if configuration.lifecycle:
+            libraries.append("rclcpp_lifecycle")
+            started.append("lifecycle_msgs")
+            headers = {"rclcpp_lifecycle/lifecycle_node.hpp", "rclcpp_lifecycle/lifecycle_publisher.hpp"}
+        return {
+            "headers": self._headers(node, headers, strings=configuration.publish_state_information),
+            **_build(libraries, types, started, _TESTED if tests else []),
+            "subscription_qos": lambda topic: _quality(_usual(topic), topic.topic, configuration),
+            "publisher_qos": lambda topic: _quality(f"rclcpp::QoS({_DEPTH})", topic.topic, configuration),
+            "service_qos": lambda client: _quality("rclcpp::ServicesQoS()", client.name, configuration),
+            "action_qos": lambda client: _quality(f"rclcpp::QoS({_DEPTH})", client.name, configuration),
+        }
+
+    def layer(self, layer: LayerNode, configuration: Configuration, types: set[str]) -> dict[str, Any]:
+        """What only the templates of a layer read; `types` are the packages of the types that it uses."""
+        types = types | ({"action_msgs"} if layer.actions else set())
+        strings = bool(layer.gates) or configuration.publish_state_information
+        return {
+            "headers": self._headers(layer.node, set(), strings=strings),
+            **_build(["rclcpp"], types, {"launch", "launch_ros", *controller_package(configuration)}),
+            "names": layer.remapped(_ACTION),
+            "launch_path": launch_path(configuration),
+            "controller_side": lambda name: f"~/{below_layer(name)}",
+            # The durability of what is handed on is that of who publishes.
+            "received_qos": lambda topic: _quality(_usual(topic), topic.topic, configuration, with_durability=False),
+            "sent_qos": lambda topic: f"rclcpp::QoS({_chosen(topic.topic, configuration).depth or _DEPTH})",
+            "service_qos": lambda call: _quality("rclcpp::ServicesQoS()", call.name, configuration),
+            "action_qos": lambda call: _quality(f"rclcpp::QoS({_DEPTH})", call.name, configuration),
+        }
+
+    def _headers(self, node: Node, own: set[str], *, strings: bool) -> list[str]:
+        always = {"rclcpp/rclcpp.hpp", "rclcpp_components/register_node_macro.hpp"}
+        reports = {"std_msgs/msg/string.hpp"} if strings else set()
+        return sorted({self.header(interface) for interface in node.interfaces} | reports | own | always)
+
+
+def _build(
+    libraries: Sequence[str], types: set[str], started: Collection[str], tested: Sequence[str] = ()
+) -> dict[str, Any]:
+    """What the build files read: the libraries of the node, the packages of its types, of its start, of its tests."""
+    dependencies = sorted({*libraries, "rclcpp_components", *types})
+    return {
+        "build_tool": "ament_cmake",
+        "dependencies": dependencies,
+        "messages": sorted(types),
+        "libraries": [f"{library}::{library}" for library in libraries],
+        "package_depends": [("", dependencies), ("exec_", sorted(started)), ("test_", tested)],
+    }
+
+
+def _usual(topic: Subscription | Inward | Outward) -> str:
+    """The quality of service in which messages of a topic are received, where the configuration says nothing."""
+    return "rclcpp::SensorDataQoS()" if topic.interface.package == "sensor_msgs" else f"rclcpp::QoS({_DEPTH})"
+
+
+def _chosen(name: str, configuration: Configuration) -> QualityOfService:
+    """What the configuration says of a topic, service or action."""
+    return configuration.qos.get(name.removeprefix("/")) or QualityOfService()
+
+
+def _quality(usual: str, name: str, configuration: Configuration, *, with_durability: bool = True) -> str:
+    """A quality of service as C++: what is usual, and what the configuration says of this name."""
+    chosen = _chosen(name, configuration)
+    depth = f".keep_last({chosen.depth})" if chosen.depth else ""
+    reliability = f".{chosen.reliability}()" if chosen.reliability else ""
+    return usual + depth + reliability + (_DURABILITY[chosen.durability] if with_durability else "")
