@@ -153,7 +153,7 @@ OPENERS = {
     "metamodel.stubs",
     "node_tests.trace_test",
     "runtime.ros2.interfaces",  # a tool of its own, whose files are made for the generators
-    "runtime.core.reports",  # what `output` has opened
+    "runtime.core.event_log",  # what `output` has opened
     "node_tests.trace_player",  # ships with generated packages, and sees nothing of ours
     "analysis.verify.c_validation",  # a temporary folder
 }

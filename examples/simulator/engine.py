@@ -12,8 +12,8 @@ from pathlib import Path
 
 import robosc
 from robosc import configuration as config
-from robosc.runtime.core.agenda import Agenda
 from robosc.runtime.core.controller import Controller
+from robosc.runtime.core.event_loop import EventLoop
 from robosc.runtime.core.layer import Layer
 from robosc.runtime.core.port import Outcome
 from robosc.runtime.core.settings import Settings, controller_parameters, layer_parameters
@@ -78,10 +78,10 @@ class Node:
 
     def __init__(self, simulation, models, configuration, log, kind=Controller):
         graph = models.rosgraph
-        self._agenda = Agenda(lambda: simulation.time)
+        self._event_loop = EventLoop(lambda: simulation.time)
         self._port = WorldPort(simulation)
         parameters = {each.name: each.default for each in controller_parameters(graph, configuration, str(log))}
-        self._controller = kind(graph, Settings(parameters, configuration), self._port, self._agenda)
+        self._controller = kind(graph, Settings(parameters, configuration), self._port, self._event_loop)
         self._subscriptions = {each.topic: each for each in graph.subscriptions}
         self._controller.start()
 
@@ -91,11 +91,11 @@ class Node:
             self._port.take(item)
         elif item.topic in self._subscriptions:
             subscription, message = self._subscriptions[item.topic], Received(item.data)
-            self._agenda.post(lambda: self._controller.receive(subscription, message))
+            self._event_loop.post(lambda: self._controller.receive(subscription, message))
 
     def work(self):
         """Does all that is due now."""
-        while self._agenda.work() == 0.0:
+        while self._event_loop.run_pending() == 0.0:
             pass
 
     def flush(self):
@@ -113,8 +113,8 @@ class SupervisedNode:
         self._controller = Node(self, load(behind), config_beside(behind), "")
         configuration = config_beside(model_of(scenario))
         parameters = {each.name: each.default for each in layer_parameters(graph, configuration, str(log))}
-        self._agenda = Agenda(lambda: simulation.time)
-        self._layer = Layer(graph, Settings(parameters, configuration), WorldPort(simulation), self._agenda)
+        self._event_loop = EventLoop(lambda: simulation.time)
+        self._layer = Layer(graph, Settings(parameters, configuration), WorldPort(simulation), self._event_loop)
         self._subscriptions = {each.topic: each for each in graph.subscriptions}
         self._sendings = {each.topic: each.sendings[0] for each in graph.publishers}
         self._layer.start()
@@ -127,7 +127,7 @@ class SupervisedNode:
     def take(self, item):
         """Takes a message: first to the layer, then to the controller."""
         if item.topic in self._subscriptions:
-            self._layer.hear(self._subscriptions[item.topic], Received(item.data))
+            self._layer.receive(self._subscriptions[item.topic], Received(item.data))
             self._controller.take(item)
 
     def receive(self, topic, data):
@@ -137,7 +137,7 @@ class SupervisedNode:
 
     def work(self):
         """Does all that is due now."""
-        self._agenda.work()
+        self._event_loop.run_pending()
         self._controller.work()
 
     def flush(self):
@@ -195,15 +195,15 @@ class WorldPort:
         else:
             handlers.ended(OUTCOMES[news.what], Received(news.data), "")
 
-    def tell(self, what, text):
+    def publish_report(self, name, text):
         """Nobody listens."""
 
-    def listeners(self, what):
+    def report_listeners(self, name):
         """Nobody."""
-        del what
+        del name
         return 0
 
-    def wiring(self):
+    def endpoints(self):
         """All fits."""
         return {}
 

@@ -78,8 +78,8 @@ def command(
 
 def _run(models: Models, configuration: Configuration, version: int, arguments: Sequence[str], *, layer: bool) -> None:
     from robosc.m2t.ros.events import message_named
+    from robosc.runtime.core.node import StartError
     from robosc.runtime.core.settings import SafeMessages
-    from robosc.runtime.core.starting import StartError
     from robosc.runtime.node import run_controller, run_layer
 
     graph = models.rosgraph

@@ -30,7 +30,7 @@ class RunningGoal:
 
 
 class Robot:
-    """A port (`robosc.runtime.core.port.Port`) whose servers are there and wait to be told what to answer."""
+    """A port (`robosc.runtime.core.port.ControllerPort`) whose servers are there and wait to be told what to answer."""
 
     def __init__(self, graph: rosgraph.RosGraph, distribution: RosDistribution, clock: Callable[[], float]) -> None:
         self.now = clock
@@ -98,15 +98,15 @@ class Robot:
                 del self.goals[client]
                 goal.handlers.ended(Outcome.CANCELLED, None, "")
 
-    def tell(self, what: str, text: str) -> None:
+    def publish_report(self, name: str, text: str) -> None:
         """Nobody listens to reports."""
 
-    def listeners(self, what: str) -> int:
+    def report_listeners(self, name: str) -> int:
         """Nobody listens to reports."""
-        del what
+        del name
         return 0
 
-    def wiring(self) -> dict[rosgraph.Subscription | rosgraph.Publisher, list[Endpoint]]:
+    def endpoints(self) -> dict[rosgraph.Subscription | rosgraph.Publisher, list[Endpoint]]:
         """Nobody else is there."""
         return {}
 

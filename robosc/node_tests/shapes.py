@@ -15,7 +15,7 @@ from robosc.ros_types.wire import Basic, Nested, Sequence
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
-    from robosc.runtime.core.json_text import Json
+    from robosc.runtime.core.event_log import Json
 
 #: Elements of an array that a walk makes at most.
 LONGEST = 10_000

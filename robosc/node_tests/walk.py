@@ -13,12 +13,11 @@ from robosc.node_tests.samples import Incoming, Values, find_samples, incoming, 
 from robosc.node_tests.shapes import Leaf, message, nested
 from robosc.node_tests.trace_player import START, between, just_after
 from robosc.ros_types import Section
-from robosc.runtime.core.agenda import Agenda
 from robosc.runtime.core.controller import Controller
-from robosc.runtime.core.json_text import json_text
+from robosc.runtime.core.event_log import EventLog, ReceivedData, json_text
+from robosc.runtime.core.event_loop import EventLoop
 from robosc.runtime.core.node_data import NodeData
 from robosc.runtime.core.port import Outcome
-from robosc.runtime.core.reports import ReceivedData
 from robosc.runtime.core.settings import Settings, controller_parameters
 from robosc.semantics.roles import event_name
 
@@ -52,28 +51,22 @@ def parameters(graph: rosgraph.RosGraph, configuration: Configuration) -> dict[s
     return {"period_ms": period, **rounded, "watchdog_stops": False}
 
 
-class _Lines:
+class _Lines(EventLog):
     """Keeps the lines of a log until they are taken."""
 
-    def __init__(self) -> None:
-        self._lines: list[str] = []
+    active = True
 
-    def write(self, line: str) -> None:
-        self._lines.append(line.removesuffix("\n"))
+    def __init__(self) -> None:
+        super().__init__("")
+        self._kept: list[str] = []
+
+    def append(self, line: str) -> None:
+        self._kept.append(line.removesuffix("\n"))
 
     def taken(self) -> list[str]:
         """The lines since the last time."""
-        lines, self._lines = self._lines, []
+        lines, self._kept = self._kept, []
         return lines
-
-    def lost(self) -> int:
-        return 0
-
-    def flush(self) -> None:
-        """Nothing waits."""
-
-    def close(self) -> None:
-        """Nothing is open."""
 
 
 class Walk:
@@ -101,40 +94,40 @@ class Walk:
         declared = {each.name: each.default for each in controller_parameters(self._graph, self._configuration, "")}
         settings = Settings(declared | self._parameters, self._configuration)
         robot = Robot(self._graph, self._distribution, lambda: self._now)
-        agenda = Agenda(lambda: self._now)
+        event_loop = EventLoop(lambda: self._now)
         lines = _Lines()
-        controller = Controller(self._graph, settings, robot, agenda)
+        controller = Controller(self._graph, settings, robot, event_loop)
         controller.log_to(lines)
         controller.start()
         try:
-            yield from self._went(stimuli, controller, robot, agenda, lines.taken)
+            yield from self._went(stimuli, controller, robot, event_loop, lines.taken)
         finally:
             controller.close()
 
     def _went(
-        self, stimuli: int, controller: Controller, robot: Robot, agenda: Agenda, new: Callable[[], list[str]]
+        self, stimuli: int, controller: Controller, robot: Robot, event_loop: EventLoop, new: Callable[[], list[str]]
     ) -> Iterator[str]:
         for _ in range(stimuli):
-            self._pass_period(agenda)
+            self._pass_period(event_loop)
             robot.end_cancelled()
-            _work(agenda)
+            _work(event_loop)
             yield from new()
             for _ in range(self._choice.choice((1, 1, 1, 1, 2))):
                 sent = self._stimulate(controller, robot)
-                _work(agenda)
+                _work(event_loop)
                 first, *rest = new() or [""]
                 if first:
                     yield first if sent is None else f'{first[:-1]},"message":{json_text(sent)}}}'
                 yield from rest
-        self._pass_period(agenda)
+        self._pass_period(event_loop)
         yield from new()
 
-    def _pass_period(self, agenda: Agenda) -> None:
+    def _pass_period(self, event_loop: EventLoop) -> None:
         """As the player lets it pass."""
         self._tick += 1
         for time_of in (just_after, between):
             self._now = time_of(self._tick, self._period)
-            _work(agenda)
+            _work(event_loop)
 
     def _stimulate(self, controller: Controller, robot: Robot) -> dict[str, Any] | None:
         """Something comes in; the fields of what it is, None where it has none."""
@@ -225,6 +218,6 @@ class Walk:
             yield action.interface, Section.RESULT, [action.response]
 
 
-def _work(agenda: Agenda) -> None:
-    while agenda.work() == 0:
+def _work(event_loop: EventLoop) -> None:
+    while event_loop.run_pending() == 0:
         pass

@@ -15,7 +15,7 @@ from robosc.diagnostics.visible import HIDDEN
 from robosc.files.json_reading import JsonError, json_value
 from robosc.metamodel import sct
 from robosc.node_tests.trace_player import TraceError, read_trace
-from robosc.runtime.core.reports import EventLog
+from robosc.runtime.core.event_log import EventLog
 from robosc.simulation.script import read_script
 
 if TYPE_CHECKING:

@@ -9,8 +9,9 @@ from robosc.node_tests.shapes import message
 from robosc.node_tests.trace_player import START, Port, cancelled, leaves
 from robosc.node_tests.walk import Walk, parameters
 from robosc.ros_types import RosTypes
-from robosc.runtime.core.agenda import Agenda
 from robosc.runtime.core.controller import Controller
+from robosc.runtime.core.event_log import EventLog
+from robosc.runtime.core.event_loop import EventLoop
 from robosc.runtime.core.port import Outcome
 from robosc.runtime.core.settings import Settings, controller_parameters
 
@@ -55,20 +56,17 @@ class _Robot(Robot):
         return made
 
 
-class _AtOnce:
+class _AtOnce(EventLog):
     """Writes a line of a log to the file before anything else happens."""
 
+    active = True
+
     def __init__(self, path: Path) -> None:
+        super().__init__("")
         self._file = path.open("a", encoding="utf-8", buffering=1)
 
-    def write(self, line: str) -> None:
+    def append(self, line: str) -> None:
         self._file.write(line)
-
-    def lost(self) -> int:
-        return 0
-
-    def flush(self) -> None:
-        self._file.flush()
 
     def close(self) -> None:
         self._file.close()
@@ -87,10 +85,10 @@ class InProcessNode(Port):
         self._incoming = Walk(graph, configuration, distribution, 1).incoming
         self._robot = _Robot(graph, distribution, lambda: self._now)
         self._robot.port = self
-        self._agenda = Agenda(lambda: self._now)
+        self._event_loop = EventLoop(lambda: self._now)
         values = {each.name: each.default for each in controller_parameters(graph, configuration, "")}
         settings = Settings(values | parameters(graph, configuration), configuration)
-        self._controller = Controller(graph, settings, self._robot, self._agenda)
+        self._controller = Controller(graph, settings, self._robot, self._event_loop)
         self._controller.log_to(_AtOnce(log))
 
     def connect(self) -> None:
@@ -130,5 +128,5 @@ class InProcessNode(Port):
         return message(self._incoming[event].fields, dict(leaves(fields)) if fields else {})
 
     def _work(self) -> None:
-        while self._agenda.work() == 0:
+        while self._event_loop.run_pending() == 0:
             pass

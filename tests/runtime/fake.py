@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import robosc
 from robosc.configuration import Configuration
-from robosc.runtime.core.agenda import Agenda
 from robosc.runtime.core.controller import Controller
+from robosc.runtime.core.event_loop import EventLoop
 from robosc.runtime.core.settings import SafeMessages, Settings, controller_parameters
 
 if TYPE_CHECKING:
@@ -59,7 +59,7 @@ class FakePort:
     goals: list[FakeGoal] = field(default_factory=list)
     told: list[tuple[str, str]] = field(default_factory=list)
     said: list[str] = field(default_factory=list)
-    endpoints: dict[Any, list[Endpoint]] = field(default_factory=dict)
+    others: dict[Any, list[Endpoint]] = field(default_factory=dict)
     hearing: int = 1
 
     def now(self) -> float:
@@ -90,14 +90,14 @@ class FakePort:
         self.goals.append(FakeGoal(handlers, goal))
         return self.goals[-1]
 
-    def tell(self, what: str, text: str) -> None:
-        self.told.append((what, text))
+    def publish_report(self, name: str, text: str) -> None:
+        self.told.append((name, text))
 
-    def listeners(self, what: str) -> int:
+    def report_listeners(self, name: str) -> int:
         return self.hearing
 
-    def wiring(self) -> dict[Any, list[Endpoint]]:
-        return self.endpoints
+    def endpoints(self) -> dict[Any, list[Endpoint]]:
+        return self.others
 
     def info(self, text: str) -> None:
         self.said.append(text)
@@ -111,13 +111,15 @@ class World:
     def __init__(self, model: Path, log: Path, configuration: Configuration | None = None, **parameters: Any) -> None:
         self.graph = supervised(model)
         self.port = FakePort()
-        self.agenda = Agenda(lambda: self.port.time)
+        self.event_loop = EventLoop(lambda: self.port.time)
         self.log = log
         chosen = configuration or Configuration()
         values = {each.name: each.default for each in controller_parameters(self.graph, chosen, str(log))}
         sendings = {each.name: each for topic in self.graph.publishers for each in topic.sendings}
         safe = SafeMessages(*([sendings[name] for name in names] for names in (chosen.on_shutdown, chosen.on_withheld)))
-        self.controller = Controller(self.graph, Settings(values | parameters, chosen), self.port, self.agenda, safe)
+        self.controller = Controller(
+            self.graph, Settings(values | parameters, chosen), self.port, self.event_loop, safe
+        )
 
     def start(self) -> World:
         self.controller.start()
@@ -127,12 +129,12 @@ class World:
         """Lets time pass, in steps no longer than what is planned."""
         until = self.port.time + seconds
         while True:
-            left = self.agenda.work()
+            left = self.event_loop.run_pending()
             if left is None or self.port.time + left > until:
                 break
             self.port.time += left
         self.port.time = until
-        self.agenda.work()
+        self.event_loop.run_pending()
 
     def hear(self, topic: str, **fields: Any) -> None:
         subscription = next(each for each in self.graph.subscriptions if each.topic.removeprefix("/") == topic)

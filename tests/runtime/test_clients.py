@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robosc.runtime.core.agenda import Agenda
 from robosc.runtime.core.clients import ActionClient, Answers, ServiceClient
+from robosc.runtime.core.event_loop import EventLoop
 from robosc.runtime.core.port import Outcome
 from tests.runtime.fake import FakePort
 
@@ -22,12 +22,12 @@ class Bench:
 
     def __init__(self, kind: type[ServiceClient] | type[ActionClient]) -> None:
         self.port = FakePort(time=0.5)
-        self.agenda = Agenda(lambda: self.port.time)
+        self.event_loop = EventLoop(lambda: self.port.time)
         self.told: list[tuple[str, Any]] = []
         self.inside = False
         answers = Answers(*(self._hear(each) for each in ("response", "error", "feedback")), self._ended)
         client: Any = SimpleNamespace(identifier="/light")
-        self.client = kind(self.port, self.agenda, client, TIMEOUT, answers)
+        self.client = kind(self.port, self.event_loop, client, TIMEOUT, answers)
 
     def _hear(self, what: str) -> Any:
         def hear(value: Any) -> None:
@@ -44,14 +44,14 @@ class Bench:
         self.inside = True
         action()
         self.inside = False
-        self.agenda.work()
+        self.event_loop.run_pending()
 
     def wait(self, seconds: float) -> None:
         until = self.port.time + seconds
-        while (left := self.agenda.work()) is not None and self.port.time + left <= until:
+        while (left := self.event_loop.run_pending()) is not None and self.port.time + left <= until:
             self.port.time += left
         self.port.time = until
-        self.agenda.work()
+        self.event_loop.run_pending()
 
 
 def test_an_answer_in_time_is_the_response_and_a_second_one_nothing() -> None:

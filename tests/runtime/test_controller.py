@@ -143,7 +143,7 @@ def travelling(world: World) -> None:
     world.hear("travel_order", data=True)
     world.wait(0.15)
     world.port.goals[0].handlers.accepted()
-    world.agenda.work()
+    world.event_loop.run_pending()
 
 
 def test_a_silent_topic_trips_the_watchdog_and_speaking_again_ends_it(make: Callable[..., World]) -> None:
@@ -251,7 +251,7 @@ def test_wiring_is_reported_by_name_and_once(make: Callable[..., World]) -> None
     world = make()
     scan, other = world.graph.subscriptions[0], world.graph.publishers[0]
     fits = Endpoint("/camera", world.port.type_name(scan.interface), "it is best effort")
-    world.port.endpoints = {
+    world.port.others = {
         scan: [Endpoint("/lidar", "std_msgs/Empty"), fits],
         other: [
             Endpoint("/teleop", world.port.type_name(other.interface)),
@@ -316,7 +316,7 @@ def test_what_goes_out_is_what_is_logged(steps: list[tuple[str, int]], tmp_path:
             world.port.goals[-1].handlers.accepted()
         elif world.port.goals and step == "end":
             world.port.goals[-1].handlers.ended(list(Outcome)[number % 3], None, "")
-        world.agenda.work()
+        world.event_loop.run_pending()
     world.controller.stop()
     count = len(world.port.sent)
     world.wait(3)

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robosc.runtime.core.fields import NotFiniteError, fill
+from robosc.runtime.core.node_data import NotFiniteError, fill
 from tests.runtime.fake import FakePort, Record
 
 BOUNDS = {

@@ -11,7 +11,7 @@ from jsonschema import Draft202012Validator
 
 from robosc.configuration import Configuration
 from robosc.files.resources import locate
-from robosc.runtime.core.agenda import Agenda
+from robosc.runtime.core.event_loop import EventLoop
 from robosc.runtime.core.layer import Layer
 from robosc.runtime.core.settings import Settings, layer_parameters
 from tests.runtime.fake import FakePort, Record, supervised
@@ -29,11 +29,11 @@ class Passage:
     def __init__(self, log: Path, model: Path = USHER) -> None:
         self.graph = supervised(model)
         self.port = FakePort()
-        self.agenda = Agenda(lambda: self.port.time)
+        self.event_loop = EventLoop(lambda: self.port.time)
         self.log = log
         configuration = Configuration()
         values = {each.name: each.default for each in layer_parameters(self.graph, configuration, str(log))}
-        self.layer = Layer(self.graph, Settings(values, configuration), self.port, self.agenda)
+        self.layer = Layer(self.graph, Settings(values, configuration), self.port, self.event_loop)
         (self.action,) = self.graph.actionClients
         (self.service,) = self.graph.serviceClients
         self.cancelled = 0
@@ -45,7 +45,7 @@ class Passage:
 
     def hear(self, topic: str, **fields: Any) -> None:
         subscription = next(each for each in self.graph.subscriptions if each.topic == topic)
-        self.layer.hear(subscription, Record(**fields))
+        self.layer.receive(subscription, Record(**fields))
 
     def sending(self, name: str) -> rosgraph.Sending:
         sendings = [each for publisher in self.graph.publishers for each in publisher.sendings]
@@ -146,7 +146,7 @@ def test_what_can_not_be_read_counts_as_not_received(tmp_path: Path) -> None:
 
 
 def test_who_is_turned_away_is_told_busy(passage: Passage) -> None:
-    passage.layer.turn_away(passage.sending("light"))
+    passage.layer.reject(passage.sending("light"))
     (report,) = passage.blocked()
     assert (report["reason"], report["because"]) == ("busy", [])
 

@@ -1,4 +1,4 @@
-"""Services and actions as the model sees them: what is sent is answered exactly once, in time."""
+"""Clients of services and actions: every call and goal comes to exactly one end, in time."""
 
 from __future__ import annotations
 
@@ -12,17 +12,19 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from robosc.metamodel import rosgraph
-    from robosc.runtime.core.agenda import Agenda, Appointment
-    from robosc.runtime.core.port import Calling, Goal, Message, Port
+    from robosc.runtime.core.event_loop import EventLoop, Timer
+    from robosc.runtime.core.port import ControllerPort, Goal, Message, Port
 
-_WATCH = 0.05
+#: Seconds from one look for a server to the next.
+POLL = 0.05
 #: Seconds after its time for acceptance is over in which a goal may still begin; then it counts as lost.
-_LOST = 30.0
+LOST = 30.0
+REFUSED = "the server refuses to cancel the goal"
 
 
 @dataclass(frozen=True)
 class Answers:
-    """What a client tells, never from inside what it is asked to do. `error`: why nothing good came of it.
+    """What a client calls, never before what was asked of it returns. `error` gets the reason.
 
     Of an action: any number of `feedback`, then one of the others; `ended`: the goal that was cancelled is over.
     """
@@ -37,15 +39,15 @@ class ServiceClient:
     """A client of one service: no server, a failed call, no answer in time are errors; what comes late is dropped."""
 
     def __init__(
-        self, port: Calling, agenda: Agenda, client: rosgraph.ServiceClient, timeout: float, answers: Answers
+        self, port: Port, event_loop: EventLoop, client: rosgraph.ServiceClient, timeout: float, answers: Answers
     ) -> None:
         self._port = port
-        self._agenda = agenda
+        self._event_loop = event_loop
         self._client = client
         self._timeout = timeout
         self._answers = answers
         self._number = 0
-        self._deadline: Appointment | None = None
+        self._deadline: Timer | None = None
         self._unanswered = ""
 
     @property
@@ -58,7 +60,7 @@ class ServiceClient:
         self.give_up()
         number = self._number
         self._unanswered = "no server"
-        self._deadline = self._agenda.after(self._timeout, lambda: self._expire(number))
+        self._deadline = self._event_loop.call_later(self._timeout, lambda: self._expire(number))
         self._look(number, request)
 
     def _look(self, number: int, request: Message) -> None:
@@ -66,12 +68,12 @@ class ServiceClient:
         if number != self._number:
             return
         if not self._port.is_served(self._client):
-            self._agenda.after(_WATCH, lambda: self._look(number, request))
+            self._event_loop.call_later(POLL, lambda: self._look(number, request))
             return
         self._unanswered = "no answer"
         handlers = CallHandlers(
-            lambda response: self._agenda.post(lambda: self._succeed(number, response)),
-            lambda why: self._agenda.post(lambda: self._failed(number, why)),
+            lambda response: self._event_loop.post(lambda: self._succeed(number, response)),
+            lambda why: self._event_loop.post(lambda: self._failed(number, why)),
         )
         try:
             self._port.call(self._client, request, handlers)
@@ -82,7 +84,7 @@ class ServiceClient:
         """Nothing follows of the call that is under way."""
         self._number += 1
         if self._deadline is not None:
-            self._deadline.call_off()
+            self._deadline.cancel()
             self._deadline = None
 
     def _succeed(self, number: int, response: Message) -> None:
@@ -116,10 +118,15 @@ class ActionClient:
     """
 
     def __init__(
-        self, port: Port, agenda: Agenda, client: rosgraph.ActionClient, timeout: float, answers: Answers
+        self,
+        port: ControllerPort,
+        event_loop: EventLoop,
+        client: rosgraph.ActionClient,
+        timeout: float,
+        answers: Answers,
     ) -> None:
         self._port = port
-        self._agenda = agenda
+        self._event_loop = event_loop
         self._client = client
         self._timeout = timeout
         self._answers = answers
@@ -129,7 +136,7 @@ class ActionClient:
         self._lost: dict[int, Goal] = {}
         self._cancelling = False
         self._asked = False
-        self._deadline: Appointment | None = None
+        self._deadline: Timer | None = None
         self._until = 0.0
 
     @property
@@ -140,14 +147,14 @@ class ActionClient:
     @property
     def unanswered(self) -> float:
         """Seconds that are left for the goal to be accepted or rejected; 0 where none was sent."""
-        left = self._until - self._agenda.clock() if self._phase is _Phase.SENT else 0.0
+        left = self._until - self._event_loop.clock() if self._phase is _Phase.SENT else 0.0
         return min(max(0.0, left), self._timeout)
 
     def start(self, goal: Message) -> None:
         """Sends a goal as soon as there is a server. A goal that has not ended is given up."""
         self.give_up()
         self._phase = _Phase.LOOKING
-        self._until = self._agenda.clock() + self._timeout
+        self._until = self._event_loop.clock() + self._timeout
         self._wait_for(self._expire)
         self._look(self._number, goal)
 
@@ -161,7 +168,7 @@ class ActionClient:
         self._asked, self._cancelling = True, expected
         number = self._number
         if self._phase is _Phase.LOOKING:
-            self._agenda.post(lambda: self._on(number, lambda: self._end(_OWN)))
+            self._event_loop.post(lambda: self._on(number, lambda: self._end(_OWN)))
         elif self._phase is _Phase.ACCEPTED:
             self._ask_to_cancel()
 
@@ -183,10 +190,10 @@ class ActionClient:
 
     def _wait_for(self, action: Callable[[], None] | None, seconds: float | None = None) -> None:
         if self._deadline is not None:
-            self._deadline.call_off()
+            self._deadline.cancel()
             self._deadline = None
         if action is not None:
-            self._deadline = self._agenda.after(self._timeout if seconds is None else seconds, action)
+            self._deadline = self._event_loop.call_later(self._timeout if seconds is None else seconds, action)
 
     def _mine(self, number: int) -> bool:
         return number == self._number and self.busy
@@ -202,18 +209,18 @@ class ActionClient:
                 self._goal = self._port.send_goal(self._client, goal, self._handlers(number))
             except Exception as error:  # whatever the middleware raises is a goal that was not sent
                 why = f"the goal can't be sent: {error}"
-                self._agenda.post(lambda: self._on(number, lambda: self._end(why)))
+                self._event_loop.post(lambda: self._on(number, lambda: self._end(why)))
         elif self._phase is not _Phase.LOOKING and not served:
             self._end("the server is gone")
             return
-        self._agenda.after(_WATCH, lambda: self._look(number, goal))
+        self._event_loop.call_later(POLL, lambda: self._look(number, goal))
 
     def _handlers(self, number: int) -> GoalHandlers:
         def later(action: Callable[[], None]) -> None:
-            self._agenda.post(lambda: self._on(number, action))
+            self._event_loop.post(lambda: self._on(number, action))
 
         return GoalHandlers(
-            accepted=lambda: self._agenda.post(lambda: self._accepted(number)),
+            accepted=lambda: self._event_loop.post(lambda: self._accepted(number)),
             rejected=lambda: later(lambda: self._end("rejected")),
             feedback=lambda feedback: later(lambda: self._feedback(feedback)),
             ended=lambda outcome, result, text: later(lambda: self._finish(outcome, result, text)),
@@ -249,7 +256,7 @@ class ActionClient:
 
     def _refused(self) -> None:
         self._wait_for(None)
-        self._port.warn(f"{self._client.identifier}: the server refuses to cancel the goal")
+        self._port.warn(f"{self._client.identifier}: {REFUSED}")
 
     def _expire(self) -> None:
         within = f"within {round(self._timeout * 1000)} ms"
@@ -257,7 +264,7 @@ class ActionClient:
             self._end(f"no server {within}")
             return
         # The server might still accept it: then it is cancelled. Until it is over, or lost, no other goal starts.
-        self._wait_for(lambda: self._end("lost"), _LOST)
+        self._wait_for(lambda: self._end("lost"), LOST)
         if not self._cancelling:
             self._asked = self._cancelling = True
             self._answers.error(f"not accepted {within}")

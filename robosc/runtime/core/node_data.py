@@ -1,21 +1,28 @@
-"""The data that a node keeps beside its supervisor, and the value of every expression of the ROS graph."""
+"""The data that a node keeps beside its supervisor, the values of expressions over it, and data for messages."""
 
 from __future__ import annotations
 
+import math
+import struct
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
+from robosc.ros_types.wire import INTEGER_RANGES
 from robosc.semantics.evaluation import Value, as_double, evaluate, saturate
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from robosc.engine import Engine
-    from robosc.runtime.core.port import Message
+    from robosc.runtime.core.event_log import Json
+    from robosc.runtime.core.port import ControllerPort, Message
 
 #: What whole numbers of a node are kept in.
-LEAST, MOST = -(2**63), 2**63 - 1
+LEAST, MOST = INTEGER_RANGES["int64"]
+_FLOATS = {"float32": "f", "float": "f", "float64": "d", "double": "d"}
+#: ROS 2 calls its `byte` an octet.
+_RANGES = {**INTEGER_RANGES, "octet": INTEGER_RANGES["uint8"]}
 
 
 class PastEndError(Exception):
@@ -46,15 +53,15 @@ class NodeData:
     def __init__(self, graph: rosgraph.RosGraph, engine: Engine) -> None:
         self._engine = engine
         self.variables: dict[rosgraph.NodeVariable, Value] = {}
-        for each in graph.variables:
-            self.variables[each] = self.value(each.initial)
+        for variable in graph.variables:
+            self.variables[variable] = self.value(variable.initial)
         self._reactions: dict[sct.Event, list[rosgraph.Reaction]] = {}
         for reaction in graph.reactions:
             self._reactions.setdefault(reaction.event, []).append(reaction)
 
     def value(self, expression: ex.Expression, data: Message = None) -> Value:
         """The value of an expression; `data` is what came in. Raises PastEndError."""
-        return evaluate(expression, lambda each: self._read(each, data), fit)
+        return evaluate(expression, lambda reference: self._read(reference, data), fit)
 
     def is_in(self, location: sct.Location) -> bool:
         """Whether its plant is in a location."""
@@ -71,13 +78,13 @@ class NodeData:
         return Received(self._inputs(inputs, data), self._assigned(event, data))
 
     def _inputs(self, inputs: Sequence[rosgraph.InputAssignment], data: Message) -> dict[str, Any]:
-        values = ((each.input.name, self.value(each.value, data)) for each in inputs)
-        return {name: each.name if isinstance(each, ex.EnumerationLiteral) else each for name, each in values}
+        values = ((assigned.input.name, self.value(assigned.value, data)) for assigned in inputs)
+        return {name: value.name if isinstance(value, ex.EnumerationLiteral) else value for name, value in values}
 
     def _assigned(self, event: sct.Event, data: Message) -> dict[rosgraph.NodeVariable, Value]:
         return {
-            each.variable: bounded(self.value(each.value, data), each.variable.type)
-            for each in self._assignments(event)
+            assignment.variable: bounded(self.value(assignment.value, data), assignment.variable.type)
+            for assignment in self._assignments(event)
         }
 
     def _assignments(self, event: sct.Event) -> Iterator[rosgraph.NodeAssignment]:
@@ -88,11 +95,11 @@ class NodeData:
 
     def read_now(self, event: sct.Event) -> list[ex.Expression]:
         """The values that the event gives to variables in the present state."""
-        return [each.value for each in self._assignments(event)]
+        return [assignment.value for assignment in self._assignments(event)]
 
     def values_read(self, event: sct.Event) -> list[ex.Expression]:
         """All values that the event may give to variables."""
-        return [each.value for reaction in self._reactions.get(event, ()) for each in reaction.assignments]
+        return [assigned.value for reaction in self._reactions.get(event, ()) for assigned in reaction.assignments]
 
     def convert(self, conversion: rosgraph.Conversion, argument: Any) -> ex.EnumerationLiteral:
         """The literal of the first rule that holds; one that reads past the end of an array does not."""
@@ -123,7 +130,7 @@ class NodeData:
     def _variable(self, variable: sct.DiscreteVariable) -> Value:
         value = self._engine.value(variable)
         if isinstance(variable.type, ex.EnumerationType):
-            return next(each for each in variable.type.enumeration.literals if each.name == value)
+            return next(literal for literal in variable.type.enumeration.literals if literal.name == value)
         return value
 
 
@@ -158,3 +165,50 @@ def _typed(value: Any, kind: ex.Type | None) -> Value:
         case ex.BooleanType():
             return bool(value)
     return value  # type: ignore[no-any-return]
+
+
+class NotFiniteError(Exception):
+    """A field whose value would be no finite number."""
+
+    def __init__(self, path: Sequence[str]) -> None:
+        super().__init__(".".join(path))
+
+
+def fill(port: ControllerPort, message: Message, path: Sequence[str], value: Value) -> Json:
+    """Sets a field, named by the fields on the way to it; what it then holds. Raises NotFiniteError.
+
+    A number outside the field's range becomes its nearest one; a double becomes one of the field's precision.
+    """
+    owner = message
+    for name in path[:-1]:
+        owner = getattr(owner, name)
+    kind = port.wire_types(owner)[path[-1]]
+    held: bool | int | float | str = _held(kind, value, path)
+    setattr(owner, path[-1], bytes([held]) if kind == "octet" and isinstance(held, int) else held)
+    return held
+
+
+def _held(kind: str, value: Value, path: Sequence[str]) -> bool | int | float | str:
+    if isinstance(value, (bool, str)):
+        return value
+    assert isinstance(value, (int, float))
+    if kind in _FLOATS:
+        return _narrowed(as_double(value), _FLOATS[kind], path)
+    low, high = _RANGES.get(kind, (0, 1))
+    if isinstance(value, float):
+        value = int(_finite(value, path))
+    return saturate(value, low, high)
+
+
+def _narrowed(value: float, code: str, path: Sequence[str]) -> float:
+    try:
+        (narrowed,) = struct.unpack(code, struct.pack(code, value))
+    except OverflowError:
+        raise NotFiniteError(path) from None
+    return _finite(float(narrowed), path)
+
+
+def _finite(value: float, path: Sequence[str]) -> float:
+    if not math.isfinite(value):
+        raise NotFiniteError(path)
+    return value

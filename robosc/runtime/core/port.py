@@ -1,4 +1,4 @@
-"""What the core asks of the middleware."""
+"""What controller and layer ask of the middleware, and what they are called with."""
 
 from __future__ import annotations
 
@@ -14,6 +14,8 @@ if TYPE_CHECKING:
 
 #: Data of ROS: an object with fields as attributes; arrays can be indexed and have a length.
 Message: TypeAlias = Any
+#: A server that the node calls: its client in the ROS graph.
+Client: TypeAlias = "rosgraph.ServiceClient | rosgraph.ActionClient"
 
 
 class Outcome(StrEnum):
@@ -26,7 +28,7 @@ class Outcome(StrEnum):
 
 @dataclass(frozen=True)
 class CallHandlers:
-    """What a call comes to: one of them is called, from any thread."""
+    """The end of a call: one of them is called, from any thread. `failed` gets the reason."""
 
     answered: Callable[[Message], None]
     failed: Callable[[str], None]
@@ -34,7 +36,10 @@ class CallHandlers:
 
 @dataclass(frozen=True)
 class GoalHandlers:
-    """What becomes of a goal, called from any thread. `refused`: the server does not cancel it."""
+    """What becomes of a goal, called from any thread.
+
+    `ended` gets the result and the server's own text; `refused`: the server does not cancel the goal.
+    """
 
     accepted: Callable[[], None]
     rejected: Callable[[], None]
@@ -50,57 +55,36 @@ class Goal(Protocol):
         """Asks the server to cancel it; a server that does not know it yet may take no notice (ROS 2)."""
 
 
-class Acting(Protocol):
-    """What a node does: a controller, a layer."""
-
-    @property
-    def busy(self) -> bool:
-        """Whether something is under way that the node's end should wait for."""
-
-    def start(self) -> None:
-        """Begins."""
-
-    def stop(self) -> None:
-        """Ends, while the node can still send."""
-
-    def close(self) -> None:
-        """Lets go of its files."""
-
-
-class Reporting(Protocol):
-    """A node of some ROS, as far as it tells something about itself."""
+class Port(Protocol):
+    """A ROS node, as far as a supervisory layer needs one: it publishes reports, logs, and calls services."""
 
     def now(self) -> float:
         """The node's time, in seconds."""
 
-    def tell(self, what: str, text: str) -> None:
-        """Publishes a text on `~/state`, `~/definition` or `~/blocked`."""
+    def publish_report(self, name: str, text: str) -> None:
+        """Publishes a text on `~/state`, `~/definition` or `~/blocked`; `name` is the last part."""
 
-    def listeners(self, what: str) -> int:
-        """How many listen to one of these."""
+    def report_listeners(self, name: str) -> int:
+        """How many subscriptions there are to one of these."""
 
     def info(self, text: str) -> None:
-        """Tells the user."""
+        """Logs a text."""
 
     def warn(self, text: str) -> None:
-        """Warns the user."""
+        """Logs a warning."""
 
     def error(self, text: str) -> None:
-        """Tells the user of a fault."""
+        """Logs an error."""
 
-
-class Calling(Protocol):
-    """A node of some ROS, as far as it calls services and finds servers."""
-
-    def is_served(self, client: rosgraph.ServiceClient | rosgraph.ActionClient) -> bool:
+    def is_served(self, client: Client) -> bool:
         """Whether there is a server."""
 
     def call(self, client: rosgraph.ServiceClient, request: Message, handlers: CallHandlers) -> None:
-        """Calls a service; the handlers are not called from inside."""
+        """Calls a service; the handlers are not called before this returns."""
 
 
-class Port(Reporting, Calling, Protocol):
-    """A node of some ROS. Elements of the graph name what is meant; their names are resolved as the node's are."""
+class ControllerPort(Port, Protocol):
+    """A ROS node, as far as a controller needs one. Names of topics and servers are resolved as the node's are."""
 
     def create(self, interface: rosgraph.Interface, section: Section) -> Message:
         """Data with every field at its ROS default; a ROS 1 quaternion is one of length 1."""
@@ -118,15 +102,18 @@ class Port(Reporting, Calling, Protocol):
         """Sends a message."""
 
     def send_goal(self, client: rosgraph.ActionClient, goal: Message, handlers: GoalHandlers) -> Goal:
-        """Sends a goal; the handlers are not called from inside."""
+        """Sends a goal; the handlers are not called before this returns."""
 
-    def wiring(self) -> Mapping[rosgraph.Subscription | rosgraph.Publisher, list[Endpoint]]:
-        """Who else publishes on the node's topics; in ROS 2 who listens to what it publishes, too."""
+    def endpoints(self) -> Mapping[rosgraph.Subscription | rosgraph.Publisher, list[Endpoint]]:
+        """The other publishers on the node's topics; in ROS 2 the subscriptions to what it publishes, too."""
 
 
 @dataclass(frozen=True)
 class Endpoint:
-    """Who publishes on a topic, or listens: its node, its type as its ROS writes it, what keeps it and us apart."""
+    """A publisher on a topic, or a subscription to it (`listens`), of another node.
+
+    `type` is as its ROS writes it; `incompatible` says why its quality of service keeps it and the node apart.
+    """
 
     node: str
     type: str

@@ -1,231 +1,96 @@
-"""The event log, and the data of events in it."""
+"""What a node publishes about itself on `~/state` and `~/definition`, and warnings that would come too often."""
 
 from __future__ import annotations
 
-import os
-import time
-from contextlib import suppress
-from pathlib import Path
-from threading import Condition, Thread
-from typing import IO, TYPE_CHECKING, Protocol
+from collections import deque
+from typing import TYPE_CHECKING
 
-from robosc.files.writing import open_log
-from robosc.metamodel import expression as ex
-from robosc.metamodel import rosgraph
-from robosc.metamodel.reflection import tree
-from robosc.runtime.core.json_text import Json, json_text
-from robosc.runtime.core.node_data import PastEndError
+from robosc.metamodel import rosgraph, sct
+from robosc.runtime.core.event_log import Json, json_text, shown
+from robosc.semantics.definition import TRANSITIONS_KEPT, definition_text
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Callable, Hashable, Sequence
 
+    from robosc.configuration import Configuration
+    from robosc.engine import Engine
     from robosc.runtime.core.node_data import NodeData
-    from robosc.runtime.core.port import Message
-    from robosc.semantics.evaluation import Value
+    from robosc.runtime.core.port import Port
 
-_Path = tuple[str, ...]
-
-
-def default_log(node: str, package: str) -> str:
-    """Where a log goes that nobody named: the folder of ROS's own logs.
-
-    `node` is the node's full name, such as `/left/base`; where it was renamed, its package is told, too.
-    """
-    folder = os.environ.get("ROS_LOG_DIR")
-    if not folder:
-        home = os.environ.get("ROS_HOME")
-        folder = str(Path(home) / "log" if home else Path.home() / ".ros" / "log")
-    with suppress(OSError):  # the log itself complains
-        Path(folder).mkdir(parents=True, exist_ok=True)
-    parts = node.strip("/").split("/")
-    if parts[-1] != package:
-        parts.append(package)
-    return str(Path(folder) / f"{'.'.join(parts)}-events.jsonl")
+#: Seconds between two warnings of one kind.
+_PAUSE = 5.0
 
 
-#: From one flush of a log to the next, in seconds, and what it keeps of what the disk does not take, in characters.
-_FLUSH, _KEPT = 0.02, 8 << 20
+class StateReporter:
+    """Publishes the state on every change, and for every new subscription; does nothing while there is none."""
+
+    def __init__(
+        self, graph: rosgraph.RosGraph, engine: Engine, data: NodeData, port: Port, configuration: Configuration
+    ) -> None:
+        self._graph = graph
+        self._engine = engine
+        self._data = data
+        self._port = port
+        self._publishes = configuration.publish_state_information
+        self._listeners = 0
+        self._transitions: deque[str] = deque(maxlen=TRANSITIONS_KEPT)
+        self._components: list[tuple[str, sct.Plant, Sequence[rosgraph.NodeVariable]]] = [
+            (plant.origin or plant.name, plant, [own for own in graph.variables if own.component == plant.origin])
+            for plant in graph.model.plants
+            if plant.kind == sct.PlantKind.behaviour
+        ]
+
+    def publish_definition(self) -> None:
+        """Publishes the model's definition: once, as it is kept for those who subscribe later."""
+        if self._publishes:
+            self._port.publish_report("definition", definition_text(self._graph))
+
+    def add_transition(self, event: str) -> None:
+        """Has the next report of the state name an event that has happened."""
+        if self._publishes:
+            self._transitions.append(event)
+
+    def publish_state(self, time: float) -> None:
+        """Publishes the state, where it has changed or somebody is new, and somebody subscribes; `time` in seconds."""
+        if not self._publishes:
+            return
+        listeners = self._port.report_listeners("state")
+        if listeners > self._listeners or (listeners and self._transitions):
+            report: dict[str, Json] = {
+                "robot": self._graph.name,
+                "time": time,
+                "components": self.components(),
+                "transitions": list(self._transitions),
+            }
+            self._port.publish_report("state", json_text(report))
+        self._listeners = listeners
+        self._transitions.clear()
+
+    def components(self) -> dict[str, Json]:
+        """The state and the variables of each component."""
+        return {
+            name: {
+                "state": plant.locations[self._engine.location(plant)].name,
+                "variables": {
+                    **{variable.name: self._engine.value(variable) for variable in plant.variables},
+                    **{variable.name: shown(self._data.variables[variable]) for variable in variables},
+                },
+            }
+            for name, plant, variables in self._components
+        }
 
 
-class _LineWriter(Thread):
-    """Writes lines to the end of a file in a thread of its own, so that a slow disk delays nobody. Raises OSError."""
+class Throttle:
+    """Passes on at most one warning in five seconds of each kind."""
 
-    def __init__(self, path: str) -> None:
-        super().__init__(name="event log", daemon=True)
-        self._file: IO[bytes] = os.fdopen(open_log(path), "ab", buffering=0)
-        self._changed = Condition()
-        self._lines: list[str] = []
-        self._size = 0
-        self._lost = 0
-        self._told = -1.0
-        self._busy = self._ending = False
-        self.start()
+    def __init__(self, warn: Callable[[str], None], clock: Callable[[], float]) -> None:
+        self._warn = warn
+        self._clock = clock
+        self._last: dict[Hashable, float] = {}
 
-    def write(self, line: str) -> None:
-        """Has a line written, soon."""
-        with self._changed:
-            if self._size + len(line) > _KEPT:
-                self._lost += 1
-                return
-            self._lines.append(line)
-            self._size += len(line)
-            if len(self._lines) == 1:
-                self._changed.notify_all()
-
-    def lost(self) -> int:
-        """How many lines were lost that were not told yet, once a second; else 0."""
-        with self._changed:
-            if not self._lost or time.monotonic() < self._told + 1:
-                return 0
-            self._told = time.monotonic()
-            lost, self._lost = self._lost, 0
-            return lost
-
-    def flush(self) -> None:
-        """Waits until all is written that can be."""
-        with self._changed:
-            self._changed.wait_for(lambda: not self._lines and not self._busy)
-
-    def close(self) -> None:
-        """Waits until all is written; nothing more will be."""
-        with self._changed:
-            self._ending = True
-            self._changed.notify_all()
-        self.join()
-
-    def run(self) -> None:
-        flushed = 0.0
-        while True:
-            with self._changed:
-                self._changed.wait_for(lambda: self._ending or self._lines)
-                self._changed.wait_for(lambda: self._ending, max(0.0, flushed + _FLUSH - time.monotonic()))
-                lines, self._lines, self._size = self._lines, [], 0
-                self._busy, ending = True, self._ending
-            try:
-                left = memoryview("".join(lines).encode(errors="replace"))
-                while left:
-                    left = left[self._file.write(left) :]
-            except OSError:
-                with self._changed:
-                    self._lost += len(lines)
-            flushed = time.monotonic()
-            with self._changed:
-                self._busy = False
-                self._changed.notify_all()
-            if ending:
-                self._file.close()
-                return
-
-
-class LineWriter(Protocol):
-    """Where the lines of a log go."""
-
-    def write(self, line: str) -> None:
-        """Takes a line, which ends with a line feed."""
-
-    def lost(self) -> int:
-        """How many lines were lost that were not told yet."""
-
-    def flush(self) -> None:
-        """Waits until all is written that can be."""
-
-    def close(self) -> None:
-        """Nothing more will be written."""
-
-
-class EventLog:
-    """A line of JSON for each event, in a file, or to a writer; without either, none.
-
-    Raises OSError where the file can't be opened.
-    """
-
-    def __init__(self, path: str, writer: LineWriter | None = None) -> None:
-        self._writer = writer or (_LineWriter(path) if path else None)
-
-    @property
-    def active(self) -> bool:
-        """Whether anything is written."""
-        return self._writer is not None
-
-    def write(self, time: float, direction: str, event: str, data: Mapping[str, Json] | None = None) -> None:
-        """A line; `data` is what came in or went out with the event, as `{"value": ...}`."""
-        if self._writer is not None:
-            entry: dict[str, Json] = {"time": time, "direction": direction, "event": event}
-            if data is not None:
-                entry["data"] = data
-            self._writer.write(json_text(entry) + "\n")
-
-    def lost(self) -> int:
-        """How many events the file could not take that were not told yet, once a second; else 0."""
-        return self._writer.lost() if self._writer is not None else 0
-
-    def flush(self) -> None:
-        """Waits until all is written that can be."""
-        if self._writer is not None:
-            self._writer.flush()
-
-    def close(self) -> None:
-        """Nothing more will be written."""
-        if self._writer is not None:
-            self._writer.close()
-            self._writer = None
-
-
-class ReceivedData:
-    """What the node reads of the data of one event, in the shape of the message; basic data is the value itself."""
-
-    def __init__(self, values: Iterable[ex.Expression]) -> None:
-        found: dict[_Path, ex.Expression] = {}
-        for value in values:
-            for part in _outermost_reads(value):
-                access = part.argument if isinstance(part, rosgraph.ConversionCall) else part
-                found.setdefault(_path(access), part)
-        #: What is read, by the names and indices on the way to it.
-        self.parts: Mapping[tuple[str, ...], ex.Expression] = found
-        self._found = {(): found["data",]} if list(found) == [("data",)] else found
-
-    def read(self, data: NodeData, message: Message) -> Mapping[str, Json] | None:
-        """The data for the log, without what can't be read; None where that is nothing."""
-        values = {}
-        for path, part in self._found.items():
-            with suppress(PastEndError):
-                values[path] = shown(data.value(part, message))
-        if not values:
-            return None
-        return {"value": values[()] if () in values else nested(values)}
-
-
-def _outermost_reads(value: ex.Expression) -> Iterator[rosgraph.ConversionCall | rosgraph.WireAccess]:
-    argument = None
-    for _, part in tree(value):
-        if isinstance(part, rosgraph.ConversionCall):
-            argument = part.argument
-            yield part
-        elif isinstance(part, rosgraph.WireAccess) and part is not argument:
-            yield part
-
-
-def _path(access: rosgraph.WireAccess) -> _Path:
-    return tuple(
-        step.name if isinstance(step, rosgraph.FieldStep) else str(step.index)  # type: ignore[attr-defined]
-        for step in access.steps
-    )
-
-
-def nested(values: Mapping[_Path, Json]) -> dict[str, Json]:
-    """Objects in objects, from paths of names to values."""
-    made: dict[str, Json] = {}
-    for path, value in values.items():
-        owner = made
-        for name in path[:-1]:
-            owner = owner.setdefault(name, {})  # type: ignore[assignment]
-        owner[path[-1]] = value
-    return made
-
-
-def shown(value: Value) -> Json:
-    """A value as reports show it: a literal by its name."""
-    if isinstance(value, ex.EnumerationLiteral):
-        return value.name
-    assert isinstance(value, (bool, int, float, str))
-    return value
+    def __call__(self, kind: Hashable, text: str) -> None:
+        """Warns, unless there was a warning of this kind too recently."""
+        now = self._clock()
+        if now - self._last.get(kind, -_PAUSE * 2) >= _PAUSE:
+            self._last[kind] = now
+            self._warn(text)

@@ -1,4 +1,4 @@
-"""What a node can be started with: its parameters, with their ranges and what the configuration makes of them."""
+"""The parameters of a node, with their ranges and the defaults that the configuration gives them."""
 
 from __future__ import annotations
 
@@ -51,12 +51,12 @@ def controller_parameters(graph: rosgraph.RosGraph, configuration: Configuration
         Parameter("watchdog_stops", configuration.watchdog_stops, configuration.watchdog_meaning),
         *(
             Parameter(
-                watchdog(each),
-                watchdogs.get(each.topic.removeprefix("/"), 0),
-                f"Longest silence of {each.topic}; 0: any.",
+                watchdog(subscription),
+                watchdogs.get(subscription.topic.removeprefix("/"), 0),
+                f"Longest silence of {subscription.topic}; 0: any.",
                 (0, _DAY),
             )
-            for each in graph.subscriptions
+            for subscription in graph.subscriptions
         ),
         _event_log(log),
     ]

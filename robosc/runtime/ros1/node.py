@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-import signal
 import sys
 import threading
 import time
+from concurrent.futures import Future
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from robosc.metamodel import rosgraph
 from robosc.ros_types import Section
-from robosc.runtime.core.agenda import Agenda
+from robosc.runtime.core.event_loop import EventLoop
+from robosc.runtime.core.node import DEPTH, FAREWELL, LONGEST_WAIT, Node, StartError
 from robosc.runtime.core.port import CallHandlers, Endpoint, GoalHandlers
-from robosc.runtime.core.settings import check
-from robosc.runtime.core.starting import StartError, ending_signals, interface_class
+from robosc.semantics.naming import below_layer
 
 #: Where Debian has the Python of ROS 1; appended, so that nothing of this Python's own is hidden.
 _DEBIAN = "/usr/lib/python3/dist-packages"
@@ -36,102 +36,87 @@ except ImportError as error:
     ) from error
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
-    from robosc.configuration import Configuration
-    from robosc.runtime.core.controller import Controller
-    from robosc.runtime.core.port import Acting, Goal, Message
-    from robosc.runtime.core.settings import Parameter, Value
+    from robosc.runtime.core.layer import Layer
+    from robosc.runtime.core.port import Client, Goal, Message
+    from robosc.runtime.core.proxies import ActionProxy, Answer
+    from robosc.runtime.core.settings import Parameter
 
-_HINT = (
-    "on Debian: apt install python3-PACKAGE, its name with - for _; else build it with catkin and source devel/setup"
-)
-_DEPTH = 10
-_LONGEST_WAIT = 0.1
-_FAREWELL = 0.5
 #: Nothing tells when a message has left the node.
 _DELIVERY = 0.2
 
 
-class Ros1Node:
-    """A node named `name`, as far as the core needs ROS. Raises StartError for a type that is not there."""
+class Ros1Node(Node):
+    """A node of ROS 1 named `name`; `arguments` are those of ROS, such as remappings."""
 
-    def __init__(
-        self, name: str, graph: rosgraph.RosGraph, configuration: Configuration, arguments: Sequence[str]
-    ) -> None:
-        self._graph = graph
-        del configuration  # quality of service is ROS 2's
-        self._types = {each: self._type(each) for each in graph.interfaces}
+    type_hint = (
+        "on Debian: apt install python3-PACKAGE, its name with - for _; else build it with catkin and source"
+        " devel/setup"
+    )
+    refusals = (ValueError, rospy.exceptions.ROSException)
+    longest_end = FAREWELL
+
+    def __init__(self, name: str, graph: rosgraph.RosGraph, arguments: Sequence[str]) -> None:
+        super().__init__(graph)
         try:
             rospy.init_node(name, argv=["robosc", *arguments], disable_signals=True)
         except rospy.exceptions.ROSInitException as error:
             raise StartError(str(error), "start roscore, or name its ROS_MASTER_URI") from None
         self.simulated = bool(rospy.get_param("/use_sim_time", default=False))
-        self.agenda = Agenda(rospy.get_time if self.simulated else time.monotonic, starts_late=self.simulated)
+        clock = rospy.get_time if self.simulated else time.monotonic
+        self.event_loop = EventLoop(clock, starts_late=self.simulated)
         if self.simulated:
             # rospy's own subscription came first: the time is the new one already.
-            rospy.Subscriber("/clock", Clock, lambda _: self.agenda.poke(), queue_size=1)
-        self._reports: dict[str, Any] = {}
-        self._publishers: dict[rosgraph.Publisher, Any] = {}
-        self._clients: dict[rosgraph.ServiceClient | rosgraph.ActionClient, Any] = {}
+            rospy.Subscriber("/clock", Clock, lambda _: self.event_loop.notify_time(), queue_size=1)
         self._master = Master(rospy.get_name())
 
-    @staticmethod
-    def _type(interface: rosgraph.Interface) -> Any:
-        if interface.kind == rosgraph.InterfaceKind.action:
-            return {
-                suffix: interface_class(interface, suffix, _HINT) for suffix in ("Action", "Goal", "Result", "Feedback")
-            }
-        return interface_class(interface, "", _HINT)
+    def _load_type(self, interface: rosgraph.Interface, suffix: str = "") -> Any:
+        if interface.kind == rosgraph.InterfaceKind.action and not suffix:
+            return {part: self._load_type(interface, part) for part in ("Action", "Goal", "Result", "Feedback")}
+        return super()._load_type(interface, suffix)
 
-    def parameters(self, declared: Sequence[Parameter]) -> dict[str, Value]:
-        """The values of parameters. Raises StartError for one that does not fit."""
-        values = {}
-        for each in declared:
-            try:
-                values[each.name] = check(each, rospy.get_param("~" + each.name.replace(".", "/"), each.default))
-            except ValueError as error:
-                raise StartError(f"parameter {error}") from None
-        return values
-
-    def open_reports(self, names: Sequence[str]) -> None:
-        """Makes what `tell` publishes on; the definition is kept for those who come later."""
-        for name in names:
-            latched = name == "definition"
-            depth = 1 if latched else _DEPTH
-            self._reports[name] = rospy.Publisher(f"~{name}", String, queue_size=depth, latch=latched)
-
-    def is_served(self, client: rosgraph.ServiceClient | rosgraph.ActionClient) -> bool:
-        if isinstance(client, rosgraph.ActionClient):
-            return bool(self._clients[client].is_served())
-        try:
-            return bool(self._master.lookupService(rospy.resolve_name(client.identifier)))
-        except (OSError, MasterException):
-            return False
-
-    def call(self, client: rosgraph.ServiceClient, request: Message, handlers: CallHandlers) -> None:
-        def ask() -> None:
-            try:
-                answer = self._clients[client].call(request)
-            except Exception as error:  # whatever rospy raises on this thread is a failed call
-                handlers.failed(str(error))
-            else:
-                handlers.answered(answer)
-
-        threading.Thread(target=ask, daemon=True).start()
+    # The node's life
 
     @property
     def full_name(self) -> str:
         return str(rospy.get_name())
 
+    def open_reports(self, names: Sequence[str]) -> None:
+        for name in names:
+            kept = name == "definition"
+            self._reports[name] = rospy.Publisher(f"~{name}", String, queue_size=1 if kept else DEPTH, latch=kept)
+
+    def close(self) -> None:
+        rospy.signal_shutdown("the controller has ended")
+
+    def inside(self, name: str) -> str:
+        return f"~{below_layer(name)}"
+
+    def _parameter(self, parameter: Parameter) -> object:
+        value: object = rospy.get_param("~" + parameter.name.replace(".", "/"), parameter.default)
+        return value
+
+    def _is_up(self) -> bool:
+        return not rospy.is_shutdown()
+
+    def _spin_once(self) -> None:
+        left = self.event_loop.run_pending()
+        self.event_loop.wait(LONGEST_WAIT if left is None or (self.simulated and left) else min(left, LONGEST_WAIT))
+
+    def _take_leave(self) -> None:
+        time.sleep(_DELIVERY)
+
+    # Reports
+
     def now(self) -> float:
         return float(rospy.get_time())
 
-    def tell(self, what: str, text: str) -> None:
-        self._reports[what].publish(String(data=text))
+    def publish_report(self, name: str, text: str) -> None:
+        self._reports[name].publish(String(data=text))
 
-    def listeners(self, what: str) -> int:
-        return int(self._reports[what].get_num_connections())
+    def report_listeners(self, name: str) -> int:
+        return int(self._reports[name].get_num_connections())
 
     def info(self, text: str) -> None:
         rospy.loginfo("%s", text)
@@ -142,70 +127,62 @@ class Ros1Node:
     def error(self, text: str) -> None:
         rospy.logerr("%s", text)
 
-    # The node's life
+    # Topics
 
-    def spin(self, acting: Acting) -> None:
-        """Lets somebody act until the user interrupts it; it stops before the node ends."""
-        interrupted: list[int] = []
+    def _publisher(self, publisher: rosgraph.Publisher) -> Any:
+        return advertise(publisher.topic, self._types[publisher.interface])
 
-        def interrupt(number: int, _: object = None) -> None:
-            interrupted.append(number)
-            self.agenda.post(lambda: None)
+    def _subscribe(self, subscription: rosgraph.Subscription, receive: Callable[[Message], None]) -> None:
+        self.subscribe(subscription.topic, self._types[subscription.interface], receive)
 
-        for number in ending_signals():
-            signal.signal(number, interrupt)
-        acting.start()
-        while not interrupted and not rospy.is_shutdown():
-            self._spin_once()
-        acting.stop()
-        until = time.monotonic() + _FAREWELL
-        while acting.busy and time.monotonic() < until:
-            self._spin_once()
-        acting.close()
-        time.sleep(_DELIVERY)
-        self.close()
+    def subscribe(self, name: str, kind: Any, receive: Callable[[Message], None], depth: int | None = DEPTH) -> Any:
+        """Calls `receive` in the event loop's thread; of more than `depth` messages that wait, the oldest gives way."""
 
-    def _spin_once(self) -> None:
-        left = self.agenda.work()
-        self.agenda.wait(_LONGEST_WAIT if left is None or (self.simulated and left) else min(left, _LONGEST_WAIT))
+        def post(message: Message) -> None:
+            self.event_loop.post(lambda: receive(message), None if depth is None else name, depth or 0)
 
-    def close(self) -> None:
-        """Nothing more is sent or received."""
-        rospy.signal_shutdown("the controller has ended")
+        return rospy.Subscriber(name, kind, post, queue_size=depth, tcp_nodelay=True)
 
+    def _relay(
+        self,
+        element: rosgraph.Subscription | rosgraph.Publisher,
+        source: str,
+        target: str,
+        passes: Callable[[Message], bool],
+    ) -> None:
+        kind = self._types[element.interface]
+        publishers: dict[bool, Any] = {}
 
-class Ros1Port(Ros1Node):
-    """The node of a controller."""
+        def forward(message: Message) -> None:
+            if passes(message):
+                latched = message._connection_header.get("latching") == "1"  # noqa: SLF001  # as genpy has it
+                if latched not in publishers:
+                    publishers[latched] = advertise(target, kind, latch=latched)
+                publishers[latched].publish(message)
 
-    def connect(self, controller: Controller) -> None:
-        """Makes what the controller sends with, then what it listens to. Raises StartError where ROS refuses a name."""
-        try:
-            self._connect(controller)
-        except (ValueError, rospy.exceptions.ROSException) as error:
-            raise StartError(str(error)) from None
+        # Advertised before the first message, so that those who listen are connected when it comes.
+        publishers[False] = advertise(target, kind)
+        self.subscribe(source, kind, forward)
 
-    def _connect(self, controller: Controller) -> None:
-        for publisher in self._graph.publishers:
-            kind = self._types[publisher.interface]
-            self._publishers[publisher] = rospy.Publisher(publisher.topic, kind, queue_size=_DEPTH, tcp_nodelay=True)
-        for service in self._graph.serviceClients:
-            self._clients[service] = rospy.ServiceProxy(service.identifier, self._types[service.interface])
-        if self._graph.actionClients:
-            from robosc.runtime.ros1.actions import ActionConnection  # noqa: PLC0415  # needs python3-actionlib
+    def type_name(self, interface: rosgraph.Interface) -> str:
+        return f"{interface.package}/{interface.type}"
 
-            for action in self._graph.actionClients:
-                self._clients[action] = ActionConnection(action.identifier, self._types[action.interface]["Action"])
-        for subscription in self._graph.subscriptions:
-            self._listen(subscription, controller)
+    def endpoints(self) -> dict[rosgraph.Subscription | rosgraph.Publisher, list[Endpoint]]:
+        with suppress(OSError, MasterException):
+            publishers = dict(self._master.getSystemState()[0])
+            types = dict(self._master.getTopicTypes())
+            return {
+                element: [
+                    Endpoint(node, types.get(name, "*"))
+                    for name in [rospy.resolve_name(element.topic)]
+                    for node in publishers.get(name, ())
+                    if node != rospy.get_name()
+                ]
+                for element in self._topics
+            }
+        return {}
 
-    def _listen(self, subscription: rosgraph.Subscription, controller: Controller) -> None:
-        def hear(message: Message) -> None:
-            self.agenda.post(lambda: controller.receive(subscription, message), subscription.topic, _DEPTH)
-
-        kind = self._types[subscription.interface]
-        rospy.Subscriber(subscription.topic, kind, hear, queue_size=_DEPTH, tcp_nodelay=True)
-
-    # What the core asks
+    # Data
 
     def create(self, interface: rosgraph.Interface, section: Section) -> Message:
         kind = self._types[interface]
@@ -218,40 +195,75 @@ class Ros1Port(Ros1Node):
         _unit_quaternions(made)
         return made
 
-    def stamp(self, message: Message, frame: str) -> None:
-        header: Any = getattr(message, "header", None)
-        if hasattr(header, "stamp"):
-            header.stamp = rospy.Time.now()
-            header.frame_id = frame
-
-    def type_name(self, interface: rosgraph.Interface) -> str:
-        return f"{interface.package}/{interface.type}"
-
     def wire_types(self, message: Message) -> Mapping[str, str]:
         return dict(zip(message.__slots__, message._slot_types, strict=True))  # noqa: SLF001  # as genpy has it
 
-    def publish(self, publisher: rosgraph.Publisher, message: Message) -> None:
-        self._publishers[publisher].publish(message)
+    def _stamp_now(self) -> Any:
+        return rospy.Time.now()
+
+    # Services and actions
+
+    def is_served(self, client: Client) -> bool:
+        if isinstance(client, rosgraph.ActionClient):
+            return bool(self._clients[client].is_served())
+        try:
+            return bool(self._master.lookupService(rospy.resolve_name(client.identifier)))
+        except (OSError, MasterException):
+            return False
+
+    def _service_client(self, service: rosgraph.ServiceClient) -> Any:
+        return rospy.ServiceProxy(service.identifier, self._types[service.interface])
+
+    def call(self, client: rosgraph.ServiceClient, request: Message, handlers: CallHandlers) -> None:
+        def ask() -> None:
+            try:
+                answer = self._clients[client].call(request)
+            except Exception as error:  # whatever rospy raises on this thread is a failed call
+                handlers.failed(str(error))
+            else:
+                handlers.answered(answer)
+
+        threading.Thread(target=ask, daemon=True).start()
+
+    def _serve(self, kind: Any, name: str, called: Callable[[Message, Answer], None]) -> None:
+        def serve(request: Message) -> Message:  # on a thread of rospy's, which waits
+            answer = _Answer()
+            self.event_loop.post(lambda: called(request, answer))
+            return answer.response.result()
+
+        rospy.Service(name, kind, serve)
+
+    def _action_client(self, action: rosgraph.ActionClient) -> Any:
+        from robosc.runtime.ros1.action_client import ActionClient  # noqa: PLC0415  # needs python3-actionlib
+
+        return ActionClient(action.identifier, self._types[action.interface]["Action"])
 
     def send_goal(self, client: rosgraph.ActionClient, goal: Message, handlers: GoalHandlers) -> Goal:
         sent: Goal = self._clients[client].send(goal, handlers)
         return sent
 
-    def wiring(self) -> dict[rosgraph.Subscription | rosgraph.Publisher, list[Endpoint]]:
-        elements: list[rosgraph.Subscription | rosgraph.Publisher] = [
-            *self._graph.subscriptions,
-            *self._graph.publishers,
-        ]
-        with suppress(OSError, MasterException):
-            topics = dict(self._master.getSystemState()[0])
-            types = dict(self._master.getTopicTypes())
-            return {each: self._endpoints(rospy.resolve_name(each.topic), topics, types) for each in elements}
-        return {}
+    def _proxy(self, action: rosgraph.ActionClient, layer: Layer, timeout: float) -> ActionProxy[Any]:
+        from robosc.runtime.ros1.action_proxy import Ros1ActionProxy  # noqa: PLC0415  # needs python3-actionlib-msgs
 
-    @staticmethod
-    def _endpoints(topic: str, topics: Mapping[str, list[str]], types: Mapping[str, str]) -> list[Endpoint]:
-        others = [each for each in topics.get(topic, ()) if each != rospy.get_name()]
-        return [Endpoint(each, types.get(topic, "*")) for each in others]
+        return Ros1ActionProxy(self, self._types[action.interface]["Action"], action, layer, timeout)
+
+
+def advertise(name: str, kind: Any, *, latch: bool = False) -> Any:
+    """A publisher on a topic."""
+    return rospy.Publisher(name, kind, queue_size=DEPTH, latch=latch, tcp_nodelay=True)
+
+
+class _Answer:
+    """The answer to a call of a service of the layer's; its end without a response is the service's error."""
+
+    def __init__(self) -> None:
+        self.response: Future[Message] = Future()
+
+    def give(self, response: Message) -> None:
+        self.response.set_result(response)
+
+    def fail(self, why: str) -> None:
+        self.response.set_exception(rospy.ServiceException(why))
 
 
 def _unit_quaternions(message: Message) -> None:

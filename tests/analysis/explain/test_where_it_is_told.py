@@ -11,7 +11,7 @@ from robosc.configuration import Configuration
 from robosc.files.resources import locate
 from robosc.m2t.models import Models
 from robosc.metamodel import rosgraph, xmi
-from robosc.runtime.core.agenda import Agenda
+from robosc.runtime.core.event_loop import EventLoop
 from robosc.runtime.core.layer import Layer
 from robosc.runtime.core.settings import Settings, layer_parameters
 from robosc.semantics.roles import event_name
@@ -87,7 +87,7 @@ def test_a_generated_layer_says_it_when_it_blocks(porter: rosgraph.RosGraph, tar
 def test_so_does_a_layer_that_runs(porter: rosgraph.RosGraph, tmp_path: Path) -> None:
     port, configuration = FakePort(), Configuration()
     values = {each.name: each.default for each in layer_parameters(porter, configuration, str(tmp_path / "log"))}
-    layer = Layer(porter, Settings(values, configuration), port, Agenda(lambda: port.time))
+    layer = Layer(porter, Settings(values, configuration), port, EventLoop(lambda: port.time))
     layer.start()
     sendings = {each.name: each for publisher in porter.publishers for each in publisher.sendings}
     assert layer.passes(sendings["open"])

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robosc.runtime.core.agenda import Agenda
+from robosc.runtime.core.event_loop import EventLoop
 
 
 class Clock:
@@ -19,77 +19,77 @@ class Clock:
 
 def test_does_what_was_posted_in_order_and_what_is_planned_at_its_time() -> None:
     clock, done = Clock(), []
-    agenda = Agenda(clock)
-    agenda.post(lambda: done.append("first"))
-    agenda.post(lambda: done.append("second"))
-    agenda.after(1.0, lambda: done.append("later"))
-    agenda.after(0.5, lambda: done.append("soon"))
-    assert agenda.work() == pytest.approx(0.5)
+    event_loop = EventLoop(clock)
+    event_loop.post(lambda: done.append("first"))
+    event_loop.post(lambda: done.append("second"))
+    event_loop.call_later(1.0, lambda: done.append("later"))
+    event_loop.call_later(0.5, lambda: done.append("soon"))
+    assert event_loop.run_pending() == pytest.approx(0.5)
     assert done == ["first", "second"]
     clock.now += 2
-    assert agenda.work() is None
+    assert event_loop.run_pending() is None
     assert done == ["first", "second", "soon", "later"]
 
 
 def test_what_is_called_off_is_not_done() -> None:
     clock = Clock()
-    agenda = Agenda(clock)
-    agenda.after(1.0, lambda: pytest.fail("called off")).call_off()
+    event_loop = EventLoop(clock)
+    event_loop.call_later(1.0, lambda: pytest.fail("called off")).cancel()
     clock.now += 2
-    agenda.work()
+    event_loop.run_pending()
 
 
 def test_of_one_topic_the_oldest_gives_way_and_never_an_answer() -> None:
-    agenda, done = Agenda(Clock()), []
-    agenda.post(lambda: done.append("answer"))
+    event_loop, done = EventLoop(Clock()), []
+    event_loop.post(lambda: done.append("answer"))
     for number in range(5):
-        agenda.post(lambda number=number: done.append(number), "scan", most=2)
-        agenda.post(lambda number=number: done.append(f"other {number}"), "odom", most=10)
-    agenda.work()
+        event_loop.post(lambda number=number: done.append(number), "scan", depth=2)
+        event_loop.post(lambda number=number: done.append(f"other {number}"), "odom", depth=10)
+    event_loop.run_pending()
     assert done == ["answer", "other 0", "other 1", "other 2", 3, "other 3", 4, "other 4"]
 
 
 def test_what_posts_itself_lets_others_have_their_turn() -> None:
-    agenda, done = Agenda(Clock()), []
+    event_loop, done = EventLoop(Clock()), []
 
     def again() -> None:
-        agenda.post(again)
+        event_loop.post(again)
         done.append("again")
 
     again()
-    agenda.after(0.0, lambda: done.append("planned"))
-    assert agenda.work() == 0.0
+    event_loop.call_later(0.0, lambda: done.append("planned"))
+    assert event_loop.run_pending() == 0.0
     assert done == ["again", "again", "planned"]
 
 
 @pytest.mark.parametrize(("before", "now"), [(100.0, 0.0), (100.0, 99.5), (0.0, 1.0), (0.0, 1795184703.0)])
 def test_a_clock_that_is_set_keeps_what_is_planned_as_far_away(before: float, now: float) -> None:
     clock, done = Clock(before), []
-    agenda = Agenda(clock, starts_late=True)
-    agenda.after(1.0, lambda: done.append("planned"))
+    event_loop = EventLoop(clock, starts_late=True)
+    event_loop.call_later(1.0, lambda: done.append("planned"))
     clock.now = now
-    assert agenda.work() == pytest.approx(1.0)
+    assert event_loop.run_pending() == pytest.approx(1.0)
     clock.now += 1.5
-    agenda.work()
+    event_loop.run_pending()
     assert done == ["planned"]
 
 
 def test_a_clock_that_starts_at_zero_is_believed() -> None:
     clock, done = Clock(0.0), []
-    agenda = Agenda(clock)
-    agenda.after(1.0, lambda: done.append("planned"))
+    event_loop = EventLoop(clock)
+    event_loop.call_later(1.0, lambda: done.append("planned"))
     clock.now = 1.0
-    agenda.work()
+    event_loop.run_pending()
     assert done == ["planned"]
 
 
 @given(st.lists(st.integers(0, 80).map(lambda eighths: eighths / 8), min_size=1, max_size=20))
 def test_nothing_is_early_nothing_is_lost(delays: list[float]) -> None:
     clock, done = Clock(), []
-    agenda = Agenda(clock)
+    event_loop = EventLoop(clock)
     for delay in delays:
-        agenda.after(delay, lambda delay=delay: done.append((delay, clock.now - 10.0)))
-    while (left := agenda.work()) is not None:
+        event_loop.call_later(delay, lambda delay=delay: done.append((delay, clock.now - 10.0)))
+    while (left := event_loop.run_pending()) is not None:
         clock.now += left
     assert sorted(delay for delay, _ in done) == sorted(delays)
     assert all(passed >= delay - 1e-9 for delay, passed in done)

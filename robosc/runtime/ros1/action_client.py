@@ -1,11 +1,11 @@
-"""Actions of ROS 1 on actionlib."""
+"""Clients of actions of ROS 1, on actionlib."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from robosc.runtime.core.node import StartError
 from robosc.runtime.core.port import Goal, GoalHandlers, Outcome
-from robosc.runtime.core.starting import StartError
 
 try:
     import actionlib
@@ -24,7 +24,7 @@ _OUTCOMES = {
 }
 
 
-class ActionConnection:
+class ActionClient:
     """The topics of one action; `kind` is its type's class with `Action` at the end."""
 
     def __init__(self, name: str, kind: Any) -> None:

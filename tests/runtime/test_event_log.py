@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from robosc.runtime.core.reports import EventLog, default_log
+from robosc.runtime.core.event_log import EventLog, default_log
 
 if TYPE_CHECKING:
     from pathlib import Path

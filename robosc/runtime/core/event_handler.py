@@ -1,0 +1,207 @@
+"""What controller and layer have in common: what comes in becomes events of the supervisor, which are logged."""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+from robosc.engine import ControlLoop, Hooks
+from robosc.runtime.core.event_log import EventLog, ReceivedData
+from robosc.runtime.core.node_data import NodeData, PastEndError
+from robosc.runtime.core.reports import StateReporter, Throttle
+from robosc.semantics.received import receptions
+from robosc.semantics.roles import Roles, event_name
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from robosc.engine import Settings as LoopSettings
+    from robosc.metamodel import rosgraph, sct
+    from robosc.runtime.core.event_log import Json
+    from robosc.runtime.core.event_loop import EventLoop
+    from robosc.runtime.core.port import Client, Message, Port
+    from robosc.runtime.core.settings import Settings
+
+
+class EventHandler:
+    """Lets the events of one graph happen, with their data; one whose data can't be read does not.
+
+    All its functions belong to the event loop's thread. Raises OSError where the event log can't be written.
+    """
+
+    def __init__(
+        self,
+        graph: rosgraph.RosGraph,
+        settings: Settings,
+        port: Port,
+        event_loop: EventLoop,
+        loop: LoopSettings | None = None,
+    ) -> None:
+        self._graph = graph
+        self._settings = settings
+        self._port = port
+        self._event_loop = event_loop
+        self._log = EventLog(str(settings.parameters["event_log"]))
+        hooks = Hooks(self._before, self._after, self._report_livelock)
+        self._control = ControlLoop(graph.model, loop, hooks)
+        self._data = NodeData(graph, self._control.engine)
+        self._reports = StateReporter(graph, self._control.engine, self._data, port, settings.configuration)
+        self._warn = Throttle(port.warn, event_loop.clock)
+        roles = Roles(graph.model)
+        self._events = {event_name(event): event for event in roles.events}
+        self._incoming = set(roles.incoming)
+        #: The message that the event at hand came with, and the event that would have been made of it.
+        self._received: tuple[sct.Event, Message] | None = None
+        self._logged = {reception.event: self._read(reception) for reception in receptions(graph)}
+
+    def _read(self, reception: rosgraph.Reception) -> ReceivedData:
+        return ReceivedData([given.value for given in reception.inputs] + self._data.values_read(reception.event))
+
+    # The node's life
+
+    def log_to(self, log: EventLog) -> None:
+        """Has the event log written there; before the start."""
+        self._log = log
+
+    def flush_log(self) -> None:
+        """Waits until all events so far are in the log."""
+        self._log.flush()
+
+    def start(self) -> None:
+        """Begins to act."""
+        raise NotImplementedError
+
+    def stop(self) -> None:
+        """Is called before the node ends, while it can still send."""
+
+    @property
+    def busy(self) -> bool:
+        """Whether something is under way that the node's end should wait for."""
+        return False
+
+    def close(self) -> None:
+        """Closes the log; nothing may happen any more."""
+        self._log.close()
+
+    # What comes in
+
+    @contextmanager
+    def _batch(self) -> Iterator[None]:
+        """What happens inside happens with nothing in between; what it makes possible follows."""
+        yield
+        self._control.settle()
+
+    def receive(self, subscription: rosgraph.Subscription, message: Message) -> None:
+        """A message on a topic: a batch of events. One that can't be read counts as not received."""
+        with self._batch():
+            read = [self._receive(reception, subscription.topic, message) for reception in subscription.receptions]
+            if all(read):
+                self._note_received(subscription)
+
+    def _note_received(self, subscription: rosgraph.Subscription) -> None:
+        """All of a message was read."""
+
+    def feed_back(self, client: rosgraph.ActionClient, message: Message) -> None:
+        """Feedback of the goal at hand."""
+        with self._batch():
+            self._receive(client.feedback, client.identifier, message)
+
+    def _receive(self, reception: rosgraph.Reception, name: str, message: Message) -> bool:
+        """A message or feedback, as an event; False where it can't be read, which is reported."""
+        fault = self._perform(reception.event, reception.inputs, message)
+        if fault is not None:
+            self._warn(reception.event, f"{name}: {fault}")
+        return fault is None
+
+    def respond(self, client: Client, message: Message) -> None:
+        """The response of a service, or the result of a goal that succeeded; one that can't be read is an error."""
+        with self._batch():
+            response = client.response.event
+            fault = self._perform(response, client.response.inputs, message)
+            if fault is not None:
+                self._note_failure(client, str(fault))
+                if self._control.enabled(event_name(client.error)):
+                    # The log shows what can be read of the message.
+                    self._change_variables(client.error)
+                    self._run(client.error, (response, message))
+            else:
+                self._note_success(client)
+
+    def fail(self, client: Client, why: str) -> None:
+        """A call or goal has failed."""
+        self._note_failure(client, why)
+        with self._batch():
+            self._perform(client.error)
+
+    def _note_success(self, client: Client) -> None:
+        """A call or goal has come to a response that can be read."""
+
+    def _note_failure(self, client: Client, why: str) -> None:
+        """A call or goal has failed."""
+        self._port.warn(f"{client.identifier}: {why}")
+
+    def _perform(
+        self, event: sct.Event, inputs: Sequence[rosgraph.InputAssignment] = (), message: Message = None
+    ) -> PastEndError | None:
+        """Lets an event of the robot happen, if it can now; returns what keeps its data from being read."""
+        if not self._control.enabled(event_name(event)):
+            return None
+        try:
+            received = self._data.received(event, inputs, message)
+        except PastEndError as fault:
+            return fault
+        self._data.variables.update(received.variables)
+        self._run(event, (event, message), received.inputs)
+        return None
+
+    def _run(
+        self,
+        event: sct.Event,
+        received: tuple[sct.Event, Message],
+        inputs: Mapping[str, Any] | None = None,
+    ) -> None:
+        self._received = received
+        self._control.perform(event_name(event), inputs)
+        self._received = None
+
+    def _change_variables(self, event: sct.Event) -> None:
+        """Changes the node's variables as an event without data does, from the present state on."""
+        self._data.variables.update(self._data.received(event).variables)
+
+    # What happens
+
+    def _before(self, name: str) -> bool:
+        event = self._events[name]
+        if not self._may_happen(event):
+            return False
+        if event not in self._incoming:
+            self._change_variables(event)
+        return True
+
+    def _may_happen(self, event: sct.Event) -> bool:  # noqa: ARG002  # a controller withholds some
+        """Whether an enabled event may happen now, so that it is not withheld."""
+        return True
+
+    def _after(self, name: str) -> None:
+        event = self._events[name]
+        data = self._logged_data(event) if self._log.active else None
+        direction, data = self._act(event) or ("in" if event in self._incoming else "internal", data)
+        self._log.write(self._port.now(), direction, name, data)
+        if lost := self._log.lost():
+            self._port.warn(f"the event log lost {lost} events")
+        self._reports.add_transition(name)
+
+    def _act(self, event: sct.Event) -> tuple[str, Mapping[str, Json] | None] | None:
+        """Does what an event that has happened asks for; the direction and data of its line in the log, if it sends."""
+        raise NotImplementedError
+
+    def _logged_data(self, event: sct.Event) -> Mapping[str, Json] | None:
+        """The data of an event that happens now, for the event log."""
+        if self._received is None:
+            return None
+        source, message = self._received
+        data = self._logged[source].read(self._data, message) if source in self._logged else None
+        return data if source is event else data or {"value": {}}
+
+    def _report_livelock(self) -> None:
+        self._port.error("internal transitions follow each other without end")

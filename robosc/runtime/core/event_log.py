@@ -1,0 +1,237 @@
+"""The event log, and the data of events in it, as JSON: the generated nodes write the same bytes for the same data."""
+
+from __future__ import annotations
+
+import math
+import os
+import re
+import time
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
+from pathlib import Path
+from threading import Condition, Thread
+from typing import IO, TYPE_CHECKING, TypeAlias
+
+from robosc.diagnostics.visible import HIDDEN_PATTERN, code
+from robosc.files.writing import open_log
+from robosc.metamodel import expression as ex
+from robosc.metamodel import rosgraph
+from robosc.metamodel.reflection import tree
+from robosc.runtime.core.node_data import PastEndError
+
+if TYPE_CHECKING:
+    from robosc.runtime.core.node_data import NodeData
+    from robosc.runtime.core.port import Message
+    from robosc.semantics.evaluation import Value
+
+_Path = tuple[str, ...]
+#: What can be written as JSON.
+Json: TypeAlias = bool | int | float | str | Mapping[str, "Json"] | Sequence["Json"] | None
+
+#: Nothing that a reader could take for the end of a line, and nothing that a terminal obeys, goes out as it is.
+_ESCAPED = re.compile(r'["\\]|' + HIDDEN_PATTERN)
+
+
+def json_text(value: Json) -> str:
+    """The JSON text of a value, without blanks; no number stands for what is not finite: null."""
+    match value:
+        case None:
+            return "null"
+        case bool():
+            return "true" if value else "false"
+        case int():
+            return str(value)
+        case float():
+            return _number(value)
+        case str():
+            return f'"{_ESCAPED.sub(_escape, value)}"'
+        case Mapping():
+            return "{" + ",".join(f"{json_text(name)}:{json_text(member)}" for name, member in value.items()) + "}"
+    return "[" + ",".join(map(json_text, value)) + "]"
+
+
+def _number(value: float) -> str:
+    """The shortest text of 15 to 17 digits that reads back as the same number."""
+    if not math.isfinite(value):
+        return "null"
+    texts = (f"{value:.{digits}g}" for digits in (15, 16, 17))
+    return next(text for text in texts if float(text) == value)
+
+
+def _escape(found: re.Match[str]) -> str:
+    return f"\\{found[0]}" if found[0] in '"\\' else code(found[0])
+
+
+def default_log(node: str, package: str) -> str:
+    """Where a log goes that nobody named: the folder of ROS's own logs.
+
+    `node` is the node's full name, such as `/left/base`; where it was renamed, its package is told, too.
+    """
+    folder = os.environ.get("ROS_LOG_DIR")
+    if not folder:
+        home = os.environ.get("ROS_HOME")
+        folder = str(Path(home) / "log" if home else Path.home() / ".ros" / "log")
+    with suppress(OSError):  # the log itself complains
+        Path(folder).mkdir(parents=True, exist_ok=True)
+    parts = node.strip("/").split("/")
+    if parts[-1] != package:
+        parts.append(package)
+    return str(Path(folder) / f"{'.'.join(parts)}-events.jsonl")
+
+
+#: From one flush of a log to the next, in seconds, and what it keeps of what the disk does not take, in characters.
+_FLUSH, _KEPT = 0.02, 8 << 20
+
+
+class EventLog:
+    """A line of JSON for each event, written to the end of a file; an empty path: none is written.
+
+    A thread of its own writes, so that a slow disk delays nobody. Raises OSError where the file can't be opened.
+    """
+
+    def __init__(self, path: str) -> None:
+        self._changed = Condition()
+        self._lines: list[str] = []
+        self._size = 0
+        self._lost = 0
+        self._last_told = -1.0
+        self._busy = self._ending = False
+        self._thread: Thread | None = None
+        if path:
+            file = os.fdopen(open_log(path), "ab", buffering=0)
+            self._thread = Thread(target=self._run, args=(file,), name="event log", daemon=True)
+            self._thread.start()
+
+    @property
+    def active(self) -> bool:
+        """Whether anything is written."""
+        return self._thread is not None
+
+    def write(self, time: float, direction: str, event: str, data: Mapping[str, Json] | None = None) -> None:
+        """Has a line written, soon. `time` is in seconds, `direction` `in`, `out`, `internal`, `outside` or `blocked`.
+
+        `data` is what came in or went out with the event, as `{"value": ...}`.
+        """
+        if self.active:
+            entry: dict[str, Json] = {"time": time, "direction": direction, "event": event}
+            if data is not None:
+                entry["data"] = data
+            self.append(json_text(entry) + "\n")
+
+    def append(self, line: str) -> None:
+        """Has a line written, which ends with a line feed; where too much waits already, it is lost."""
+        with self._changed:
+            if self._size + len(line) > _KEPT:
+                self._lost += 1
+                return
+            self._lines.append(line)
+            self._size += len(line)
+            if len(self._lines) == 1:
+                self._changed.notify_all()
+
+    def lost(self) -> int:
+        """How many lines were lost since this last said so, at most once a second; else 0."""
+        with self._changed:
+            if not self._lost or time.monotonic() < self._last_told + 1:
+                return 0
+            self._last_told = time.monotonic()
+            lost, self._lost = self._lost, 0
+            return lost
+
+    def flush(self) -> None:
+        """Waits until all is written that can be."""
+        with self._changed:
+            self._changed.wait_for(lambda: not self._lines and not self._busy)
+
+    def close(self) -> None:
+        """Waits until all is written; nothing more will be."""
+        with self._changed:
+            self._ending = True
+            self._changed.notify_all()
+        if self._thread is not None:
+            self._thread.join()
+            self._thread = None
+
+    def _run(self, file: IO[bytes]) -> None:
+        flushed = 0.0
+        while True:
+            with self._changed:
+                self._changed.wait_for(lambda: self._ending or self._lines)
+                self._changed.wait_for(lambda: self._ending, max(0.0, flushed + _FLUSH - time.monotonic()))
+                lines, self._lines, self._size = self._lines, [], 0
+                self._busy, ending = True, self._ending
+            try:
+                left = memoryview("".join(lines).encode(errors="replace"))
+                while left:
+                    left = left[file.write(left) :]
+            except OSError:
+                with self._changed:
+                    self._lost += len(lines)
+            flushed = time.monotonic()
+            with self._changed:
+                self._busy = False
+                self._changed.notify_all()
+            if ending:
+                file.close()
+                return
+
+
+class ReceivedData:
+    """What the node reads of the data of one event, in the shape of the message; basic data is the value itself."""
+
+    def __init__(self, values: Iterable[ex.Expression]) -> None:
+        found: dict[_Path, ex.Expression] = {}
+        for value in values:
+            for part in _outermost_reads(value):
+                access = part.argument if isinstance(part, rosgraph.ConversionCall) else part
+                found.setdefault(access_path(access), part)
+        #: What is read, by the names and indices on the way to it.
+        self.parts: Mapping[tuple[str, ...], ex.Expression] = found
+        self._found = {(): found["data",]} if list(found) == [("data",)] else found
+
+    def read(self, data: NodeData, message: Message) -> Mapping[str, Json] | None:
+        """The data for the log, without what can't be read; None where that is nothing."""
+        values = {}
+        for path, part in self._found.items():
+            with suppress(PastEndError):
+                values[path] = shown(data.value(part, message))
+        if not values:
+            return None
+        return {"value": values[()] if () in values else nested(values)}
+
+
+def _outermost_reads(value: ex.Expression) -> Iterator[rosgraph.ConversionCall | rosgraph.WireAccess]:
+    argument = None
+    for _, part in tree(value):
+        if isinstance(part, rosgraph.ConversionCall):
+            argument = part.argument
+            yield part
+        elif isinstance(part, rosgraph.WireAccess) and part is not argument:
+            yield part
+
+
+def access_path(access: rosgraph.WireAccess) -> tuple[str, ...]:
+    """The names of fields and indices on the way that an access takes."""
+    return tuple(
+        step.name if isinstance(step, rosgraph.FieldStep) else str(step.index)  # type: ignore[attr-defined]
+        for step in access.steps
+    )
+
+
+def nested(values: Mapping[_Path, Json]) -> dict[str, Json]:
+    """Objects in objects, from paths of names to values."""
+    made: dict[str, Json] = {}
+    for path, value in values.items():
+        owner = made
+        for name in path[:-1]:
+            owner = owner.setdefault(name, {})  # type: ignore[assignment]
+        owner[path[-1]] = value
+    return made
+
+
+def shown(value: Value) -> Json:
+    """A value as reports show it: a literal by its name."""
+    if isinstance(value, ex.EnumerationLiteral):
+        return value.name
+    assert isinstance(value, (bool, int, float, str))
+    return value

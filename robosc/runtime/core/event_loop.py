@@ -1,0 +1,110 @@
+"""The event loop of a node: one thing at a time, posted from any thread or planned for a given time."""
+
+from __future__ import annotations
+
+import heapq
+import threading
+from collections import deque
+from itertools import count
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+
+class Timer:
+    """A call that is made once, at its time, unless it is cancelled before."""
+
+    def __init__(self, action: Callable[[], None]) -> None:
+        self._action: Callable[[], None] | None = action
+
+    def cancel(self) -> None:
+        """The call will not be made."""
+        self._action = None
+
+    def fire(self) -> None:
+        """Makes the call, at most once."""
+        action, self._action = self._action, None
+        if action is not None:
+            action()
+
+
+class EventLoop:
+    """Makes calls one at a time, in the thread that calls `run_pending`.
+
+    `clock` gives the time in seconds; one that `starts_late` stands at 0 until it is told the time, as the clock of a
+    simulation does. `wake`, if given, is called from any thread when something was posted.
+    """
+
+    def __init__(
+        self, clock: Callable[[], float], wake: Callable[[], None] | None = None, *, starts_late: bool = False
+    ) -> None:
+        self.clock = clock
+        self._wake = wake
+        self._posted: deque[tuple[str | None, Callable[[], None]]] = deque()
+        self._changed = threading.Condition()
+        self._timers: list[tuple[float, int, Timer]] = []
+        self._numbers = count()
+        self._last = clock()
+        self._started = self._last != 0 or not starts_late
+
+    def post(self, action: Callable[[], None], topic: str | None = None, depth: int = 10) -> None:
+        """Makes a call after all that were posted before; from any thread.
+
+        Of one `topic` at most `depth` calls wait: the oldest gives way.
+        """
+        with self._changed:
+            if topic is not None:
+                waiting = [call for call in self._posted if call[0] == topic]
+                if len(waiting) >= depth:
+                    self._posted.remove(waiting[0])
+            self._posted.append((topic, action))
+            self._changed.notify()
+        if self._wake is not None:
+            self._wake()
+
+    def call_later(self, seconds: float, action: Callable[[], None]) -> Timer:
+        """Makes a call so many seconds from now; only from the loop's own thread."""
+        timer = Timer(action)
+        now = self._time()  # may move what is planned
+        heapq.heappush(self._timers, (now + seconds, next(self._numbers), timer))
+        return timer
+
+    def run_pending(self) -> float | None:
+        """Makes all calls that are due; returns the seconds until the next is, None where none is planned.
+
+        What is posted meanwhile is done too, once: a call that posts itself does not keep others from their turn.
+        """
+        for _ in range(len(self._posted)):
+            with self._changed:
+                if not self._posted:
+                    break
+                _, action = self._posted.popleft()
+            action()
+        now = self._time()
+        while self._timers and self._timers[0][0] <= now:
+            heapq.heappop(self._timers)[2].fire()
+        if self._posted:
+            return 0.0
+        return max(0.0, self._timers[0][0] - now) if self._timers else None
+
+    def _time(self) -> float:
+        """The time. Where the clock was set back, or started late, timers stay as far away as they were."""
+        now = self.clock()
+        shift = now - self._last
+        if shift < 0 or not self._started:
+            self._timers = [(time + shift, number, timer) for time, number, timer in self._timers]
+        self._last = now
+        self._started = self._started or now != 0
+        return now
+
+    def wait(self, seconds: float) -> None:
+        """Waits until something is posted, or the clock has changed, at most so long."""
+        with self._changed:
+            if not self._posted:
+                self._changed.wait(seconds)
+
+    def notify_time(self) -> None:
+        """Ends a wait, as the clock has changed; from any thread."""
+        with self._changed:
+            self._changed.notify()

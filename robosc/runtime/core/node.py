@@ -1,0 +1,250 @@
+"""What the nodes of ROS 1 and ROS 2 have in common, and what keeps a node from starting."""
+
+from __future__ import annotations
+
+import math
+import signal
+import time
+from abc import ABC, abstractmethod
+from functools import partial
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from robosc.ros_types.wire import FOLDERS
+from robosc.runtime.core.layer import Layer
+from robosc.runtime.core.port import ControllerPort
+from robosc.runtime.core.proxies import ServiceProxy
+from robosc.runtime.core.settings import check
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from robosc.metamodel import rosgraph
+    from robosc.runtime.core.controller import Controller
+    from robosc.runtime.core.event_handler import EventHandler
+    from robosc.runtime.core.event_loop import EventLoop
+    from robosc.runtime.core.port import Client, Message
+    from robosc.runtime.core.proxies import ActionProxy, Answer
+    from robosc.runtime.core.settings import Parameter, Settings, Value
+
+#: Messages that wait where nothing else is configured.
+DEPTH = 10
+#: Seconds that a node waits at most before it looks whether it was interrupted, and for what it sent at its end.
+LONGEST_WAIT = 0.1
+FAREWELL = 0.5
+
+
+class StartError(Exception):
+    """A node can't start, for a reason that its user can do something about: what to do is the second argument."""
+
+    def __init__(self, message: str, hint: str | None = None) -> None:
+        super().__init__(message)
+        self.hint = hint
+
+
+class Node(ControllerPort, ABC):
+    """A running node of some ROS, for a controller or a layer. Raises StartError for a type that is not there.
+
+    A subclass says how its middleware makes publishers, subscriptions and clients.
+    """
+
+    #: What to do where a ROS type is not there, and what is raised where ROS refuses a name or value.
+    type_hint: ClassVar[str]
+    refusals: ClassVar[tuple[type[Exception], ...]]
+    #: Seconds that the node's end may take.
+    longest_end: ClassVar[float] = math.inf
+    event_loop: EventLoop
+    #: Whether the clock is that of a simulation.
+    simulated: bool
+
+    def __init__(self, graph: rosgraph.RosGraph) -> None:
+        self._graph = graph
+        self._types = {interface: self._load_type(interface) for interface in graph.interfaces}
+        self._reports: dict[str, Any] = {}
+        self._publishers: dict[rosgraph.Publisher, Any] = {}
+        self._clients: dict[Client, Any] = {}
+
+    def _load_type(self, interface: rosgraph.Interface, suffix: str = "") -> Any:
+        """The Python class of a ROS type, its name with a suffix. Raises StartError where there is none."""
+        folder = "msg" if suffix else FOLDERS[interface.kind.name]
+        package = interface.package
+        try:
+            return getattr(import_module(f"{package}.{folder}"), interface.type + suffix)
+        except ImportError as error:
+            missing = f"{package}.{folder}" if error.name in {package, f"{package}.{folder}"} else error
+            why = f"{package}/{interface.type}: the ROS package {package} is not built for Python here ({missing})"
+        except AttributeError:
+            why = f"the ROS package {package} has no {interface.kind.name} {interface.type}"
+        raise StartError(why, self.type_hint)
+
+    # The node's life
+
+    def parameters(self, declared: Sequence[Parameter]) -> dict[str, Value]:
+        """The values of the node's parameters. Raises StartError for one that does not fit."""
+        values = {}
+        for parameter in declared:
+            try:
+                value = self._parameter(parameter)
+            except self.refusals as error:
+                raise StartError(f"parameter {parameter.name}: {error}") from None
+            try:
+                values[parameter.name] = check(parameter, value)
+            except ValueError as error:
+                raise StartError(f"parameter {error}") from None
+        return values
+
+    def connect(self, handler: Controller | Layer, settings: Settings) -> None:
+        """Makes what is sent with, then what is listened to. Raises StartError where ROS refuses a name."""
+        try:
+            if isinstance(handler, Layer):
+                self._connect_layer(handler, settings)
+            else:
+                self._connect_controller(handler)
+        except self.refusals as error:
+            raise StartError(str(error)) from None
+
+    def _connect_controller(self, controller: Controller) -> None:
+        for publisher in self._graph.publishers:
+            self._publishers[publisher] = self._publisher(publisher)
+        for service in self._graph.serviceClients:
+            self._clients[service] = self._service_client(service)
+        for action in self._graph.actionClients:
+            self._clients[action] = self._action_client(action)
+        for subscription in self._graph.subscriptions:
+            self._subscribe(subscription, partial(controller.receive, subscription))
+
+    def _connect_layer(self, layer: Layer, settings: Settings) -> None:
+        """Stands between the controller and the robot: each of its names has a private one for the controller."""
+        for topic in self._graph.subscriptions:
+            self._relay(topic, topic.topic, self.inside(topic.topic), partial(_forwarded, layer, topic))
+        for publisher in self._graph.publishers:
+            (sending,) = publisher.sendings
+            self._relay(publisher, self.inside(publisher.topic), publisher.topic, partial(_allowed, layer, sending))
+        for service in self._graph.serviceClients:
+            self._clients[service] = self._service_client(service)
+            proxy = ServiceProxy(self, self.event_loop, service, layer, settings.seconds("service_timeout_ms"))
+            self._serve(self._types[service.interface], self.inside(service.identifier), proxy.call)
+        for action in self._graph.actionClients:
+            layer.cancels[action.cancel] = self._proxy(action, layer, settings.seconds("action_timeout_ms")).cancel
+
+    def spin(self, handler: EventHandler) -> None:
+        """Lets somebody act until the user interrupts it; it stops before the node ends."""
+        interrupted: list[int] = []
+
+        def interrupt(number: int, _: object) -> None:
+            interrupted.append(number)
+            self.event_loop.post(lambda: None)
+
+        # A hangup is ignored under nohup.
+        hangup = [signal.SIGHUP] if signal.getsignal(signal.SIGHUP) != signal.SIG_IGN else []
+        for number in [signal.SIGINT, signal.SIGTERM, *hangup]:
+            signal.signal(number, interrupt)
+        handler.start()
+        while not interrupted and self._is_up():
+            self._spin_once()
+        handler.stop()
+        until = time.monotonic() + self.longest_end
+        while handler.busy and time.monotonic() < until:
+            self._spin_once()
+        handler.close()
+        self._take_leave()
+        self.close()
+
+    # What a node of some ROS does
+
+    @property
+    @abstractmethod
+    def full_name(self) -> str:
+        """The node's name with its namespace, such as `/left/base`."""
+
+    @abstractmethod
+    def open_reports(self, names: Sequence[str]) -> None:
+        """Makes what `publish_report` publishes on; the definition is kept for those who come later."""
+
+    @abstractmethod
+    def close(self) -> None:
+        """Nothing more is sent or received."""
+
+    @abstractmethod
+    def inside(self, name: str) -> str:
+        """The layer's name for the controller in the place of a topic, service or action of the robot."""
+
+    @abstractmethod
+    def _parameter(self, parameter: Parameter) -> object:
+        """The value that the node was started with. Raises one of `refusals`."""
+
+    @abstractmethod
+    def _is_up(self) -> bool:
+        """Whether ROS wants the node to go on."""
+
+    @abstractmethod
+    def _spin_once(self) -> None:
+        """Does what is due, and waits for more, at most `LONGEST_WAIT` seconds."""
+
+    @abstractmethod
+    def _take_leave(self) -> None:
+        """Lets what was sent last arrive, as far as that is soon."""
+
+    @abstractmethod
+    def _publisher(self, publisher: rosgraph.Publisher) -> Any:
+        """Publishes the controller's messages."""
+
+    @abstractmethod
+    def _subscribe(self, subscription: rosgraph.Subscription, receive: Callable[[Message], None]) -> None:
+        """Calls `receive` in the event loop's thread for every message."""
+
+    @abstractmethod
+    def _service_client(self, service: rosgraph.ServiceClient) -> Any:
+        """Calls a service of the robot."""
+
+    @abstractmethod
+    def _action_client(self, action: rosgraph.ActionClient) -> Any:
+        """Sends goals to the robot."""
+
+    @abstractmethod
+    def _relay(
+        self,
+        element: rosgraph.Subscription | rosgraph.Publisher,
+        source: str,
+        target: str,
+        passes: Callable[[Message], bool],
+    ) -> None:
+        """Forwards messages from one topic to another where `passes` says so."""
+
+    @abstractmethod
+    def _serve(self, kind: Any, name: str, called: Callable[[Message, Answer], None]) -> None:
+        """A service whose calls are answered later; `called` is called in the event loop's thread."""
+
+    @abstractmethod
+    def _proxy(self, action: rosgraph.ActionClient, layer: Layer, timeout: float) -> ActionProxy[Any]:
+        """An action for the controller behind which stands the robot's one; `timeout` in seconds."""
+
+    @abstractmethod
+    def _stamp_now(self) -> Any:
+        """The node's time, as ROS has it in headers."""
+
+    # What is the same on every ROS
+
+    def stamp(self, message: Message, frame: str) -> None:
+        """Gives a header the node's time and a frame."""
+        header: Any = getattr(message, "header", None)
+        if hasattr(header, "stamp"):
+            header.stamp = self._stamp_now()
+            header.frame_id = frame
+
+    def publish(self, publisher: rosgraph.Publisher, message: Message) -> None:
+        """Sends a message."""
+        self._publishers[publisher].publish(message)
+
+    @property
+    def _topics(self) -> list[rosgraph.Subscription | rosgraph.Publisher]:
+        return [*self._graph.subscriptions, *self._graph.publishers]
+
+
+def _forwarded(layer: Layer, topic: rosgraph.Subscription, message: Message) -> bool:
+    layer.receive(topic, message)
+    return True
+
+
+def _allowed(layer: Layer, sending: rosgraph.Sending, _: Message) -> bool:
+    return layer.passes(sending)

@@ -1,0 +1,275 @@
+"""Actions of ROS 2: the goals that a controller sends, and the action that a layer offers its controller."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import partial
+from typing import TYPE_CHECKING, Any
+from uuid import uuid4
+
+from action_msgs.msg import GoalInfo, GoalStatus
+from rclpy.action.client import ClientGoalHandle
+from rclpy.qos import DurabilityPolicy, QoSProfile
+
+from robosc.runtime.core.clients import LOST, REFUSED
+from robosc.runtime.core.port import GoalHandlers, Outcome
+from robosc.runtime.core.proxies import ActionProxy, ProxiedGoal
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from robosc.metamodel import rosgraph
+    from robosc.runtime.core.layer import Layer
+    from robosc.runtime.core.port import Message
+    from robosc.runtime.ros2.node import Ros2Node
+
+_OUTCOMES = {GoalStatus.STATUS_SUCCEEDED: Outcome.SUCCEEDED, GoalStatus.STATUS_CANCELED: Outcome.CANCELLED}
+
+
+def settle(answered: Callable[[Message], None], failed: Callable[[str], None], future: Any) -> None:
+    """Calls one of two functions with what has become of a future; neither where it was cancelled."""
+    if future.cancelled():
+        return
+    if future.exception() is not None:
+        failed(str(future.exception()))
+    elif future.result() is not None:
+        answered(future.result())
+
+
+class SentGoal:
+    """A goal that a controller has sent to an action server."""
+
+    def __init__(self, client: Any, goal: Message, handlers: GoalHandlers) -> None:
+        self._handlers = handlers
+        identifier = GoalInfo().goal_id
+        identifier.uuid = list(uuid4().bytes)
+        self._handle = ClientGoalHandle(client, identifier, None)
+        sent = client.send_goal_async(goal, lambda message: handlers.feedback(message.feedback), identifier)
+        sent.add_done_callback(partial(settle, self._decided, self._failed))
+
+    def cancel(self) -> None:
+        """Asks the server to cancel it."""
+        answer = self._handle.cancel_goal_async()
+        answer.add_done_callback(partial(settle, self._cancelling, lambda _: self._handlers.refused()))
+
+    def _decided(self, handle: Any) -> None:
+        if not handle.accepted:
+            self._handlers.rejected()
+            return
+        self._handle = handle
+        self._handlers.accepted()
+        handle.get_result_async().add_done_callback(partial(settle, self._ended, self._failed))
+
+    def _ended(self, answer: Any) -> None:
+        self._handlers.ended(_OUTCOMES.get(answer.status, Outcome.ABORTED), answer.result, "")
+
+    def _failed(self, why: str) -> None:
+        self._handlers.ended(Outcome.ABORTED, None, why)
+
+    def _cancelling(self, answer: Any) -> None:
+        if not answer.goals_canceling:
+            self._handlers.refused()
+
+
+class LateAnswer:
+    """The answer to one call of a service of the layer's, given before or after the caller is known."""
+
+    def __init__(self, response: Message) -> None:
+        self.response = response
+        self._send: Callable[[Message], None] | None = None
+        self._given = False
+
+    def give(self, response: Message = None) -> None:
+        """Answers; with nothing, the response that nothing was set in."""
+        self.response, self._given = response or self.response, True
+        if self._send is not None:
+            self._send(self.response)
+
+    def fail(self, why: str) -> None:
+        """Services of ROS 2 have no errors."""
+        del why
+        self.give()
+
+    def send_with(self, send: Callable[[Message], None]) -> None:
+        """The caller is known from now on."""
+        self._send = send
+        if self._given:
+            send(self.response)
+
+
+@dataclass(eq=False)
+class _Goal(ProxiedGoal):
+    """A goal of the controller's: `answer` accepts or rejects it, `waiting` are its calls for the result."""
+
+    answer: LateAnswer | None = None
+    result: Any = None
+    waiting: list[LateAnswer] = field(default_factory=list)
+
+
+class Ros2ActionProxy(ActionProxy[_Goal]):
+    """`types` has the types of the action's services and topics."""
+
+    def __init__(self, port: Ros2Node, types: Any, action: rosgraph.ActionClient, layer: Layer, timeout: float) -> None:
+        super().__init__(port, port.event_loop, action, layer, timeout)
+        self._ended: tuple[bytes, Any] | None = None
+        self._statuses: Any = types.GoalStatusMessage()
+        self._types = types
+        inside, outside = f"{port.inside(action.identifier)}/_action", f"{action.identifier}/_action"
+        lasting = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        node = port.node
+        self._goals = node.create_client(types.SendGoalService, f"{outside}/send_goal")
+        self._results = node.create_client(types.GetResultService, f"{outside}/get_result")
+        self._cancels = node.create_client(types.CancelGoalService, f"{outside}/cancel_goal")
+        quality = port.quality(action.identifier)
+        self._feedback = node.create_publisher(types.FeedbackMessage, f"{inside}/feedback", quality.depth)
+        self._status = node.create_publisher(types.GoalStatusMessage, f"{inside}/status", lasting)
+        node.create_subscription(types.FeedbackMessage, f"{outside}/feedback", self._on_feedback, quality)
+        node.create_subscription(types.GoalStatusMessage, f"{outside}/status", self._on_status, lasting)
+        port.serve(types.SendGoalService, f"{inside}/send_goal", self._on_goal)
+        port.serve(types.GetResultService, f"{inside}/get_result", self._on_result_wanted)
+        port.serve(types.CancelGoalService, f"{inside}/cancel_goal", self._on_cancel)
+
+    # From the controller
+
+    def _on_goal(self, request: Message, answer: LateAnswer) -> None:
+        self._receive_goal(_Goal(_bytes(request.goal_id), request, answer=answer))
+
+    def _on_result_wanted(self, request: Message, answer: LateAnswer) -> None:
+        identifier = _bytes(request.goal_id)
+        goal = self._at_hand(identifier)
+        if goal is not None:
+            goal.waiting.append(answer)
+        elif self._ended is not None and self._ended[0] == identifier:
+            answer.give(self._ended[1])
+        else:
+            answer.give()
+
+    def _on_cancel(self, request: Message, answer: LateAnswer) -> None:
+        """The controller's own requests always pass."""
+
+        def reject() -> None:
+            answer.response.return_code = answer.response.ERROR_REJECTED
+            answer.give()
+
+        if not self._cancels.service_is_ready() or not self._ask_to_cancel(request, answer.give, reject):
+            reject()
+
+    # From the robot
+
+    def _on_accepted(self, goal: _Goal, response: Message) -> None:
+        assert goal.answer is not None
+        if self._goal is not goal:
+            if response.accepted:
+                self._send_cancel(goal)  # too late: nobody waits for it
+        elif not response.accepted:
+            self._give_up(goal, "rejected")
+        else:
+            goal.accepted = True
+            goal.answer.give(response)
+            request = self._types.GetResultService.Request()
+            request.goal_id.uuid = list(goal.identifier)
+            goal.result = self._ask(self._results, request, partial(self._on_result, goal))
+            if goal.cancelled or not goal.result:
+                self._send_cancel(goal)
+            if not goal.result:
+                self._give_up(goal, "its result can't be asked for")
+
+    def _on_feedback(self, message: Message) -> None:
+        if self._receive_feedback(_bytes(message.goal_id), message.feedback):
+            self._feedback.publish(message)
+
+    def _on_result(self, goal: _Goal, response: Message) -> None:
+        if self._goal is goal:
+            cancelled = "cancelled" if response.status == GoalStatus.STATUS_CANCELED else "aborted"
+            succeeded = response.status == GoalStatus.STATUS_SUCCEEDED
+            self._receive_end(goal, response.result, None if succeeded else cancelled)
+            self._finish(goal, response)
+
+    def _on_status(self, message: Message) -> None:
+        """That a goal has ended is told with its result, not before: the supervisor knows first."""
+        self._statuses = self._types.GoalStatusMessage()
+        for status in message.status_list:
+            identifier = _bytes(status.goal_info.goal_id)
+            running = self._at_hand(identifier) is not None
+            if running and status.status > GoalStatus.STATUS_CANCELING:
+                status.status = GoalStatus.STATUS_EXECUTING
+            if running or (self._ended is not None and self._ended[0] == identifier):
+                self._statuses.status_list.append(status)
+        self._status.publish(self._statuses)
+
+    # What the layer does
+
+    def _is_served(self, goal: _Goal) -> bool:
+        return bool((self._results if goal.accepted else self._goals).service_is_ready())
+
+    def _send(self, goal: _Goal) -> bool:
+        return bool(self._ask(self._goals, goal.request, partial(self._on_accepted, goal), self._timeout + LOST))
+
+    def _send_cancel(self, goal: _Goal) -> None:
+        request = self._types.CancelGoalService.Request()
+        request.goal_info.goal_id.uuid = list(goal.identifier)
+        within = f"within {round(self._timeout * 1000)} ms"
+        late = f"the server does not answer the request to cancel the goal {within}"
+        if not self._ask_to_cancel(request, self._on_cancelling, lambda: self._warn(late)):
+            self._warn("the request to cancel the goal can't be sent")
+
+    def _ask_to_cancel(self, request: Message, answered: Callable[[Message], None], late: Callable[[], None]) -> bool:
+        return bool(self._ask(self._cancels, request, answered, self._timeout, late))
+
+    def _on_cancelling(self, response: Message) -> None:
+        nothing = response.return_code == response.ERROR_NONE and not response.goals_canceling
+        if nothing or response.return_code == response.ERROR_REJECTED:
+            self._warn(REFUSED)
+
+    def _end(self, goal: _Goal, why: str) -> None:
+        del why
+        assert goal.answer is not None
+        if not goal.accepted:
+            goal.answer.give()
+        response = self._types.GetResultService.Response()
+        response.status = GoalStatus.STATUS_ABORTED
+        self._finish(goal, response)
+
+    def _finish(self, goal: _Goal, response: Message) -> None:
+        if goal.result:
+            self._results.remove_pending_request(goal.result)
+        if goal.sent:
+            self._ended = (goal.identifier, response)
+        for status in self._statuses.status_list:
+            if _bytes(status.goal_info.goal_id) == goal.identifier:
+                status.status = response.status
+        if goal.accepted:
+            self._status.publish(self._statuses)
+        for answer in goal.waiting:
+            answer.give(response)
+
+    def _ask(
+        self,
+        client: Any,
+        request: Message,
+        answered: Callable[[Message], None],
+        seconds: float | None = None,
+        late: Callable[[], None] = lambda: None,
+    ) -> Any:
+        """Sends a request; the future of its answer, or None where it can't be sent.
+
+        Calls `answered`, or after so many seconds without an answer `late`, after which an answer is dropped.
+        """
+        try:
+            future = client.call_async(request)
+        except Exception:  # whatever the middleware raises
+            return None
+        future.add_done_callback(lambda future: answered(future.result()))
+
+        def give_up() -> None:
+            if not future.done():
+                client.remove_pending_request(future)
+                late()
+
+        if seconds is not None:
+            self._event_loop.call_later(seconds, give_up)
+        return future
+
+
+def _bytes(identifier: Any) -> bytes:
+    return bytes(bytearray(identifier.uuid))
