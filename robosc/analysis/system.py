@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 from robosc.analysis.paths import Layers, trace
 from robosc.analysis.wording import condition
 from robosc.metamodel import sct
+from robosc.semantics.definition import named_state
 from robosc.semantics.roles import Roles, plant_of
 from robosc.synthesis.decoding import value
 from robosc.synthesis.fixpoint import reachable, supervise
@@ -236,12 +237,7 @@ class GuardedSystem(SupervisedSystem):
 
 def whole_state(model: sct.SupervisoryControlModel, codes: Codes) -> dict[str, Value]:
     """The state with these codes, as `robosc simulate` prints it."""
-    state: dict[str, Value] = {}
-    for plant in model.plants:
-        state[plant.name] = value(plant, codes[plant])
-        for variable in plant.variables:
-            state[f"{plant.origin or plant.name}.{variable.name}"] = value(variable, codes[variable])
-    return state
+    return named_state(model, lambda element: value(element, codes[element]))
 
 
 def counted(number: int, what: str) -> str:

@@ -21,8 +21,7 @@ from robosc.engine import Settings
 from robosc.files import reading as files
 from robosc.language.text import decode
 from robosc.semantics.roles import event_name
-from robosc.simulation import Simulation, read_script, unfit_data
-from robosc.simulation.loop import LoopSimulation
+from robosc.simulation import LoopSimulation, Simulation, read_script, unfit_data
 from robosc.simulation.script import RULE
 from robosc.simulation.session import Session, trace_line
 

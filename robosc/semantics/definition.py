@@ -1,15 +1,20 @@
-"""The model's definition, as a node publishes it on `~/definition`: what viewers draw, and what `~/state` refers to."""
+"""The model's definition, as a node publishes it on `~/definition`, and its state by the names that users read."""
 
 from __future__ import annotations
 
 import json
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
 from robosc.semantics.edges import edges_from
 from robosc.semantics.printing import RobotPrinter
 from robosc.semantics.roles import event_name
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+_Value = TypeVar("_Value")
 
 #: A report on `~/state` tells the last so many events. Where simulated time stands still there is none for long.
 TRANSITIONS_KEPT = 5000
@@ -20,14 +25,21 @@ def definition(graph: rosgraph.RosGraph) -> dict[str, Any]:
     plants = graph.model.plants
     return {
         "robot": graph.name,
-        "components": [_component(each, graph) for each in plants if each.kind == sct.PlantKind.behaviour],
+        "components": [_component(plant, graph) for plant in plants if plant.kind == sct.PlantKind.behaviour],
         "communications": [
-            {"name": each.origin, "kind": each.kind.name, "topic": each.topic, "events": _events(each)}
-            for each in plants
-            if each.kind not in (sct.PlantKind.behaviour, sct.PlantKind.data)
+            {
+                "name": plant.origin,
+                "kind": plant.kind.name,
+                "topic": plant.topic,
+                "events": [event_name(event) for event in plant.events],
+            }
+            for plant in plants
+            if plant.kind not in (sct.PlantKind.behaviour, sct.PlantKind.data)
         ],
         "requirements": [
-            {"event": event_name(each.event), "text": each.text} for each in graph.model.requirements if each.text
+            {"event": event_name(requirement.event), "text": requirement.text}
+            for requirement in graph.model.requirements
+            if requirement.text
         ],
     }
 
@@ -41,18 +53,21 @@ def definition_text(graph: rosgraph.RosGraph) -> str:
 def _lines(value: Any) -> str:
     if not isinstance(value, list) or not value:
         return json.dumps(value)
-    return "[\n" + ",\n".join(f"  {json.dumps(each)}" for each in value) + "]"
+    return "[\n" + ",\n".join(f"  {json.dumps(element)}" for element in value) + "]"
 
 
 def _component(plant: sct.Plant, graph: rosgraph.RosGraph) -> dict[str, Any]:
-    mine = [each for each in graph.variables if each.component == plant.origin]
-    assigning = {(reaction.event, each) for reaction in graph.reactions for each in reaction.locations}
+    own = [variable for variable in graph.variables if variable.component == plant.origin]
+    assigning = {(reaction.event, location) for reaction in graph.reactions for location in reaction.locations}
     return {
         "name": plant.origin or plant.name,
-        "states": [{"name": each.name, "initial": each.initial, "marked": each.marked} for each in plant.locations],
+        "states": [
+            {"name": location.name, "initial": location.initial, "marked": location.marked}
+            for location in plant.locations
+        ],
         "variables": [
-            *({"name": each.name, **_type(each.type)} for each in plant.variables),
-            *({"name": each.name, **_type(each.type)} for each in mine),
+            *({"name": variable.name, **_type(variable.type)} for variable in plant.variables),
+            *({"name": variable.name, **_type(variable.type)} for variable in own),
         ],
         "transitions": [
             _transition(location, edge)
@@ -68,16 +83,27 @@ def _transition(location: sct.Location, edge: sct.Edge) -> dict[str, Any]:
     return {"from": location.name, "to": edge.target.name, "event": event_name(edge.event), **guard}
 
 
-def _events(plant: sct.Plant) -> list[str]:
-    return [event_name(each) for each in plant.events]
-
-
 def _type(kind: ex.Type) -> dict[str, Any]:
     match kind:
         case ex.EnumerationType():
-            return {"type": kind.enumeration.name, "values": [each.name for each in kind.enumeration.literals]}
+            return {"type": kind.enumeration.name, "values": [literal.name for literal in kind.enumeration.literals]}
         case ex.IntegerType():
             bounds = {"minimum": kind.minimum, "maximum": kind.maximum}
             return {"type": "integer", **{name: bound for name, bound in bounds.items() if bound is not None}}
     names = {ex.BooleanType: "boolean", ex.DoubleType: "double", ex.StringType: "string"}
     return {"type": names[type(kind)]}
+
+
+def named_state(
+    model: sct.SupervisoryControlModel, value: Callable[[sct.Plant | sct.DiscreteVariable], _Value]
+) -> dict[str, _Value]:
+    """The state as users read it: every plant's location by its name, then its variables as `Component.variable`.
+
+    `value` gives the name of a plant's location, or the value of a variable.
+    """
+    state: dict[str, _Value] = {}
+    for plant in model.plants:
+        state[plant.name] = value(plant)
+        for variable in plant.variables:
+            state[f"{plant.origin or plant.name}.{variable.name}"] = value(variable)
+    return state

@@ -15,7 +15,7 @@ def parts_with_headers(sending: rosgraph.Sending) -> list[tuple[str, ...]]:
     where it has a field `header`. A part of which the model sets some field of `header` is not among them: that header
     is the model's.
     """
-    paths = [tuple(field.path) for each in sending.alternatives for field in each.fields]
+    paths = [tuple(field.path) for data in sending.alternatives for field in data.fields]
     parts = {()} | {path[:length] for path in paths for length in range(1, len(path))}
     given = {path[: path.index("header")] for path in paths if "header" in path}
-    return sorted(each for each in parts - given if "header" not in each)
+    return sorted(part for part in parts - given if "header" not in part)

@@ -20,9 +20,9 @@ def receptions(graph: rosgraph.RosGraph) -> list[rosgraph.Reception]:
     """All data that comes in."""
     clients: list[rosgraph.ServiceClient | rosgraph.ActionClient] = [*graph.serviceClients, *graph.actionClients]
     return [
-        *(each for topic in graph.subscriptions for each in topic.receptions),
-        *(each.response for each in clients),
-        *(each.feedback for each in graph.actionClients),
+        *(reception for topic in graph.subscriptions for reception in topic.receptions),
+        *(client.response for client in clients),
+        *(action.feedback for action in graph.actionClients),
     ]
 
 

@@ -2,6 +2,6 @@
 
 from robosc.simulation.data import DataError, EventData
 from robosc.simulation.script import Step, read_script, unfit_data
-from robosc.simulation.simulation import Happened, Simulation
+from robosc.simulation.simulation import Happened, LoopSimulation, Simulation
 
-__all__ = ["DataError", "EventData", "Happened", "Simulation", "Step", "read_script", "unfit_data"]
+__all__ = ["DataError", "EventData", "Happened", "LoopSimulation", "Simulation", "Step", "read_script", "unfit_data"]

@@ -1,4 +1,4 @@
-"""The data of events in scripts and traces, as the inputs of the supervisor that it means."""
+"""The data of events in scripts and traces, as values of the inputs of the supervisor."""
 
 from __future__ import annotations
 
@@ -10,11 +10,12 @@ from robosc.engine.state import Domain
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
 from robosc.metamodel.reflection import tree
+from robosc.runtime.core.event_log import nested
 from robosc.runtime.core.node_data import NodeData
 from robosc.semantics.evaluation import as_double
 from robosc.semantics.received import receptions
 from robosc.semantics.roles import Roles, event_name
-from robosc.simulation.unread import Unread, missing
+from robosc.simulation.unreadable import Unreadable, past_end
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     from robosc.engine import Engine
     from robosc.engine.state import Value
 
-#: What JSON text says nothing about.
+#: In the place of a value that the JSON text does not give.
 _ABSENT: Final = object()
 #: The index of an element has less.
 _DIGITS = 10
@@ -50,14 +51,14 @@ class EventData:
     """
 
     def __init__(self, engine: Engine, graph: rosgraph.RosGraph | None) -> None:
-        self._events = {event_name(each): each for each in Roles(engine.model).events}
+        self._events = {event_name(event): event for event in Roles(engine.model).events}
         self._node = None if graph is None else NodeData(graph, engine)
         received = [] if graph is None else receptions(graph)
-        self._assignments = {each.input: each for reception in received for each in reception.inputs}
-        self._receptions = {event_name(each.event): each for each in received}
+        self._assignments = {given.input: given for reception in received for given in reception.inputs}
+        self._receptions = {event_name(reception.event): reception for reception in received}
         clients: list[rosgraph.ServiceClient | rosgraph.ActionClient] = []
         clients += [] if graph is None else [*graph.serviceClients, *graph.actionClients]
-        self._errors = {event_name(each.response.event): event_name(each.error) for each in clients}
+        self._errors = {event_name(client.response.event): event_name(client.error) for client in clients}
 
     def inputs(self, event: str, data: Mapping[str, Any]) -> dict[str, Value]:
         """Values of the event's inputs by their names. Raises DataError, KeyError for an unknown event."""
@@ -69,61 +70,49 @@ class EventData:
             return {}  # the node keeps it, or nobody does
         value = data.get("value", _ABSENT)
         found = {}
-        for each in declared.inputs:
-            domain = Domain.of(each.type)
+        for given in declared.inputs:
+            domain = Domain.of(given.type)
             try:
-                found[each.name] = domain.shown(domain.internal(self._value(each, value)))
+                found[given.name] = domain.shown(domain.internal(self._value(given, value)))
             except ValueError as error:
-                raise DataError(f"{_label(each)}: {error}") from None
+                raise DataError(f"{_label(given)}: {error}") from None
         return found
 
-    def unread(self, event: str, data: Mapping[str, Any]) -> Unread | None:
-        """Why the node could not read this data in the present state, as far as it is given; None: it could."""
+    def unreadable(self, event: str, data: Mapping[str, Any]) -> Unreadable | None:
+        """Why the node can't read this data in the present state; None where it can, as far as the data is given."""
         reception = self._receptions.get(event)
         if self._node is None or reception is None or "value" not in data:
             return None
-        fault = missing(self._node.read_now(reception.event), data["value"])
-        return None if fault is None else Unread(str(fault), self._errors.get(event))
+        fault = past_end(self._node.read_now(reception.event), data["value"])
+        return None if fault is None else Unreadable(str(fault), self._errors.get(event))
 
     def shaped(self, event: str, values: Mapping[str, Value]) -> dict[str, Any]:
         """Data with which the event's inputs have these values, by their names."""
-        paths = {self._path(each): values[each.name] for each in self._events[event].inputs}
+        paths = {self._path(given): values[given.name] for given in self._events[event].inputs}
         if not paths:
             return {}
         if len(paths) == 1 and len(next(iter(paths))) < 2:
             return {"value": next(iter(paths.values()))}
-        whole: dict[str, Any] = {}
-        for path, value in paths.items():
-            inner = whole
-            for name in path[:-1]:
-                inner = inner.setdefault(name, {})
-            inner[path[-1]] = value
-        return {"value": whole}
+        return {"value": nested(paths)}
 
-    def _path(self, each: sct.Input) -> tuple[str, ...]:
-        """Where the data of an input stands in that of its event."""
-        assignment = self._assignments.get(each)
-        if assignment is None:
-            return tuple(_words(each))
-        access = _access(assignment)
-        return tuple(map(_field, access.steps))
+    def _path(self, given: sct.Input) -> tuple[str, ...]:
+        """The fields on the way to an input in the data of its event."""
+        assignment = self._assignments.get(given)
+        return tuple(_words(given)) if assignment is None else tuple(map(_field, _access(assignment).steps))
 
-    def _value(self, each: sct.Input, data: Any) -> Value:
-        assignment = self._assignments.get(each)
-        if self._node is None or assignment is None:
-            found = _fields(data, _words(each))
-            return _default(each.type) if found is _ABSENT else found
-        source = assignment.value
-        found = _reached(data, _access(assignment))
-        if not isinstance(source, rosgraph.ConversionCall):
-            return _default(each.type) if found is _ABSENT else found
+    def _value(self, given: sct.Input, data: Any) -> Value:
+        assignment = self._assignments.get(given)
+        found = _fields(data, _words(given)) if assignment is None else _reached(data, _access(assignment))
+        source = None if assignment is None else assignment.value
+        if self._node is None or not isinstance(source, rosgraph.ConversionCall):
+            return _default(given.type) if found is _ABSENT else found
         conversion = source.conversion
         if found is _ABSENT:
             return str(conversion.default.name)
         if isinstance(found, str) and found in {literal.name for literal in conversion.enumeration.literals}:
             return found
         try:
-            return str(self._node.convert(conversion, _argument(found, _reads(conversion), _label(each))).name)
+            return str(self._node.convert(conversion, _argument(found, _reads(conversion), _label(given))).name)
         except DataError as error:
             literals = ", ".join(literal.name for literal in conversion.enumeration.literals)
             raise DataError(f"expected one of {literals}, or the data to tell it from: {error}") from None
@@ -175,13 +164,13 @@ def _elements(data: Any, place: str) -> dict[int, Any]:
         return {}
     if isinstance(data, list):
         return dict(enumerate(data))
-    if isinstance(data, dict) and all(each.isdecimal() and len(each) < _DIGITS for each in data):
-        return {int(index): each for index, each in data.items()}
+    if isinstance(data, dict) and all(index.isdecimal() and len(index) < _DIGITS for index in data):
+        return {int(index): element for index, element in data.items()}
     raise DataError(f"{place} is {json.dumps(data)}, expected a list, or an object from index to element")
 
 
 def _basic(data: Any, kind: ex.Type | None, place: str) -> Any:
-    name, plain, default = next((each for known, each in _BASIC.items() if isinstance(kind, known)), ("", object, 0))
+    name, plain, default = next((basic for known, basic in _BASIC.items() if isinstance(kind, known)), ("", object, 0))
     if data is _ABSENT:
         return default
     if not isinstance(data, plain) or (isinstance(data, bool) and name in {"an integer", "a number"}):
@@ -190,8 +179,8 @@ def _basic(data: Any, kind: ex.Type | None, place: str) -> Any:
 
 
 def _reads(conversion: rosgraph.Conversion) -> list[_Read]:
-    accesses = (each for rule in conversion.rules for each in tree(rule.condition))
-    return [(list(each.steps), each.type) for _, each in accesses if isinstance(each, rosgraph.WireAccess)]
+    parts = (part for rule in conversion.rules for _, part in tree(rule.condition))
+    return [(list(part.steps), part.type) for part in parts if isinstance(part, rosgraph.WireAccess)]
 
 
 def _access(assignment: rosgraph.InputAssignment) -> rosgraph.WireAccess:
@@ -233,12 +222,12 @@ def _fields(data: Any, words: list[str]) -> Any:
     return _ABSENT
 
 
-def _words(each: sct.Input) -> list[str]:
-    return str(each.name).split("_")[2:]
+def _words(given: sct.Input) -> list[str]:
+    return str(given.name).split("_")[2:]
 
 
-def _label(each: sct.Input) -> str:
-    return ".".join(["value", *_words(each)])
+def _label(given: sct.Input) -> str:
+    return ".".join(["value", *_words(given)])
 
 
 def _default(kind: ex.Type) -> Value:

@@ -51,13 +51,13 @@ def read_script(
 
 
 def unfit_data(file: str, steps: Iterable[Step], data: EventData) -> Iterator[Diagnostic]:
-    """What is wrong with the data of steps: known before any of them is played."""
-    for each in steps:
+    """Findings about data that does not fit its event, before any step is played."""
+    for step in steps:
         try:
-            data.inputs(each.event, each.data)
+            data.inputs(step.event, step.data)
         except DataError as error:
-            span = Span(each.line, 1, each.line, 1)
-            yield Diagnostic(file, span, Severity.ERROR, RULE, f"{each.event}: {error}")
+            span = Span(step.line, 1, step.line, 1)
+            yield Diagnostic(file, span, Severity.ERROR, RULE, f"{step.event}: {error}")
 
 
 class _Line:

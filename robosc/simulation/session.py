@@ -15,7 +15,7 @@ from robosc.semantics.roles import event_name
 from robosc.simulation.data import DataError
 from robosc.simulation.script import read_script
 from robosc.simulation.simulation import whole_state
-from robosc.simulation.unread import Unread
+from robosc.simulation.unreadable import Unreadable
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -47,7 +47,7 @@ class Session:
         self._random = Random(seed)  # noqa: S311
         self._shown = whole_state(simulation.engine)
         #: What a person reads for an event.
-        self._named = {each: (named or {}).get(each, each) for each in simulation.engine.events}
+        self._named = {event: (named or {}).get(event, event) for event in simulation.engine.events}
         self._commands: dict[str, Callable[[str], str]] = {
             "e": lambda _: self.enabled(),
             "d": lambda _: self._disabled(),
@@ -77,13 +77,13 @@ class Session:
             hint = f", did you mean `{close[0]}`?" if close else ""
             return f"there is no command and no event `{word}`{hint} (h for help)"
         steps, findings = read_script("", f"{word} {rest}", self._simulation.engine.events)
-        return _complaints(findings) or "\n".join(self._perform(each.event, dict(each.data)) for each in steps)
+        return _complaints(findings) or "\n".join(self._perform(step.event, dict(step.data)) for step in steps)
 
     def enabled(self) -> str:
         """The events that can happen, numbered."""
         enabled = self._simulation.enabled
         return (
-            "\n".join(f"{number:4} {self._named[each]}" for number, each in enumerate(enabled, 1))
+            "\n".join(f"{number:4} {self._named[event]}" for number, event in enumerate(enabled, 1))
             or "nothing can happen any more"
         )
 
@@ -107,20 +107,20 @@ class Session:
 
     def _disabled(self) -> str:
         engine = self._simulation.engine
-        blocked = ((each, engine.blocked_by(each)) for each in engine.events)
-        return "\n".join(self._reason(each, by) for each, by in blocked if by is not None) or "everything can happen"
+        blocked = ((event, engine.blocked_by(event)) for event in engine.events)
+        return "\n".join(self._reason(event, by) for event, by in blocked if by is not None) or "everything can happen"
 
-    def _reason(self, event: str, by: Blocked | Unread) -> str:
-        if isinstance(by, Unread):
+    def _reason(self, event: str, by: Blocked | Unreadable) -> str:
+        if isinstance(by, Unreadable):
             return f"{event}: {by.why}, so it counts as {by.error or 'not received'}"
         model, named = self._simulation.engine.model, self._named[event]
         if by is Blocked.PLANT:
             return f"{named}: the robot is not ready for it"
         if by is Blocked.REQUIREMENT:
-            texts = [each.text for each in self._simulation.engine.failing(event) if each.text]
+            texts = [failing.text for failing in self._simulation.engine.failing(event) if failing.text]
             return f"{named}: forbidden by {' and '.join(texts) or 'a requirement'}"
         assert model.supervisor is not None
-        guard = next(each for each in model.supervisor.guards if event_name(each.event) == event)
+        guard = next(guard for guard in model.supervisor.guards if event_name(guard.event) == event)
         needed = SctPrinter()(guard.synthesis) if guard.synthesis is not None else "false"
         otherwise = f"; otherwise, {guard.explanation}" if guard.explanation else ""
         return f"{named}: forbidden by synthesis, which asks for {needed}{otherwise}"
@@ -147,7 +147,7 @@ class Session:
     def _save(self, file: str) -> str:
         if not file:
             return "save where? give a file"
-        write_file(file, "".join(f"{trace_line(each)}\n" for each in self._simulation.trace))
+        write_file(file, "".join(f"{trace_line(happened)}\n" for happened in self._simulation.trace))
         return f"{len(self._simulation.trace)} events in {file}"
 
     def _load(self, file: str) -> str:
@@ -156,7 +156,7 @@ class Session:
         steps, findings = read_script(file, files.read(file, is_input=False).decode(), self._simulation.engine.events)
         if findings:
             return _complaints(findings)
-        return "\n".join(self._perform(each.event, dict(each.data)) for each in steps)
+        return "\n".join(self._perform(step.event, dict(step.data)) for step in steps)
 
     def _quit(self, _: str) -> str:
         self.ended = True
@@ -180,7 +180,7 @@ def trace_line(happened: Happened) -> str:
 
 
 def _complaints(findings: Sequence[Diagnostic]) -> str:
-    return "\n".join(f"{each.message}{f' ({each.hint})' if each.hint else ''}" for each in findings)
+    return "\n".join(f"{finding.message}{f' ({finding.hint})' if finding.hint else ''}" for finding in findings)
 
 
 def _shown(value: object) -> str:

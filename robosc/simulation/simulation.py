@@ -1,14 +1,17 @@
-"""One run of a supervised robot that can be undone."""
+"""Runs of a supervised robot: event by event, with undo, or through its control loop."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from robosc.engine import Engine
+from robosc.engine import ControlLoop, Engine, Hooks, Settings
 from robosc.metamodel import expression as ex
+from robosc.metamodel import sct
+from robosc.semantics.definition import named_state
 from robosc.semantics.roles import event_name
 from robosc.simulation.data import EventData
+from robosc.simulation.unreadable import Unreadable
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -16,18 +19,21 @@ if TYPE_CHECKING:
 
     from robosc.engine import Blocked
     from robosc.engine.state import State, Value
-    from robosc.metamodel import rosgraph, sct
-    from robosc.simulation.unread import Unread
+    from robosc.metamodel import rosgraph
+
+#: What a script may say beside events: the period is over; a message from the robot with several events begins, ends.
+TICK, BEGIN, END = "tick", "begin", "end"
 
 
 def whole_state(engine: Engine) -> dict[str, Value]:
     """The location of every plant, also of one that has no other, and the values of variables, by their names."""
-    state: dict[str, Value] = {}
-    for plant in engine.model.plants:
-        state[plant.name] = plant.locations[engine.location(plant)].name
-        for variable in plant.variables:
-            state[f"{plant.origin or plant.name}.{variable.name}"] = engine.value(variable)
-    return state
+
+    def value(element: sct.Plant | sct.DiscreteVariable) -> Value:
+        if isinstance(element, sct.Plant):
+            return str(element.locations[engine.location(element)].name)
+        return engine.value(element)
+
+    return named_state(engine.model, value)
 
 
 @dataclass(frozen=True)
@@ -36,7 +42,7 @@ class Happened:
 
     event: str
     data: Mapping[str, Any]
-    by: Blocked | Unread | None
+    by: Blocked | Unreadable | None
     state: Mapping[str, Value]
 
     @property
@@ -58,12 +64,12 @@ class Simulation:
         self.data = EventData(self.engine, graph)
         self.trace: list[Happened] = []
         self._before: list[State] = []
-        self._inputs = {event_name(each): list(each.inputs) for each in self.engine.roles.events}
+        self._inputs = {event_name(event): list(event.inputs) for event in self.engine.roles.events}
 
     @property
     def enabled(self) -> list[str]:
         """The events that can happen now, in the order of the model."""
-        return [each for each in self.engine.events if self.engine.enabled(each)]
+        return [event for event in self.engine.events if self.engine.enabled(event)]
 
     def perform(self, event: str, data: Mapping[str, Any] | None = None) -> Happened:
         """Lets an event happen with data in the shape of the event log, if it can; else nothing changes.
@@ -72,7 +78,7 @@ class Simulation:
         """
         inputs = self.data.inputs(event, data or {})
         before = self.engine.state
-        by = self.engine.blocked_by(event) or self.data.unread(event, data or {})
+        by = self.engine.blocked_by(event) or self.data.unreadable(event, data or {})
         if by is None:
             self.engine.perform(event, inputs)
         happened = Happened(event, data or {}, by, whole_state(self.engine))
@@ -94,7 +100,7 @@ class Simulation:
         if not enabled:
             return None
         event = random.choice(enabled)
-        values = {each.name: _any(each.type, random) for each in self._inputs[event]}
+        values = {given.name: _any(given.type, random) for given in self._inputs[event]}
         return self.perform(event, self.data.shaped(event, values))
 
 
@@ -106,3 +112,52 @@ def _any(kind: ex.Type, random: Random) -> Value:
             return random.randint(low, high)
     assert isinstance(kind, ex.EnumerationType)
     return str(random.choice(list(kind.enumeration.literals)).name)
+
+
+class LoopSimulation:
+    """Runs a model's control loop, step by step: incoming events as batches of one or more, and ticks."""
+
+    OWN = (TICK, BEGIN, END)
+
+    def __init__(
+        self,
+        model: sct.SupervisoryControlModel,
+        graph: rosgraph.RosGraph | None = None,
+        settings: Settings | None = None,
+    ) -> None:
+        self._happened: list[str] = []
+        hooks = Hooks(after=self._happened.append, livelock=lambda: self._happened.append("livelock"))
+        self._loop = ControlLoop(model, settings, hooks)
+        self.data = EventData(self._loop.engine, graph)
+        self._in_batch = False
+
+    @property
+    def events(self) -> list[str]:
+        """What a script may name: what comes from the robot, and the loop's own steps."""
+        return [*map(event_name, self._loop.engine.roles.incoming), *self.OWN]
+
+    def step(self, event: str, data: Mapping[str, Any]) -> dict[str, Any]:
+        """What came of a step: the object that `simulate --loop --script` prints. Raises DataError."""
+        inputs = {} if event in self.OWN else self.data.inputs(event, data)
+        self._happened.clear()
+        by: Blocked | Unreadable | None = None
+        if event in self.OWN:
+            self._in_batch = event == BEGIN
+            getattr(self._loop, event)()
+        else:
+            if not self._in_batch:
+                self._loop.begin()
+            by = self._loop.engine.blocked_by(event) or self.data.unreadable(event, data)
+            if not isinstance(by, Unreadable):
+                self._loop.perform(event, inputs)
+            elif by.error is not None:
+                self._loop.perform(by.error)
+            if not self._in_batch:
+                self._loop.end()
+        return {
+            "event": event,
+            "accepted": by is None,
+            "by": None if by is None else str(by),
+            "happened": list(self._happened),
+            "state": whole_state(self._loop.engine),
+        }

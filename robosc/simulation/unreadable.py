@@ -1,4 +1,4 @@
-"""Whether the data that a script gives to an event can be read by the transitions that the event takes."""
+"""Whether arrays in the data that a script gives to an event have all elements that its transitions read."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ _DECIDED = {ex.Conjunction: False, ex.Disjunction: True, ex.Implication: False}
 
 
 @dataclass(frozen=True)
-class Unread:
-    """Why data can't be read, and what its event counts as then: an error; None: as not received."""
+class Unreadable:
+    """Data that can't be read: `why`, and the `error` event that happens instead; None: it counts as not received."""
 
     why: str
     error: str | None
@@ -32,15 +32,15 @@ class Unread:
 
 
 class _UnknownError(Exception):
-    """What a condition reads is not given."""
+    """A condition reads a value that the script does not give."""
 
 
-def missing(expressions: Iterable[ex.Expression], value: Any) -> PastEndError | None:
-    """The first element that these expressions read and an array in the value lacks.
+def past_end(expressions: Iterable[ex.Expression], value: Any) -> PastEndError | None:
+    """The first element that these expressions read and an array in the value lacks; None where there is none.
 
     The value is that of an event's data, as JSON: of an array that is not there nothing is known.
     """
-    return next(filter(None, (_missing(each, value) for each in expressions)), None)
+    return next(filter(None, (_missing(expression, value) for expression in expressions)), None)
 
 
 def _missing(expression: ex.Expression, value: Any) -> PastEndError | None:

@@ -15,7 +15,7 @@ from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph
 from robosc.simulation import Simulation
 from robosc.simulation.session import Session
-from robosc.simulation.unread import missing
+from robosc.simulation.unreadable import past_end
 
 MISSION = Path(__file__).parents[1] / "runtime" / "mission.rscd"
 ROUTE = "message_route.u_response"
@@ -87,7 +87,7 @@ def _read(*path: str | int, kind: ex.Type | None = None) -> rosgraph.WireAccess:
 def test_operators_read_no_further_than_needed(operator: type[ex.BinaryExpression], few: int, lacks: bool) -> None:
     many = ex.GreaterThan(left=_read("count", kind=ex.IntegerType()), right=ex.IntegerLiteral(value=2))
     element = ex.GreaterThan(left=_read("ranges", 2), right=ex.DoubleLiteral(value=0.5))
-    fault = missing([operator(left=many, right=element)], {"count": few, "ranges": [1.0]})
+    fault = past_end([operator(left=many, right=element)], {"count": few, "ranges": [1.0]})
     assert (fault is not None) is lacks
     # Where it is not known whether it is read, nothing is said.
-    assert missing([operator(left=many, right=element)], {"ranges": [1.0]}) is None
+    assert past_end([operator(left=many, right=element)], {"ranges": [1.0]}) is None
