@@ -18,10 +18,10 @@ from robosc.analysis.verify.differences import different, happening, on_one_side
 from robosc.analysis.verify.loop_walk import LoopWalk
 from robosc.analysis.verify.transitions import of_system
 from robosc.analysis.verify.verdict import Outcome, Verdict
+from robosc.files.resources import locate
 from robosc.files.writing import temporary_folder
 from robosc.m2t.c.comments import string_literal
 from robosc.m2t.c.names import CNames
-from robosc.m2t.templates import environment
 from robosc.semantics.recursion import deep_recursion
 from robosc.semantics.roles import event_name
 from robosc.synthesis import MEMORY
@@ -101,15 +101,8 @@ class _Trial:
         for path, text in files.items():
             (self._folder / path).write_text(text, encoding="utf-8")
         names = CNames(self._model)
-        explorer = environment("robosc.analysis.verify").get_template("explorer.c.j2")
-        source = explorer.render(
-            p=names.prefix,
-            u=names.macro,
-            cells=[self._member(names, cell) for cell in self._cells],
-            inputs=[self._member(names, parameter) for parameter in self._inputs],
-            events=[string_literal(event_name(event)) for event in self._events],
-        )
-        (self._folder / "explorer.c").write_text(source, encoding="utf-8")
+        shutil.copy(locate("analysis/verify/explorer.c"), self._folder)
+        (self._folder / "model.h").write_text(self._header(names), encoding="utf-8")
         sources = [f"{names.prefix}_supervisor.c", "explorer.c"]
         command = [compiler, "-std=c99", "-O1", "-w", *sources, "-o", "explorer"]
         done = self._done(command)
@@ -143,9 +136,25 @@ class _Trial:
                 raise
         return subprocess.CompletedProcess(command, process.returncode, output, errors)
 
-    @staticmethod
-    def _member(names: CNames, element: Element) -> dict[str, str]:
-        return {"member": names.member(element), "least": str(smallest(element) % 2**64)}
+    def _header(self, names: CNames) -> str:
+        """What of `explorer.c` the model decides; `explorer.c` says what each macro is."""
+
+        def for_all(elements: Sequence[Element]) -> str:
+            told = (
+                f"DO({number}, {names.member(one)}, {smallest(one) % 2**64})" for number, one in enumerate(elements)
+            )
+            return " ".join(told)
+
+        events = " ".join(f"{string_literal(event_name(event))}," for event in self._events)
+        return (
+            f'#include "{names.prefix}_supervisor.h"\n'
+            f"enum {{ CELLS = {len(self._cells)}, INPUTS = {len(self._inputs)}, EVENTS = {len(self._events)} }};\n"
+            f"#define EVENT_NAMES {events}\n"
+            f"#define FOR_CELLS(DO) {for_all(self._cells)}\n"
+            f"#define FOR_INPUTS(DO) {for_all(self._inputs)}\n"
+            f"#define ENGINE(name) {names.prefix}_##name\n"
+            f"#define ENGINE_EVENTS {names.macro}_EVENT_COUNT\n"
+        )
 
     def run(self, capacity: int) -> Verdict:
         """What the explorer finds, with so many nodes for the decision diagrams."""

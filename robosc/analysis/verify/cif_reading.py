@@ -2,32 +2,24 @@
 
 from __future__ import annotations
 
-import re
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache, reduce
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import textx
 
-from robosc.analysis.verify import cif_types as types
+from robosc.analysis.verify import cif_expressions as types
 from robosc.files.resources import locate
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 from robosc.semantics.printing import copied
-from robosc.semantics.recursion import deep_recursion
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    _Typed = tuple[ex.Expression, types.Type]
+    from collections.abc import Sequence
 
 
 class CifError(ValueError):
     """A text that is not such a specification; says where and what is wrong."""
-
-
-class DepthError(CifError):
-    """A text that is nested too deep to be read."""
 
 
 @dataclass(frozen=True)
@@ -45,14 +37,6 @@ class Specification:
     alphabet: Sequence[sct.Event]
 
 
-#: How deep parentheses, `if` and `not` may be nested: what reads them calls itself so often for each, and takes
-#: of the C stack, too.
-DEEPEST = 2000
-_CALLS = 60
-#: What nests, and what stands between; texts and comments, in which nothing does, are one of the latter.
-_NESTING = re.compile(r'"(?:[^"\\]|\\.)*"|//.*|/\*(?:.|\n)*?\*/|[();]|\$?[A-Za-z_][\w.$]*|\d+')
-
-
 @cache
 def _grammar() -> Any:
     return textx.metamodel_from_file(str(locate("grammar/cif.tx")), autokwd=True)
@@ -62,55 +46,19 @@ def read(text: str) -> Specification:
     """The specification that a text is. Raises CifError."""
     strange = next((place for place, character in enumerate(text) if not character.isascii()), None)
     if strange is not None:
-        line, column = text.count("\n", 0, strange) + 1, strange - text.rfind("\n", 0, strange)
-        raise CifError(f"line {line}, column {column}: {text[strange]!a} is no ASCII")
-    _refuse_too_deep(text)
+        raise CifError(f"{_place(text, strange)}: {text[strange]!a} is no ASCII")
     try:
-        with deep_recursion(_CALLS * DEEPEST):
-            return _Reading(_grammar().model_from_str(text)).specification()
+        return _Reading(_grammar().model_from_str(text), text).specification()
     except textx.TextXSyntaxError as fault:
         raise CifError(f"line {fault.line}, column {fault.col}: {fault.message}") from None
-
-
-def _refuse_too_deep(text: str) -> None:
-    around: list[int] = []
-    depth = operators = 0
-    for token in _NESTING.finditer(text):
-        word = token[0]
-        if word == "not":
-            operators += 1
-        elif word in ("(", "if"):
-            around.append(operators + 1)
-            depth += around[-1]
-            operators = 0
-        elif word == ";":
-            around.clear()
-            depth = operators = 0
-        else:
-            operators = 0
-            if word in (")", "end") and around:
-                depth -= around.pop()
-        if depth + operators > DEEPEST:
-            line, column = text.count("\n", 0, token.start()) + 1, token.start() - text.rfind("\n", 0, token.start())
-            raise DepthError(f"line {line}, column {column}: this is nested more than {DEEPEST} levels deep")
-
-
-@dataclass(frozen=True)
-class _Scope:
-    """Where an expression stands: the automaton, if any; and what is special there."""
-
-    automaton: sct.Plant | None = None
-    #: It is a constant.
-    constant: bool = False
-    #: It is all that is assigned, where synthesis takes a subtraction.
-    assigned: bool = False
 
 
 class _Reading:
     """From the objects of the grammar to those of the metamodel."""
 
-    def __init__(self, read: Any) -> None:
+    def __init__(self, read: Any, text: str) -> None:
         self._read = read
+        self._text = text
         #: What is declared outside of automata, and in each of them.
         self._outer: dict[str, Any] = {}
         self._inner: dict[sct.Plant, dict[str, Any]] = {}
@@ -157,10 +105,8 @@ class _Reading:
     def _of(self, rule: str) -> list[Any]:
         return [declaration for declaration in self._read.declarations if type(declaration).__name__ == rule]
 
-    @staticmethod
-    def _fail(read: Any, reason: str) -> NoReturn:
-        place = textx.get_location(read)
-        raise CifError(f"line {place['line']}, column {place['col']}: {reason}")
+    def _fail(self, read: Any, reason: str) -> NoReturn:
+        raise CifError(f"{_place(self._text, read._tx_position)}: {reason}")  # noqa: SLF001 - textX's own way to tell it
 
     def _annotated(self, read: Any) -> None:
         for annotation in read.annotations:
@@ -265,7 +211,7 @@ class _Reading:
             variable for one in read.declarations if type(one).__name__ == "Variables" for variable in one.variables
         ]
         for variable, declaration in zip(automaton.variables, variables, strict=True):
-            value, kind = self._expression(declaration.initial, _Scope(automaton, constant=True))
+            value, kind = self._expression(declaration.initial, automaton, constant=True)
             if not types.contains(self._types[variable], kind):
                 self._fail(
                     declaration,
@@ -313,7 +259,7 @@ class _Reading:
             self._fail(read.target, f"'{read.target.text}' is no location of '{automaton.name}'")
         edge = sct.Edge(event=self._event(read.event, automaton), target=target)
         if read.guard:
-            edge.guard = self._condition(read.guard, _Scope(automaton))
+            edge.guard = self._condition(read.guard, automaton)
         for update in read.updates:
             variable = self._find(update.variable, automaton)
             if not isinstance(variable, sct.DiscreteVariable):
@@ -322,7 +268,7 @@ class _Reading:
                 self._fail(update, f"'{update.variable.text}' is no variable of '{automaton.name}'")
             if any(variable is other.variable for other in edge.updates):
                 self._fail(update, f"'{update.variable.text}' is assigned twice")
-            value, kind = self._expression(update.value, _Scope(automaton, assigned=True))
+            value, kind = self._expression(update.value, automaton, assigned=True)
             if not types.overlap(self._types[variable], kind):
                 self._fail(
                     update, f"'{variable.name}' is {self._shown(variable)} and what it is to be {types.shown(kind)}"
@@ -337,7 +283,7 @@ class _Reading:
         return sct.Requirement(
             event=self._event(read.event, None),
             kind=getattr(sct.RequirementKind, type(read).__name__.lower()),
-            condition=self._condition(read.condition, _Scope()),
+            condition=self._condition(read.condition, None),
         )
 
     def _event(self, read: Any, automaton: sct.Plant | None) -> sct.Event:
@@ -361,69 +307,36 @@ class _Reading:
 
     # Expressions
 
-    def _condition(self, read: Any, scope: _Scope) -> ex.Expression:
-        made, kind = self._expression(read, scope)
+    def _condition(self, read: Any, automaton: sct.Plant | None) -> ex.Expression:
+        made, kind = self._expression(read, automaton)
         if kind != types.BOOLEAN:
             self._fail(read, f"a condition is bool and this is {types.shown(kind)}")
         return made
 
-    def _expression(self, read: Any, scope: _Scope) -> _Typed:
-        """An expression of any level of the grammar, and its type."""
-        match type(read).__name__:
-            case "Expression":
-                return self._chain([read.left, *([read.right] if read.operator else [])], [read.operator], scope)
-            case "Or" | "And" as rule:
-                return self._chain(read.operands, [rule.lower()] * (len(read.operands) - 1), scope)
-            case "Compared" | "Sum":
-                return self._chain([read.left, *read.rights], read.operators, scope)
-            case "Group":
-                return self._expression(read.inner, scope)
-            case "Choice":
-                return self._choice(read, replace(scope, assigned=False))
-            case "Negation":
-                operand, kind = self._expression(read.operand, replace(scope, assigned=False))
-                if kind != types.BOOLEAN:
-                    self._fail(read, f"'not' does not apply to {types.shown(kind)}")
-                return ex.Negation(operand=operand), kind
-            case "Truth":
-                return ex.BooleanLiteral(value=read.value == "true"), types.BOOLEAN
-            case "Literal":
-                number = self._number(read.value, read)
-                return ex.IntegerLiteral(value=number), range(number, number + 1)
-        return self._reference(read, scope)
+    def _expression(
+        self, read: Any, automaton: sct.Plant | None, *, constant: bool = False, assigned: bool = False
+    ) -> tuple[ex.Expression, types.Type]:
+        """An expression, read in an automaton or outside of all, and its type; constant, or all that is assigned."""
 
-    def _chain(self, operands: Sequence[Any], operators: Sequence[str], scope: _Scope) -> _Typed:
-        """From the left."""
-        if len(operands) == 1:
-            return self._expression(operands[0], scope)
-        within = replace(scope, assigned=False)
-        made, kind = self._expression(operands[0], within)
-        for position, (operator, operand) in enumerate(zip(operators, operands[1:], strict=True), 2):
-            if operator == "-" and not (scope.assigned and position == len(operands)):
-                self._fail(operand, "CIF's synthesis takes a '-' at the top of an assignment only")
-            right, other = self._expression(operand, within)
-            kind = self._combined(lambda: types.combined(operator, kind, other), operand)  # noqa: B023 - called at once
-            made = types.OPERATORS[operator](left=made, right=right)
-        return made, kind
+        def value_of(operand: Any) -> types.Typed:
+            position = operand._tx_position  # noqa: SLF001
+            match type(operand).__name__:
+                case "Truth":
+                    return types.Typed(position, ex.BooleanLiteral(value=operand.value == "true"), types.BOOLEAN)
+                case "Literal":
+                    number = self._number(operand.value, operand)
+                    return types.Typed(position, ex.IntegerLiteral(value=number), range(number, number + 1))
+            return types.Typed(position, *self._reference(operand, automaton, constant=constant))
 
-    def _choice(self, read: Any, scope: _Scope) -> _Typed:
-        conditions = [self._condition(condition, scope) for condition in read.conditions]
-        values = [self._expression(value, scope) for value in read.values]
-        made, kind = self._expression(read.otherwise, scope)
-        for guard, (value, other) in reversed(list(zip(conditions, values, strict=True))):
-            kind = self._combined(lambda: types.joined(other, kind), read)  # noqa: B023 - called at once
-            made = ex.Conditional(condition=guard, then=value, otherwise=made)
-        return made, kind
-
-    def _combined(self, kind: Callable[[], types.Type], read: Any) -> types.Type:
         try:
-            return kind()
-        except TypeError as fault:
-            return self._fail(read, str(fault))
+            _, made, kind = types.ExpressionReader(read, value_of, difference=assigned).result
+        except types.ExpressionError as fault:
+            raise CifError(f"{_place(self._text, fault.position)}: {fault}") from None
+        return made, kind
 
-    def _reference(self, read: Any, scope: _Scope) -> _Typed:
-        element = self._find(read.name, scope.automaton)
-        if scope.constant and not isinstance(element, ex.EnumerationLiteral):
+    def _reference(self, read: Any, automaton: sct.Plant | None, *, constant: bool) -> tuple[ex.Expression, types.Type]:
+        element = self._find(read.name, automaton)
+        if constant and not isinstance(element, ex.EnumerationLiteral):
             self._fail(read, f"'{read.name.text}' is no constant")
         match element:
             case sct.DiscreteVariable():
@@ -435,6 +348,11 @@ class _Reading:
             case ex.EnumerationLiteral():
                 return ex.EnumerationLiteralReference(literal=element), element.eContainer()
         return self._fail(read, f"'{read.name.text}' has no value")
+
+
+def _place(text: str, position: int) -> str:
+    """A position in a text, as people count."""
+    return f"line {text.count(chr(10), 0, position) + 1}, column {position - text.rfind(chr(10), 0, position)}"
 
 
 def _monitor(event: sct.Event, location: sct.Location) -> None:

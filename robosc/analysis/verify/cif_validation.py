@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from robosc.analysis.system import GuardedSystem, counted
-from robosc.analysis.verify.cif_reading import CifError, DepthError, Specification, read
+from robosc.analysis.verify.cif_reading import CifError, Specification, read
 from robosc.analysis.verify.correspondence import Correspondence
 from robosc.analysis.verify.differences import different, happening, on_one_side, refuted, where
 from robosc.analysis.verify.transitions import (
@@ -63,8 +63,6 @@ def _validate(model: sct.SupervisoryControlModel, text: str, *, supervised: bool
             model, specification, Correspondence(model, specification.model), supervised=supervised
         )
         return with_enough_memory(comparison.run, MEMORY)
-    except DepthError as fault:
-        return Verdict(PROPERTY, Outcome.SKIPPED, "", f"{what} can't be read: {fault}")
     except (CifError, AmbiguityError, ModelError) as fault:
         return refuted(PROPERTY, f"{what} is wrong: {fault}")
 
@@ -212,8 +210,8 @@ class _Comparison:
         """The difference where state and inputs have these codes."""
         event, element = difference.event, difference.element
         here = system.diagrams.true
-        for element, code in codes.items():
-            here &= system.encoding.has_code(element, code)
+        for cell, code in codes.items():
+            here &= system.encoding.has_code(cell, code)
         ours, theirs = (
             sum((bit & here).satisfiable() << place for place, bit in enumerate(bits))
             for bits in (difference.ours, difference.theirs)

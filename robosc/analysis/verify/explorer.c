@@ -1,4 +1,4 @@
-/* Plays {{ p }}_supervisor.c against what its model says of each event, and tells the first difference. Where there is
+/* Plays a generated supervisor against what its model says of each event, and tells the first difference. Where there is
  * none, it goes on to tell what the control loop does.
  *
  *     explorer REFERENCE STATES STEPS WALK SCRIPT
@@ -10,19 +10,22 @@
  *
  * A value is told as its code: how far it is from the least value, the position of a location or literal.
  */
-#include "{{ p }}_supervisor.h"
-
 #include <inttypes.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum {
-    CELLS = {{ cells | length }}, /* locations and variables */
-    INPUTS = {{ inputs | length }},
-    EVENTS = {{ events | length }},
-    RESTART = 1000 /* Steps of a walk until it begins anew. */
-};
+/* What the model decides. The header includes that of the supervisor and has
+ *
+ *     CELLS, INPUTS, EVENTS        how many cells (locations and variables), inputs and events the model has
+ *     EVENT_NAMES                  the initializers of the events' names
+ *     FOR_CELLS(DO), FOR_INPUTS(DO)  DO(number, member of the struct, least value) for all of them
+ *     ENGINE(name), ENGINE_EVENTS  `name` with the supervisor's prefix; how many events the supervisor has
+ */
+#include "model.h"
+
+enum { RESTART = 1000 }; /* Steps of a walk until it begins anew. */
 
 /* A finite domain: the levels of its bits in the decision diagrams, the least significant first, and where a state
  * keeps them. */
@@ -36,50 +39,43 @@ typedef struct effect {
 } effect;
 
 typedef struct event {
-    {{ p }}_event number;
+    ENGINE(event) number;
     unsigned enabled, inputs, *input, effects;
     effect *effect;
 } event;
 
-static const char *const names[EVENTS + 1] = {
-{% for each in events %}
-    {{ each }},
-{% endfor %}
-    ""
-};
+static const char *const names[EVENTS + 1] = { EVENT_NAMES "" };
 
 static domain domains[CELLS + INPUTS + 1];
 static event events[EVENTS + 1];
 static uint64_t initial[CELLS + 1], chosen[INPUTS + 1], expected[CELLS + 1];
 static struct node { unsigned level, high, low; } *nodes;
 static bool *truth;
-static {{ p }}_supervisor robot, placed;
+static ENGINE(supervisor) robot, placed;
 
 /* ---- The engine ---- */
+
+#define PUT_CELL(number, member, least) robot.state.member = (int64_t)(code[number] + UINT64_C(least));
+#define GET_CELL(number, member, least) code[number] = (uint64_t)(int64_t)robot.state.member - UINT64_C(least);
+#define PUT_INPUT(number, member, least) robot.inputs.member = (int64_t)(chosen[number] + UINT64_C(least));
 
 /* Puts the robot into a state; `placed` keeps it as it is then. */
 static void put(const uint64_t *code)
 {
     (void)code;
-{% for each in cells %}
-    robot.state.{{ each.member }} = (int64_t)(code[{{ loop.index0 }}] + UINT64_C({{ each.least }}));
-{% endfor %}
+    FOR_CELLS(PUT_CELL)
     memcpy(&placed, &robot, sizeof placed);
 }
 
 static void put_inputs(void)
 {
-{% for each in inputs %}
-    robot.inputs.{{ each.member }} = (int64_t)(chosen[{{ loop.index0 }}] + UINT64_C({{ each.least }}));
-{% endfor %}
+    FOR_INPUTS(PUT_INPUT)
 }
 
 static void get(uint64_t *code)
 {
     (void)code;
-{% for each in cells %}
-    code[{{ loop.index0 }}] = (uint64_t)(int64_t)robot.state.{{ each.member }} - UINT64_C({{ each.least }});
-{% endfor %}
+    FOR_CELLS(GET_CELL)
 }
 
 /* ---- The model ---- */
@@ -112,8 +108,8 @@ static void enter(const uint64_t *code)
 
 static void tell(const uint64_t *code, unsigned count)
 {
-    for (unsigned each = 0U; each < count; ++each) {
-        printf(" %" PRIu64, code[each]);
+    for (unsigned index = 0U; index < count; ++index) {
+        printf(" %" PRIu64, code[index]);
     }
 }
 
@@ -132,8 +128,8 @@ static void differ(const event *one, const uint64_t *state, bool possible, bool 
 static bool asked(const event *one, const uint64_t *state)
 {
     const bool possible = holds(one->enabled);
-    const bool enabled = {{ p }}_enabled(&robot, one->number);
-    const bool performed = !enabled && {{ p }}_perform(&robot, one->number);
+    const bool enabled = ENGINE(enabled)(&robot, one->number);
+    const bool performed = !enabled && ENGINE(perform)(&robot, one->number);
     if (enabled != possible || performed || (!enabled && memcmp(&robot.state, &placed.state, sizeof robot.state) != 0)) {
         uint64_t after[CELLS + 1];
         get(after);
@@ -146,12 +142,12 @@ static bool asked(const event *one, const uint64_t *state)
 /* The state after a possible event with the chosen inputs; the robot goes back. */
 static void perform(const event *one, const uint64_t *state, uint64_t *after)
 {
-    for (unsigned each = 0U; each < one->inputs; ++each) {
-        assume(&domains[CELLS + one->input[each]], chosen[one->input[each]]);
+    for (unsigned position = 0U; position < one->inputs; ++position) {
+        assume(&domains[CELLS + one->input[position]], chosen[one->input[position]]);
     }
     memcpy(expected, state, CELLS * sizeof *expected);
-    for (unsigned each = 0U; each < one->effects; ++each) {
-        const effect *change = &one->effect[each];
+    for (unsigned position = 0U; position < one->effects; ++position) {
+        const effect *change = &one->effect[position];
         uint64_t code = 0U;
         for (unsigned bit = 0U; bit < domains[change->cell].bits; ++bit) {
             code |= (uint64_t)holds(change->bit[bit]) << bit;
@@ -159,7 +155,7 @@ static void perform(const event *one, const uint64_t *state, uint64_t *after)
         expected[change->cell] = code;
     }
     put_inputs();
-    const bool performed = {{ p }}_perform(&robot, one->number);
+    const bool performed = ENGINE(perform)(&robot, one->number);
     get(after);
     if (!performed || memcmp(after, expected, CELLS * sizeof *after) != 0) {
         differ(one, state, true, true, performed, after);
@@ -237,8 +233,8 @@ static void unpack(size_t index, uint64_t *code)
 
 static bool next_choice(const event *one)
 {
-    for (unsigned each = 0U; each < one->inputs; ++each) {
-        const unsigned input = one->input[each];
+    for (unsigned position = 0U; position < one->inputs; ++position) {
+        const unsigned input = one->input[position];
         if (chosen[input] < domains[CELLS + input].last) {
             ++chosen[input];
             return true;
@@ -322,8 +318,8 @@ static void walk(uint64_t steps)
             continue;
         }
         const event *one = possible[random_number() % number];
-        for (unsigned each = 0U; each < one->inputs; ++each) {
-            chosen[one->input[each]] = random_code(domains[CELLS + one->input[each]].last);
+        for (unsigned position = 0U; position < one->inputs; ++position) {
+            chosen[one->input[position]] = random_code(domains[CELLS + one->input[position]].last);
         }
         perform(one, now, after);
         memcpy(now, after, CELLS * sizeof *now);
@@ -348,8 +344,8 @@ static uint64_t number(void)
 static unsigned *numbers(unsigned length)
 {
     unsigned *values = enough(calloc(length + 1U, sizeof *values));
-    for (unsigned each = 0U; each < length; ++each) {
-        values[each] = (unsigned)number();
+    for (unsigned position = 0U; position < length; ++position) {
+        values[position] = (unsigned)number();
     }
     return values;
 }
@@ -390,9 +386,9 @@ static void load(void)
         one->input = numbers(one->inputs);
         one->effects = (unsigned)number();
         one->effect = enough(calloc(one->effects + 1U, sizeof *one->effect));
-        for (unsigned each = 0U; each < one->effects; ++each) {
-            one->effect[each].cell = (unsigned)number();
-            one->effect[each].bit = numbers(domains[one->effect[each].cell].bits);
+        for (unsigned position = 0U; position < one->effects; ++position) {
+            one->effect[position].cell = (unsigned)number();
+            one->effect[position].bit = numbers(domains[one->effect[position].cell].bits);
         }
     }
 }
@@ -401,45 +397,45 @@ static void load(void)
 static bool begin(void)
 {
     uint64_t code[CELLS + 1];
-    {{ p }}_init(&robot, NULL, NULL);
+    ENGINE(init)(&robot, NULL, NULL);
     get(code);
     if (memcmp(code, initial, CELLS * sizeof *code) != 0) {
         printf("initial");
         tell(code, CELLS);
         return false;
     }
-    for (unsigned each = 0U; each < EVENTS; ++each) {
+    for (unsigned position = 0U; position < EVENTS; ++position) {
         unsigned found = 0U;
-        while (found < {{ u }}_EVENT_COUNT && strcmp({{ p }}_event_name(({{ p }}_event)found), names[each]) != 0) {
+        while (found < ENGINE_EVENTS && strcmp(ENGINE(event_name)((ENGINE(event))found), names[position]) != 0) {
             ++found;
         }
-        if (found == {{ u }}_EVENT_COUNT) {
-            printf("missing %u", each);
+        if (found == ENGINE_EVENTS) {
+            printf("missing %u", position);
             return false;
         }
-        events[each].number = ({{ p }}_event)found;
+        events[position].number = (ENGINE(event))found;
     }
     return true;
 }
 
 /* ---- The control loop ---- */
 
-static bool withheld[{{ u }}_EVENT_COUNT + 1];
+static bool withheld[ENGINE_EVENTS + 1];
 
-static bool before(void *context, {{ p }}_event event)
+static bool before(void *context, ENGINE(event) event)
 {
     (void)context;
     return !withheld[event];
 }
 
-static void after(void *context, {{ p }}_event event)
+static void after(void *context, ENGINE(event) event)
 {
     (void)context;
-    unsigned each = 0U;
-    while (each < EVENTS && events[each].number != event) {
-        ++each;
+    unsigned happened = 0U;
+    while (happened < EVENTS && events[happened].number != event) {
+        ++happened;
     }
-    printf(" %u", each);
+    printf(" %u", happened);
 }
 
 static void livelock(void *context)
@@ -451,18 +447,18 @@ static void livelock(void *context)
 /* Does what the script says, and tells of each operation what happened, and the state after it. */
 static void follow(void)
 {
-    const {{ p }}_hooks hooks = { NULL, before, after, livelock };
+    const ENGINE(hooks) hooks = { NULL, before, after, livelock };
     char operation;
     while (fscanf(reference, " %c", &operation) == 1) {
         uint64_t code[CELLS + 1];
         bool result = false;
-        {{ p }}_event event;
+        ENGINE(event) event;
         if (operation == 'n') {
-            {{ p }}_settings settings;
+            ENGINE(settings) settings;
             settings.events_per_tick = (uint16_t)number();
             settings.reactions_per_tick = (uint16_t)number();
             settings.react_immediately = number() != 0U;
-            {{ p }}_init(&robot, &settings, &hooks);
+            ENGINE(init)(&robot, &settings, &hooks);
             memset(withheld, 0, sizeof withheld);
             continue;
         }
@@ -481,19 +477,19 @@ static void follow(void)
         switch (operation) {
         case 'p':
             event = events[number()].number;
-            result = {{ p }}_perform(&robot, event);
+            result = ENGINE(perform)(&robot, event);
             break;
         case 'b':
-            {{ p }}_begin(&robot);
+            ENGINE(begin)(&robot);
             break;
         case 'e':
-            {{ p }}_end(&robot);
+            ENGINE(end)(&robot);
             break;
         case 't':
-            {{ p }}_tick(&robot);
+            ENGINE(tick)(&robot);
             break;
         default:
-            {{ p }}_settle(&robot);
+            ENGINE(settle)(&robot);
             break;
         }
         printf(" = %d", result);

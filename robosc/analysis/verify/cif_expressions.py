@@ -1,0 +1,229 @@
+"""CIF's expressions as far as generated specifications have them: how they are read, their types, what they mean.
+
+By CIF's language reference and tutorial, and not by what is generated. A type is BOOLEAN, an enumeration, or for
+integers the range of the values that an expression may have.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeAlias
+
+from robosc.metamodel import expression as ex
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping
+
+BOOLEAN: Final = "bool"
+#: CIF's integers have 32 bits.
+LARGEST = 2**31 - 1
+Type: TypeAlias = str | range | ex.Enumeration
+
+#: How tightly each operator binds, and what it makes. All comparisons bind alike; an implication is no chain.
+OPERATORS: Mapping[str, tuple[int, type[ex.BinaryExpression]]] = {
+    "=>": (1, ex.Implication),
+    "<=>": (1, ex.Equation),
+    "or": (2, ex.Disjunction),
+    "and": (3, ex.Conjunction),
+    "=": (4, ex.Equation),
+    "!=": (4, ex.Inequation),
+    "<": (4, ex.LessThan),
+    "<=": (4, ex.LessOrEqual),
+    ">": (4, ex.GreaterThan),
+    ">=": (4, ex.GreaterOrEqual),
+    "+": (5, ex.Addition),
+    "-": (5, ex.Subtraction),
+}
+
+
+def shown(kind: Type) -> str:
+    """A type as CIF writes it."""
+    match kind:
+        case range():
+            return f"int[{kind.start}..{kind.stop - 1}]"
+        case ex.Enumeration():
+            return str(kind.name)
+    return str(kind)
+
+
+def compatible(one: Type, other: Type) -> bool:
+    """Whether values of the types can be compared, and be alternatives of each other: ranges don't matter for that."""
+    if isinstance(one, ex.Enumeration) and isinstance(other, ex.Enumeration):
+        return [literal.name for literal in one.literals] == [literal.name for literal in other.literals]
+    return isinstance(one, range) and isinstance(other, range) if isinstance(one, range) else one == other
+
+
+def combined(operator: str, left: Type, right: Type) -> Type:
+    """The type of a binary expression. Raises TypeError, saying why there is none."""
+    if operator in ("=>", "<=>", "or", "and"):
+        fits = left == right == BOOLEAN
+    elif operator in ("=", "!="):
+        fits = compatible(left, right)
+    else:
+        fits = isinstance(left, range) and isinstance(right, range)
+    if not fits:
+        raise TypeError(f"'{operator}' does not apply to {shown(left)} and {shown(right)}")
+    if not isinstance(left, range) or not isinstance(right, range) or operator not in ("+", "-"):
+        return BOOLEAN
+    low, high = right.start, right.stop - 1
+    made = range(left.start + low, left.stop + high) if operator == "+" else range(left.start - high, left.stop - low)
+    if made.start < -LARGEST - 1 or made.stop - 1 > LARGEST:
+        raise TypeError(f"'{operator}' of {shown(left)} and {shown(right)} could overflow")
+    return made
+
+
+def joined(one: Type, other: Type) -> Type:
+    """The type of something that is one or the other. Raises TypeError where they are not compatible."""
+    if not compatible(one, other):
+        raise TypeError(f"the alternatives are {shown(one)} and {shown(other)}")
+    if isinstance(one, range) and isinstance(other, range):
+        return range(min(one.start, other.start), max(one.stop, other.stop))
+    return one
+
+
+def overlap(variable: Type, value: Type) -> bool:
+    """Whether a variable can be assigned some of the values."""
+    if isinstance(variable, range) and isinstance(value, range):
+        return variable.start < value.stop and value.start < variable.stop
+    return compatible(variable, value)
+
+
+def contains(variable: Type, value: Type) -> bool:
+    """Whether a variable can have all of the values."""
+    if isinstance(variable, range) and isinstance(value, range):
+        return variable.start <= value.start and value.stop <= variable.stop
+    return compatible(variable, value)
+
+
+class Typed(NamedTuple):
+    """An expression with its type and the position in the text at which it begins."""
+
+    position: int
+    expression: ex.Expression
+    type: Type
+
+
+class ExpressionError(ValueError):
+    """An expression that CIF refuses, at a position of the text."""
+
+    def __init__(self, position: int, reason: str) -> None:
+        super().__init__(reason)
+        self.position = position
+
+
+@dataclass
+class _Open:
+    """What is yet to be completed: an operator, a parenthesis, an `if` with its alternatives so far."""
+
+    word: str
+    position: int
+    conditions: list[Typed] = field(default_factory=list)
+    values: list[Typed] = field(default_factory=list)
+
+
+class ExpressionReader:
+    """Reads one expression from its tokens, without recursion (Dijkstra's shunting yard).
+
+    `difference` says that the expression is all that is assigned: there alone, and last, synthesis takes a `-`.
+    """
+
+    def __init__(self, read: Any, value_of: Callable[[Any], Typed], *, difference: bool) -> None:
+        """`read` is an `Expression` of the grammar, `value_of` makes what an operand stands for."""
+        self._done: list[Typed] = []
+        self._open: list[_Open] = []
+        self._differences: list[tuple[int, ex.Expression]] = []
+        end = read._tx_position_end  # noqa: SLF001 - textX's own way to tell it
+        for word, token in _tokens(read):
+            if word is None:
+                self._done.append(value_of(token))
+            else:
+                self._take(word, token._tx_position)  # noqa: SLF001
+        self._reduce(0)
+        if self._open:
+            raise ExpressionError(
+                end, "Expected ')'" if self._open[-1].word == "(" else "Expected the rest of the 'if'"
+            )
+        [self.result] = self._done
+        for position, made in self._differences:
+            if not (difference and made is self.result.expression):
+                raise ExpressionError(position, "CIF's synthesis takes a '-' at the top of an assignment only")
+
+    def _take(self, word: str, position: int) -> None:
+        """Any word but an operand."""
+        if word in ("(", "if", "not"):
+            self._open.append(_Open(word, position))
+            return
+        level = OPERATORS[word][0] if word in OPERATORS else 0
+        self._reduce(level)
+        top = self._open[-1] if self._open else _Open("", position)
+        if level:
+            if level == 1 and top.word in OPERATORS and OPERATORS[top.word][0] == 1:
+                raise ExpressionError(position, f"Expected no '{word}': an implication is no chain")
+            self._open.append(_Open(word, position))
+        elif word == ")" and top.word == "(":
+            self._open.pop()
+            self._done[-1] = self._done[-1]._replace(position=top.position)
+        elif word == ":" and top.word in ("if", "elif"):
+            self._boolean(self._done[-1], "a condition is bool and this is {}")
+            top.conditions.append(self._done.pop())
+            top.word = ":"
+        elif word in ("elif", "else") and top.word == ":":
+            top.values.append(self._done.pop())
+            top.word = word
+        elif word == "end" and top.word == "else":
+            self._open.pop()
+            self._done.append(self._choice(top, self._done.pop()))
+        else:
+            raise ExpressionError(position, f"Expected no '{word}'")
+
+    def _reduce(self, level: int) -> None:
+        """Completes the operators that bind as tightly as this level or more, up to what is open around them."""
+        while self._open:
+            top = self._open[-1]
+            if top.word == "not":
+                self._open.pop()
+                operand = self._done.pop()
+                self._boolean(operand._replace(position=top.position), "'not' does not apply to {}")
+                self._done.append(Typed(top.position, ex.Negation(operand=operand.expression), BOOLEAN))
+            elif top.word in OPERATORS and OPERATORS[top.word][0] >= max(level, 1 + (level == 1)):
+                self._open.pop()
+                right, left = self._done.pop(), self._done.pop()
+                kind = _checked(right.position, combined, top.word, left.type, right.type)
+                made = OPERATORS[top.word][1](left=left.expression, right=right.expression)
+                if top.word == "-":
+                    self._differences.append((right.position, made))
+                self._done.append(Typed(left.position, made, kind))
+            else:
+                return
+
+    @staticmethod
+    def _boolean(operand: Typed, problem: str) -> None:
+        if operand.type != BOOLEAN:
+            raise ExpressionError(operand.position, problem.format(shown(operand.type)))
+
+    @staticmethod
+    def _choice(top: _Open, otherwise: Typed) -> Typed:
+        made, kind = otherwise.expression, otherwise.type
+        for condition, value in reversed(list(zip(top.conditions, top.values, strict=True))):
+            kind = _checked(top.position, joined, value.type, kind)
+            made = ex.Conditional(condition=condition.expression, then=value.expression, otherwise=made)
+        return Typed(top.position, made, kind)
+
+
+def _tokens(read: Any) -> Iterator[tuple[str | None, Any]]:
+    """The tokens of an expression, with their words; operands have none."""
+    further = [(None, read.first), *((other.operator, other.operand) for other in read.others)]
+    for operator, operand in further:
+        if operator is not None:
+            yield operator.token, operator
+        yield from ((opening.token, opening) for opening in operand.openings)
+        yield None, operand.value
+        yield from ((closing.token, closing) for closing in operand.closings)
+
+
+def _checked(position: int, rule: Callable[..., Type], *given: Any) -> Type:
+    """The type by a rule; what is wrong with it is so at this position."""
+    try:
+        return rule(*given)
+    except TypeError as fault:
+        raise ExpressionError(position, str(fault)) from None
