@@ -12,13 +12,11 @@ from robosc.checks.type_repairs import equality_repair, repair
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
 from robosc.semantics.naming import written
-from robosc.semantics.printing import RoboscPrinter
+from robosc.semantics.operators import SYMBOLS, Operator, Rule, operator_of
 from robosc.semantics.typing import (
     BOOLEAN,
     DOUBLE,
-    EQUALITY,
     INTEGER,
-    LOGICAL,
     NONE,
     STRING,
     UNKNOWN,
@@ -32,6 +30,7 @@ from robosc.semantics.typing import (
     is_number,
     operator_type,
 )
+from robosc.semantics.walks import fold, operands
 
 
 class Restriction(Enum):
@@ -87,44 +86,45 @@ class ExpressionCheck:
 
     def type(self, expression: ex.Expression | None) -> Type:
         """The type of the expression, UNKNOWN if it has a fault itself; what is wrong within it is reported."""
+        return UNKNOWN if expression is None else fold(self._typed, expression, _inside)
+
+    def _typed(self, expression: ex.Expression | None, types: list[Type]) -> Type:
+        row = operator_of(expression)
         match expression:
+            case None:
+                return UNKNOWN
             case rsc.Access():
                 return self._access(expression)
-            case ex.BinaryExpression():
-                return self._operator(expression, expression.left, expression.right)
-            case ex.Negation() | ex.UnaryMinus():
-                return self._operator(expression, expression.operand)
             case rsc.ObjectValue():
                 self.report(
                     expression,
                     "an object value stands in an expression, expected a value of a basic type or an enum",
                     "provide objects as a whole or as the value of a property",
                 )
-        return infer(expression)
+        return infer(expression) if row is None else self._operator(expression, row, types)
 
     def report(self, element: ex.Located, message: str, hint: str) -> None:
         """Notes a finding."""
         self.findings.append(Finding(element, message, hint))
 
-    def _operator(self, operator: ex.Expression, *operands: ex.Expression | None) -> Type:
-        types = [self.type(each) for each in operands]
-        if isinstance(operator, EQUALITY):
+    def _operator(self, operator: ex.Expression, row: Operator, types: list[Type]) -> Type:
+        if row.rule is Rule.EQUALITY:
             self._equality(operator, types)
         else:
-            logical = isinstance(operator, LOGICAL)
+            logical = row.rule is Rule.LOGICAL
             wants = "boolean" if logical else "integer or double"
-            for operand, found in zip(operands, types, strict=True):
+            for operand, found in zip(operands(operator), types, strict=True):
                 fits = found == BOOLEAN if logical else is_number(found)
                 if operand is not None and not fits and found != UNKNOWN:
                     self.report(
                         operand,
-                        f"an operand of `{RoboscPrinter.symbols[type(operator)]}` must be {wants}, found {found}",
+                        f"an operand of `{row.symbol}` must be {wants}, found {found}",
                         repair(operand, found, BOOLEAN if logical else DOUBLE),
                     )
-        return operator_type(operator, *types)
+        return operator_type(row, types)
 
-    def _equality(self, operator: ex.Equation | ex.Inequation, types: list[Type]) -> None:
-        symbol = RoboscPrinter.symbols[type(operator)]
+    def _equality(self, operator: Any, types: list[Type]) -> None:
+        symbol = SYMBOLS[type(operator)]
         operands = (operator.left, operator.right)
         comparable = [
             each in {BOOLEAN, INTEGER, DOUBLE, STRING, UNKNOWN} or isinstance(each, EnumType) for each in types
@@ -183,6 +183,11 @@ class ExpressionCheck:
                 f"write {' or '.join(members[:3])}" if members else f"`{item.name}` has neither: leave it out",
             )
         return None
+
+
+def _inside(expression: ex.Expression | None) -> list[ex.Expression]:
+    """The operands; an object value is a finding itself."""
+    return [] if isinstance(expression, rsc.ObjectValue) else operands(expression)
 
 
 def names(first: Type, second: Type) -> tuple[str, str]:

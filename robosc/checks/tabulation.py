@@ -8,7 +8,9 @@ from robosc.checks.supervised import Fault, can_be_needed
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
 from robosc.semantics.cone_of_influence import LARGEST_TABLE, Need, Needed, accesses, conditions, read_type
-from robosc.semantics.typing import DOUBLE, EQUALITY, ORDERING, infer, value_type
+from robosc.semantics.operators import COMPARISONS
+from robosc.semantics.typing import DOUBLE, Types, value_type
+from robosc.semantics.walks import operands
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -47,17 +49,16 @@ def _in_expression(
     instances: Instances, expression: ex.Expression | None, within: Instance | None, assigned: Assigned | None
 ) -> Iterator[Fault]:
     value = value_type(expression) if expression else None
+    types = Types(value)
     pending = [expression]
     while pending:
-        each = pending.pop()
-        if isinstance(each, (*EQUALITY, *ORDERING)) and DOUBLE in {infer(each.left, value), infer(each.right, value)}:
-            yield from _too_many(instances, each, _COMPARISON, within, assigned)
-        elif isinstance(each, ex.Multiplication) and all(_reads(side) for side in (each.left, each.right)):
-            yield from _too_many(instances, each, _PRODUCT, within, assigned)
-        elif isinstance(each, ex.BinaryExpression):
-            pending += [each.right, each.left]
-        elif isinstance(each, ex.UnaryExpression):
-            pending.append(each.operand)
+        part = pending.pop()
+        if isinstance(part, COMPARISONS) and DOUBLE in {types(part.left), types(part.right)}:
+            yield from _too_many(instances, part, _COMPARISON, within, assigned)
+        elif isinstance(part, ex.Multiplication) and all(_reads(side) for side in (part.left, part.right)):
+            yield from _too_many(instances, part, _PRODUCT, within, assigned)
+        else:
+            pending += reversed(operands(part))
 
 
 def _reads(expression: ex.Expression) -> bool:

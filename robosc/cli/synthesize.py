@@ -16,8 +16,9 @@ from robosc.cli.reading import read_models
 from robosc.cli.report import Report
 from robosc.cli.saying import put, say
 from robosc.metamodel import sct
-from robosc.semantics.printing import SctPrinter, conjunction, copied
+from robosc.semantics.printing import SctPrinter, conjunction
 from robosc.semantics.roles import SILENT, event_name
+from robosc.semantics.walks import copied
 
 if sys.platform != "win32":
     import resource

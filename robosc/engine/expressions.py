@@ -2,27 +2,16 @@
 
 from __future__ import annotations
 
-import operator
 from collections.abc import Callable, Mapping, Sequence
 
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
-from robosc.semantics.recursion import deep_recursion
+from robosc.semantics.evaluation import Program
+from robosc.semantics.operators import operator_of
+from robosc.semantics.walks import parts
 
 #: The value of an expression, given the cells of a state and the inputs: an integer; false and true are 0 and 1.
 Function = Callable[[Sequence[int], Sequence[int]], int]
-
-_OPERATORS: Mapping[type[ex.Expression], Callable[[int, int], int]] = {
-    ex.Equation: operator.eq,
-    ex.Inequation: operator.ne,
-    ex.LessThan: operator.lt,
-    ex.LessOrEqual: operator.le,
-    ex.GreaterThan: operator.gt,
-    ex.GreaterOrEqual: operator.ge,
-    ex.Addition: operator.add,
-    ex.Subtraction: operator.sub,
-    ex.Multiplication: operator.mul,
-}
 
 
 class Compiler:
@@ -34,43 +23,14 @@ class Compiler:
 
     def __call__(self, expression: ex.Expression) -> Function:
         """The function of an expression. Raises ValueError for what no sct model holds: doubles, strings, division."""
-        with deep_recursion():
-            return self.function(expression)
-
-    def function(self, expression: ex.Expression) -> Function:
-        """The same, by a call that takes none of the C stack."""
-        match expression:
-            case ex.BinaryExpression():
-                return self._binary(expression, self.function(expression.left), self.function(expression.right))
-            case ex.Negation():
-                inner = self.function(expression.operand)
-                return lambda cells, inputs: not inner(cells, inputs)
-            case ex.UnaryMinus():
-                inner = self.function(expression.operand)
-                return lambda cells, inputs: -inner(cells, inputs)
-            case ex.Conditional():
-                parts = (expression.condition, expression.then, expression.otherwise)
-                condition, then, otherwise = [self.function(each) for each in parts]
-                return lambda cells, inputs: (then if condition(cells, inputs) else otherwise)(cells, inputs)
-        return self._atom(expression)
-
-    def _binary(self, expression: ex.BinaryExpression, left: Function, right: Function) -> Function:
-        match expression:
-            case ex.Conjunction():
-                return lambda cells, inputs: left(cells, inputs) and right(cells, inputs)
-            case ex.Disjunction():
-                return lambda cells, inputs: left(cells, inputs) or right(cells, inputs)
-            case ex.Implication():
-                return lambda cells, inputs: not left(cells, inputs) or right(cells, inputs)
-        compute = _OPERATORS.get(type(expression))
-        if compute is None:
-            raise ValueError(f"an sct model holds no {type(expression).__name__}")
-        return lambda cells, inputs: compute(left(cells, inputs), right(cells, inputs))
+        for part in parts(expression):
+            row = operator_of(part)
+            if isinstance(part, (ex.DoubleLiteral, ex.StringLiteral)) or (row is not None and row.interval is None):
+                raise ValueError(f"an sct model holds no {type(part).__name__}")
+        return Program[int](expression, self._atom)
 
     def _atom(self, expression: ex.Expression) -> Function:
         match expression:
-            case ex.BooleanLiteral() | ex.IntegerLiteral():
-                return _constant(int(expression.value))
             case ex.EnumerationLiteralReference():
                 return _constant(expression.literal.eContainer().literals.index(expression.literal))
             case sct.VariableReference():

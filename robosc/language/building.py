@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from robosc.language.grammar import attribute
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
-from robosc.semantics.printing import PRECEDENCE
+from robosc.semantics.operators import PRECEDENCE
 
 if TYPE_CHECKING:
     from robosc.diagnostics import Diagnostic

@@ -6,7 +6,9 @@ from typing import TYPE_CHECKING
 
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc, rosgraph, sct
-from robosc.metamodel.expression_types import is_double
+from robosc.semantics.operators import Rule, operator_of
+from robosc.semantics.typing import DOUBLE, Types
+from robosc.semantics.walks import fold, with_operands
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -14,16 +16,6 @@ if TYPE_CHECKING:
     from robosc.m2m.enumerations import Enumerations
     from robosc.m2m.trace import Trace
     from robosc.semantics.instances import Instance, InstanceVariable
-
-_NUMERIC = (ex.Addition, ex.Subtraction, ex.Multiplication)
-_COMPARISONS = (
-    ex.Equation,
-    ex.Inequation,
-    ex.LessThan,
-    ex.LessOrEqual,
-    ex.GreaterThan,
-    ex.GreaterOrEqual,
-)
 
 
 class NodeExpressions:
@@ -41,6 +33,7 @@ class NodeExpressions:
         self._trace = trace
         self._variables = variables
         self._enumerations = enumerations
+        self._types = Types()
 
     def __call__(
         self,
@@ -52,29 +45,29 @@ class NodeExpressions:
 
         `data` says what `value` with its segments means where the expression stands.
         """
-        return self.translated(expression, within, data)
 
-    def translated(
-        self,
-        expression: ex.Expression,
-        within: Instance | None,
-        data: Callable[[Sequence[robosc.AccessSegment]], ex.Expression] | None = None,
-    ) -> ex.Expression:
-        """The same, by a call that takes none of the C stack."""
-        match expression:
-            case robosc.Access():
-                return self._access(expression, within, data)
-            case ex.BooleanLiteral() | ex.IntegerLiteral() | ex.DoubleLiteral() | ex.StringLiteral():
-                return type(expression)(value=expression.value)  # type: ignore[arg-type]
-            case ex.UnaryExpression():
-                return type(expression)(operand=self.translated(expression.operand, within, data))
-        assert isinstance(expression, ex.BinaryExpression)
-        left, right = self.translated(expression.left, within, data), self.translated(expression.right, within, data)
-        if isinstance(expression, (*_NUMERIC, *_COMPARISONS, ex.Division)):
-            double = isinstance(expression, ex.Division) or is_double(left) or is_double(right)
-            if double:
-                left, right = as_double(left), as_double(right)
-        return type(expression)(left=left, right=right)
+        def translated(original: ex.Expression, operands: list[ex.Expression]) -> ex.Expression:
+            if isinstance(original, robosc.Access):
+                return self._access(original, within, data)
+            row = operator_of(original)
+            if row is None:
+                return type(original)(value=original.value)  # type: ignore[attr-defined,call-arg]
+            if row.rule is Rule.DOUBLE or (
+                row.rule in {Rule.ORDERING, Rule.EQUALITY, Rule.ARITHMETIC}
+                and DOUBLE in [self._types(operand) for operand in operands]
+            ):
+                operands = [self.as_double(operand) for operand in operands]
+            return with_operands(type(original), operands)
+
+        return fold(translated, expression)
+
+    def as_double(self, expression: ex.Expression) -> ex.Expression:
+        """The expression itself where it is a double, else its conversion."""
+        if self._types(expression) == DOUBLE:
+            return expression
+        if isinstance(expression, ex.IntegerLiteral):
+            return ex.DoubleLiteral(value=float(expression.value))
+        return ex.DoubleConversion(operand=expression)
 
     def _access(
         self,
@@ -97,12 +90,3 @@ class NodeExpressions:
         if owned in self._trace.variables:
             return sct.VariableReference(variable=self._trace.variables[owned])
         return rosgraph.NodeVariableReference(variable=self._variables[owned])
-
-
-def as_double(expression: ex.Expression) -> ex.Expression:
-    """The expression itself where it is a double, else its conversion."""
-    if is_double(expression):
-        return expression
-    if isinstance(expression, ex.IntegerLiteral):
-        return ex.DoubleLiteral(value=float(expression.value))
-    return ex.DoubleConversion(operand=expression)

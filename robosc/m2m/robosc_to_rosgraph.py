@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from robosc.m2m.constants import default_value, initial_value, literal
 from robosc.m2m.enumerations import Enumerations
-from robosc.m2m.node_expressions import NodeExpressions, as_double
+from robosc.m2m.node_expressions import NodeExpressions
 from robosc.m2m.sources import source
 from robosc.m2m.trace import EVENT_OF
 from robosc.metamodel import expression as ex
@@ -217,7 +217,7 @@ class _Transformation:
             rosgraph.FieldAssignment(
                 path=list(path),
                 type=self.type(declared),
-                value=as_double(value) if isinstance(declared, robosc.DoubleDataType) else value,
+                value=self.expressions.as_double(value) if isinstance(declared, robosc.DoubleDataType) else value,
                 source=source(data, self.instances.base),
             )
         ]

@@ -11,19 +11,13 @@ from robosc.metamodel import robosc, sct
 from robosc.metamodel.files import path_of
 from robosc.semantics.cone_of_influence import Data, property_path
 from robosc.semantics.evaluation import evaluate
+from robosc.semantics.operators import COMPARISONS
+from robosc.semantics.typing import DOUBLE, Types
+from robosc.semantics.walks import fold, parts, with_operands
 
 if TYPE_CHECKING:
     from robosc.m2m.trace import Trace
     from robosc.semantics.instances import Instance
-
-_COMPARISONS = (
-    ex.Equation,
-    ex.Inequation,
-    ex.LessThan,
-    ex.LessOrEqual,
-    ex.GreaterThan,
-    ex.GreaterOrEqual,
-)
 
 
 class SctExpressions:
@@ -31,6 +25,7 @@ class SctExpressions:
 
     def __init__(self, trace: Trace) -> None:
         self._trace = trace
+        self._types = Types()
 
     def condition(self, expression: ex.Expression, within: Instance | None) -> ex.Expression:
         """A guard, a requirement, or a condition of provided data; `within` is the instance whose text it is."""
@@ -43,24 +38,21 @@ class SctExpressions:
     def _translate(
         self, expression: ex.Expression, within: Instance | None, transition: robosc.Transition | None
     ) -> ex.Expression:
-        def translate(each: ex.Expression) -> ex.Expression:
-            return self._translate(each, within, transition)
+        def translated(original: ex.Expression, operands: list[ex.Expression]) -> ex.Expression:
+            match original:
+                case robosc.Access():
+                    return self._access(original, within, transition)
+                case ex.BooleanLiteral() | ex.IntegerLiteral() | ex.DoubleLiteral() | ex.StringLiteral():
+                    return type(original)(value=original.value)  # type: ignore[arg-type]
+                case ex.Equation() | ex.Inequation() if isinstance(original.left, ex.StringLiteral):
+                    # The supervisor needs no string, so that both sides are constants.
+                    return ex.BooleanLiteral(value=bool(evaluate(original, lambda reference: reference)))
+            made = with_operands(type(original), operands)
+            if isinstance(made, COMPARISONS) and DOUBLE in [self._types(operand) for operand in operands]:
+                return self._tabulate(made, original, within)
+            return made
 
-        match expression:
-            case robosc.Access():
-                return self._access(expression, within, transition)
-            case ex.BooleanLiteral() | ex.IntegerLiteral() | ex.DoubleLiteral():
-                return type(expression)(value=expression.value)  # type: ignore[arg-type]
-            case ex.UnaryExpression():
-                return type(expression)(operand=translate(expression.operand))
-            case ex.Equation() | ex.Inequation() if isinstance(expression.left, ex.StringLiteral):
-                # The supervisor needs no string, so that both sides are constants.
-                return ex.BooleanLiteral(value=bool(evaluate(expression, translate)))
-        assert isinstance(expression, ex.BinaryExpression)
-        translated = type(expression)(left=translate(expression.left), right=translate(expression.right))
-        if isinstance(translated, _COMPARISONS) and (_has_double(translated.left) or _has_double(translated.right)):
-            return self._tabulate(translated, expression, within)
-        return translated
+        return fold(translated, expression)
 
     def _access(
         self, access: robosc.Access, within: Instance | None, transition: robosc.Transition | None
@@ -103,27 +95,8 @@ class SctExpressions:
             ) from error
 
 
-def _has_double(expression: ex.Expression) -> bool:
-    """Whether a number is a double; what is within a comparison is none of it."""
-    match expression:
-        case ex.DoubleLiteral() | ex.Division():
-            return True
-        case ex.UnaryMinus():
-            return _has_double(expression.operand)
-        case ex.Addition() | ex.Subtraction() | ex.Multiplication():
-            return _has_double(expression.left) or _has_double(expression.right)
-    return False
-
-
 def _references(expression: ex.Expression) -> list[ex.Expression]:
-    match expression:
-        case ex.BinaryExpression():
-            return _references(expression.left) + _references(expression.right)
-        case ex.UnaryExpression():
-            return _references(expression.operand)
-        case sct.VariableReference() | sct.InputReference():
-            return [expression]
-    return []
+    return [part for part in parts(expression) if isinstance(part, (sct.VariableReference, sct.InputReference))]
 
 
 def _declaration(reference: ex.Expression) -> sct.DiscreteVariable | sct.Input:

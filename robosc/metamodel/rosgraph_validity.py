@@ -5,9 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from robosc.metamodel import rosgraph, sct
-from robosc.metamodel.expression_types import ExpressionTypes, declared_type
+from robosc.metamodel.expression_types import ExpressionTypes
 from robosc.metamodel.reflection import tree
 from robosc.metamodel.rosgraph_shapes import shape_faults
+from robosc.semantics.typing import BOOLEAN, declared_type
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -46,7 +47,7 @@ def _typed_faults(element: Any, types: ExpressionTypes) -> Iterator[Fault]:
         case rosgraph.NodeAssignment():
             yield from types.unless(element.value, declared_type(element.variable.type))
         case rosgraph.ConversionRule():
-            yield from types.unless(element.condition, "boolean")
+            yield from types.unless(element.condition, BOOLEAN)
 
 
 def _reference_faults(element: Any) -> Iterator[Fault]:

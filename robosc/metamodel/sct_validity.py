@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
-from robosc.metamodel.expression_types import ExpressionTypes, declared_type
+from robosc.metamodel.expression_types import ExpressionTypes
 from robosc.semantics.edges import edges_of
+from robosc.semantics.typing import BOOLEAN, declared_type
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -145,13 +146,13 @@ def _initial(variable: sct.DiscreteVariable, types: ExpressionTypes) -> Iterator
 def _conditions(element: Any, types: ExpressionTypes) -> Iterator[Fault]:
     match element:
         case sct.Edge() if element.guard is not None:
-            yield from types.unless(element.guard, "boolean")
+            yield from types.unless(element.guard, BOOLEAN)
         case sct.Requirement():
-            yield from types.unless(element.condition, "boolean")
+            yield from types.unless(element.condition, BOOLEAN)
         case sct.EventGuard():
             for part in (element.requirement, element.synthesis):
                 if part is not None:
-                    yield from types.unless(part, "boolean")
+                    yield from types.unless(part, BOOLEAN)
         case sct.InputReference():
             yield from _read(element)
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc
 from robosc.semantics.typing import received_data
+from robosc.semantics.walks import parts
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -120,17 +121,7 @@ def all_assignments(instances: Instances) -> Iterator[Assigned]:
 
 def accesses(expression: ex.Expression | None) -> Iterator[robosc.Access]:
     """Every access in an expression, from left to right."""
-    pending = [expression]
-    while pending:
-        match pending.pop():
-            case robosc.Access() as access:
-                yield access
-            case ex.BinaryExpression() as operator:
-                pending += [operator.right, operator.left]
-            case ex.UnaryExpression() as operator:
-                pending.append(operator.operand)
-            case robosc.ObjectValue() as value:
-                pending += [each.value for each in reversed(value.properties)]
+    return (part for part in parts(expression) if isinstance(part, robosc.Access))
 
 
 def property_path(access: robosc.Access) -> tuple[robosc.ObjectProperty, ...] | None:

@@ -2,106 +2,120 @@
 
 from __future__ import annotations
 
-import math
-import operator
-from typing import TYPE_CHECKING, TypeAlias
+from functools import partial
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from robosc.metamodel import expression as ex
+from robosc.semantics.operators import Rule, Value, as_double, divide, operator_of
+from robosc.semantics.walks import operands
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-#: An enumeration's value stands for itself (its literal object).
-Value: TypeAlias = bool | int | float | str | object
+__all__ = ["Program", "Value", "as_double", "divide", "evaluate", "saturate"]
 
-_ORDERED: dict[type[ex.Expression], Callable[..., bool]] = {
-    ex.LessThan: operator.lt,
-    ex.LessOrEqual: operator.le,
-    ex.GreaterThan: operator.gt,
-    ex.GreaterOrEqual: operator.ge,
-}
-_ARITHMETIC: dict[type[ex.Expression], Callable[..., int | float]] = {
-    ex.Addition: operator.add,
-    ex.Subtraction: operator.sub,
-    ex.Multiplication: operator.mul,
-}
+_Result = TypeVar("_Result")
+_LITERALS = (ex.BooleanLiteral, ex.IntegerLiteral, ex.DoubleLiteral, ex.StringLiteral)
 
 
 def evaluate(
-    expression: ex.Expression, read: Callable[[ex.Expression], Value], fit: Callable[[int], int] = int
+    expression: ex.Expression, read: Callable[[ex.Expression], Value], fit: Callable[[int], int] | None = None
 ) -> Value:
     """The value of a well-typed expression; `read` gives the value of every reference in it.
 
-    Doubles follow IEEE 754, division by zero included; every comparison with NaN is false. `fit` says what becomes of
-    a computed integer; by default it stays, however large.
+    Doubles follow IEEE 754, division by zero included; every comparison with NaN is false. `and`, `or` and `=>` go no
+    further to the right than needed. `fit` says what becomes of a computed integer; by default it stays, however large.
     """
-    match expression:
-        case ex.BooleanLiteral() | ex.IntegerLiteral() | ex.DoubleLiteral() | ex.StringLiteral():
-            return expression.value
-        case ex.Negation():
-            return not evaluate(expression.operand, read, fit)
-        case ex.UnaryMinus():
-            negative = -_number(expression.operand, read, fit)
-            return fit(negative) if isinstance(negative, int) else negative
-        case ex.DoubleConversion():
-            return as_double(_number(expression.operand, read, fit))
-        case ex.Conditional():
-            chosen = expression.then if evaluate(expression.condition, read, fit) else expression.otherwise
-            return evaluate(chosen, read, fit)
-        case ex.BinaryExpression():
-            return _binary(expression, read, fit)
-    return read(expression)
+    return Program[Value](expression, lambda reference: partial(read, reference), fit)()
 
 
-def _binary(
-    expression: ex.BinaryExpression, read: Callable[[ex.Expression], Value], fit: Callable[[int], int]
-) -> Value:
-    kind = type(expression)
-    left = evaluate(expression.left, read, fit)
-    if kind is ex.Conjunction:
-        return bool(left) and bool(evaluate(expression.right, read, fit))
-    if kind is ex.Disjunction:
-        return bool(left) or bool(evaluate(expression.right, read, fit))
-    if kind is ex.Implication:
-        return not left or bool(evaluate(expression.right, read, fit))
-    right = evaluate(expression.right, read, fit)
-    if kind is ex.Equation:
-        return left == right
-    if kind is ex.Inequation:
-        return left != right and left == left and right == right  # noqa: PLR0124 - false where one is NaN
-    if kind in _ORDERED:
-        return _ORDERED[kind](left, right)
-    if kind is ex.Division:
-        return divide(as_double(left), as_double(right))
-    if isinstance(left, float) or isinstance(right, float):
-        return _ARITHMETIC[kind](as_double(left), as_double(right))
-    return fit(int(_ARITHMETIC[kind](left, right)))
+class Program(Generic[_Result]):
+    """An expression as instructions for a stack of values, made once and run many times; nothing in it recurses.
+
+    Calling it gives the value; the arguments of the call go to all that reads.
+    """
+
+    def __init__(
+        self,
+        expression: ex.Expression,
+        reader: Callable[[ex.Expression], Callable[..., Any]],
+        fit: Callable[[int], int] | None = None,
+    ) -> None:
+        """`reader` gives for each reference the function that reads it; `fit` is as for `evaluate`."""
+        self._reader = reader
+        self._fit = fit
+        self._code: list[tuple[int, Any]] = []
+        pending: list[Any] = [expression]
+        while pending:
+            step = pending.pop()
+            if isinstance(step, _Label):
+                step.position = len(self._code)
+            elif isinstance(step, tuple):
+                self._code.append(step)
+            else:
+                pending += reversed(self._steps(step))
+
+    def __call__(self, *source: Any) -> _Result:
+        """Runs the instructions."""
+        stack: list[Any] = []
+        code, position = self._code, 0
+        while position < len(code):
+            kind, argument = code[position]
+            position += 1
+            if kind == _READ:
+                stack.append(argument(*source))
+            elif kind == _BINARY:
+                right = stack.pop()
+                stack[-1] = argument(stack[-1], right)
+            elif kind == _UNARY:
+                stack[-1] = argument(stack[-1])
+            elif kind == _CONSTANT:
+                stack.append(argument)
+            elif kind == _DECIDE:
+                decided, value, end = argument
+                if bool(stack[-1]) is decided:
+                    stack[-1], position = value, end.position
+                else:
+                    stack.pop()
+            elif kind == _JUMP or not stack.pop():
+                position = argument.position
+        return stack[0]  # type: ignore[no-any-return]
+
+    def _steps(self, expression: ex.Expression) -> list[Any]:
+        """The instructions for an expression, with its operands and labels among them."""
+        if isinstance(expression, _LITERALS):
+            return [(_CONSTANT, expression.value)]
+        end = _Label()
+        if isinstance(expression, ex.Conditional):
+            other = _Label()
+            chosen = [expression.condition, (_UNLESS, other), expression.then, (_JUMP, end)]
+            return [*chosen, other, expression.otherwise, end]
+        row = operator_of(expression)
+        if row is None:
+            return [(_READ, self._reader(expression))]
+        given = operands(expression)
+        if row.decided is not None:
+            decide = (_DECIDE, (row.decided, row.compute(row.decided, False), end))
+            return [given[0], decide, given[1], (_UNARY, bool), end]
+        compute = row.compute
+        if self._fit is not None and row.rule is Rule.ARITHMETIC:
+            compute = partial(_fitted, self._fit, compute)
+        return [*given, (_UNARY if len(given) == 1 else _BINARY, compute)]
 
 
-def _number(
-    expression: ex.Expression, read: Callable[[ex.Expression], Value], fit: Callable[[int], int]
-) -> int | float:
-    value = evaluate(expression, read, fit)
-    assert isinstance(value, (int, float))
-    return value
+class _Label:
+    """A place in a program to which an instruction jumps."""
+
+    position = 0
 
 
-def as_double(number: Value) -> float:
-    """The number as a double; infinite where it is an integer too large to be one."""
-    assert isinstance(number, (int, float))
-    try:
-        return float(number)
-    except OverflowError:
-        return math.inf if number > 0 else -math.inf
+#: The instructions: what each does with its argument and the values on the stack.
+_READ, _CONSTANT, _UNARY, _BINARY, _DECIDE, _UNLESS, _JUMP = range(7)
 
 
-def divide(left: float, right: float) -> float:
-    """The quotient as IEEE 754 has it: infinite or NaN where the divisor is zero."""
-    if right:
-        return left / right
-    if left == 0 or math.isnan(left) or math.isnan(right):
-        return math.nan
-    return math.copysign(math.inf, left) * math.copysign(1.0, right)
+def _fitted(fit: Callable[[int], int], compute: Callable[..., Any], *values: Any) -> Any:
+    result = compute(*values)
+    return fit(result) if isinstance(result, int) else result
 
 
 def saturate(value: int, minimum: int | None, maximum: int | None) -> int:

@@ -1,126 +1,104 @@
-"""How expression trees become text: one table of precedence, one printer that every target refines."""
+"""How expression trees become text: one printer that every target refines by its spellings."""
+
+from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Mapping
 from decimal import Decimal
 from functools import reduce
-from typing import Any, ClassVar, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 from robosc.diagnostics.visible import visible
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc, sct
-from robosc.metamodel.reflection import features, is_attribute
 from robosc.semantics.naming import written
-from robosc.semantics.recursion import deep_recursion
+from robosc.semantics.operators import ATOM, PRECEDENCE, SYMBOLS, Associativity, operator_of
+from robosc.semantics.walks import fold, operands
 
-_Kind = TypeVar("_Kind", bound=ex.Expression)
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
 
-#: Loosest to tightest, for RoboSC and for every target: none binds differently, and where one has finer levels
-#: (or a compiler that warns), `_LOOSE_PAIRS` adds parentheses.
-PRECEDENCE: Mapping[type[ex.Expression], int] = {
-    ex.Implication: 1,
-    ex.Disjunction: 2,
-    ex.Conjunction: 3,
-    ex.Equation: 4,
-    ex.Inequation: 4,
-    ex.LessThan: 5,
-    ex.LessOrEqual: 5,
-    ex.GreaterThan: 5,
-    ex.GreaterOrEqual: 5,
-    ex.Addition: 6,
-    ex.Subtraction: 6,
-    ex.Multiplication: 7,
-    ex.Division: 7,
-    ex.Negation: 8,
-    ex.UnaryMinus: 8,
-}
-ATOM = 9
-_CHAINS = (ex.Disjunction, ex.Conjunction, ex.Addition, ex.Multiplication)
+#: Levels between which binding is the same everywhere, but a reader (or a compiler that warns) wants parentheses.
 _LOOSE_PAIRS = {(2, 3), (1, 2), (1, 3), (4, 5)}
 
 
-def precedence(expression: ex.Expression) -> int:
-    """How tightly the expression's outermost operator binds; ATOM where it has none."""
-    return PRECEDENCE.get(type(expression), ATOM)
+class Printed(NamedTuple):
+    """The text of an expression, and how tightly its outermost operator binds; ATOM where it has none."""
+
+    text: str
+    precedence: int = ATOM
+
+    @property
+    def tight(self) -> str:
+        """The text, in parentheses where it is not a single operand."""
+        return self.text if self.precedence == ATOM else f"({self.text})"
 
 
-class ExpressionPrinter:
-    """Prints an expression with the parentheses that its tree needs.
+class Printer:
+    """Prints an expression with the parentheses that its tree needs, bottom-up: nothing recurses.
 
-    A target sets `symbols` (operator class to text) and overrides what it writes differently. An expression class
-    without a method raises TypeError: a target's preconditions must have refused it before.
+    A target sets `symbols` (operator class to text) and overrides what it writes differently; each method gets the
+    expression and what its operands were printed as. An expression class without a text raises TypeError: a target's
+    preconditions must have refused it before.
     """
 
-    symbols: ClassVar[Mapping[type[ex.Expression], str]]
+    symbols: ClassVar[Mapping[type[ex.Expression], str]] = SYMBOLS
 
     def __call__(self, expression: ex.Expression) -> str:
         """The text of the expression, without parentheses around it."""
-        with deep_recursion():
-            return self.text(expression)
+        return self.printed(expression).text
 
-    def text(self, expression: ex.Expression) -> str:
-        """The same, for who is printing already."""
+    def printed(self, expression: ex.Expression) -> Printed:
+        """The text with its precedence."""
+        return fold(self.write, expression, self.inside)
+
+    def inside(self, expression: ex.Expression) -> Sequence[ex.Expression]:
+        """The operands that are printed before the expression; a target that prints it by other means says so here."""
+        return operands(expression)
+
+    def write(self, expression: ex.Expression, given: Sequence[Printed]) -> Printed:
+        """The expression, its operands printed already."""
         if isinstance(expression, ex.BinaryExpression):
-            return self.binary(expression)
+            return self.binary(expression, *given)
         if isinstance(expression, (ex.Negation, ex.UnaryMinus)):
-            return self.unary(expression)
-        return self.atom(expression)
+            return self.unary(expression, *given)
+        if isinstance(expression, ex.Conditional):
+            return self.choice(*given)
+        return Printed(self.atom(expression))
 
-    def binary(self, expression: ex.BinaryExpression) -> str:
+    def binary(self, expression: ex.BinaryExpression, left: Printed, right: Printed) -> Printed:
         """A binary operator between its operands."""
-        left = self.operand(expression, expression.left, chain=True)
-        right = self.operand(expression, expression.right, chain=isinstance(expression, ex.Implication))
-        return f"{left} {self.symbols[type(expression)]} {right}"
+        row = operator_of(expression)
+        assert row is not None
+        chain, right_chain = row.associativity is Associativity.CHAIN, row.associativity is Associativity.RIGHT
+        before = self.operand(row.precedence, left, bare=chain and type(expression.left) is type(expression))
+        after = self.operand(row.precedence, right, bare=right_chain and type(expression.right) is type(expression))
+        return Printed(f"{before} {self.symbols[type(expression)]} {after}", row.precedence)
 
-    def unary(self, expression: ex.UnaryExpression) -> str:
+    def unary(self, expression: ex.UnaryExpression, operand: Printed) -> Printed:
         """An operator before its operand; two in a row are kept apart, so that `--x` is never printed."""
-        text = self.text(expression.operand)
-        bare = self.precedence(expression.operand) == ATOM
-        return f"{self.symbols[type(expression)]}{text if bare else f'({text})'}"
+        return Printed(f"{self.symbols[type(expression)]}{operand.tight}", PRECEDENCE[type(expression)])
 
-    def operand(self, parent: ex.BinaryExpression, child: ex.Expression, *, chain: bool) -> str:
-        """A child of a binary operator, in parentheses where the tree or a reader needs them."""
-        outer, inner = self.precedence(parent), self.precedence(child)
-        same = (
-            outer == inner
-            and chain
-            and (type(parent) is type(child))
-            and isinstance(parent, (*_CHAINS, ex.Implication))
-        )
-        if same and isinstance(parent, ex.Implication):
-            same = child is parent.right
-        bare = (inner > outer and (outer, inner) not in _LOOSE_PAIRS) or same
-        return self.text(child) if bare else f"({self.text(child)})"
+    def operand(self, outer: int, given: Printed, *, bare: bool = False) -> str:
+        """An operand of a binary operator, in parentheses where the tree or a reader needs them."""
+        binds = given.precedence > outer and (outer, given.precedence) not in _LOOSE_PAIRS
+        return given.text if binds or (bare and given.precedence == outer) else f"({given.text})"
 
-    def precedence(self, expression: ex.Expression) -> int:
-        """How tightly the text of the expression binds; a target that writes an atom with an operator says so here."""
-        return precedence(expression)
+    def choice(self, condition: Printed, then: Printed, otherwise: Printed) -> Printed:
+        """One value where the condition holds, else the other."""
+        return Printed(f"(if {condition.text} then {then.text} else {otherwise.text})")
 
     def atom(self, expression: ex.Expression) -> str:
-        """Everything that is not an operator: literals, references, conversions."""
+        """What has no operands: literals and references."""
+        match expression:
+            case ex.BooleanLiteral():
+                return "true" if expression.value else "false"
+            case ex.IntegerLiteral():
+                return str(expression.value)
         raise TypeError(f"{type(self).__name__} has no text for {type(expression).__name__}")
 
 
-class RoboscPrinter(ExpressionPrinter):
+class RoboscPrinter(Printer):
     """Prints a linked expression of a robot model as its author would write it, states and variables qualified."""
-
-    symbols: ClassVar[Mapping[type[ex.Expression], str]] = {
-        ex.Implication: "=>",
-        ex.Disjunction: "or",
-        ex.Conjunction: "and",
-        ex.Equation: "=",
-        ex.Inequation: "!=",
-        ex.LessThan: "<",
-        ex.LessOrEqual: "<=",
-        ex.GreaterThan: ">",
-        ex.GreaterOrEqual: ">=",
-        ex.Addition: "+",
-        ex.Subtraction: "-",
-        ex.Multiplication: "*",
-        ex.Division: "/",
-        ex.Negation: "!",
-        ex.UnaryMinus: "-",
-    }
 
     def atom(self, expression: ex.Expression) -> str:
         """A name with the steps into its data, or a literal."""
@@ -129,10 +107,6 @@ class RoboscPrinter(ExpressionPrinter):
                 name = "value" if expression.item is None else written(expression.item.name)
                 owner = f"{written(expression.component.name)}." if expression.component else ""
                 return owner + name + "".join(map(_step, expression.segments))
-            case ex.BooleanLiteral():
-                return "true" if expression.value else "false"
-            case ex.IntegerLiteral():
-                return str(expression.value)
             case ex.DoubleLiteral():
                 digits = format(Decimal(repr(expression.value)), "f")  # RoboSC has no exponents
                 return digits if "." in digits else f"{digits}.0"
@@ -148,13 +122,11 @@ def _step(segment: robosc.AccessSegment) -> str:
     return f"[{segment.index}]"
 
 
-class SctPrinter(ExpressionPrinter):
+class SctPrinter(Printer):
     """Prints an expression of an sct model for a person, in RoboSC's operators, each name with its plant before it."""
 
-    symbols = RoboscPrinter.symbols
-
     def atom(self, expression: ex.Expression) -> str:
-        """A reference as `plant.name`, a literal, a choice as `(if a then b else c)`."""
+        """A reference as `plant.name`, or a literal."""
         match expression:
             case sct.LocationReference():
                 return _with_plant(expression.location)
@@ -164,14 +136,6 @@ class SctPrinter(ExpressionPrinter):
                 return _with_plant(expression.input)
             case ex.EnumerationLiteralReference():
                 return expression.literal.name
-            case ex.IntegerLiteral():
-                return str(expression.value)
-            case ex.BooleanLiteral():
-                return "true" if expression.value else "false"
-            case ex.Conditional():
-                parts = (expression.condition, expression.then, expression.otherwise)
-                condition, then, otherwise = [self.text(part) for part in parts]
-                return f"(if {condition} then {then} else {otherwise})"
         return super().atom(expression)
 
 
@@ -197,16 +161,6 @@ def _with_plant(element: Any) -> str:
     return f"{element.eContainer().name}.{element.name}"
 
 
-def copied(expression: _Kind) -> _Kind:
-    """A tree of its own that means the same: whoever contains the expression keeps it."""
-    made = type(expression)()
-    for name, feature in features(expression.eClass).items():
-        value = getattr(expression, name)
-        if value is not None:
-            setattr(made, name, value if is_attribute(feature) or not feature.containment else copied(value))
-    return made
-
-
 def conjunction(parts: Iterable[ex.Expression]) -> ex.Expression | None:
     """The conjunction of all parts, in their order; None of none. The parts become its children."""
     return _chain(ex.Conjunction, parts)
@@ -218,6 +172,6 @@ def disjunction(parts: Iterable[ex.Expression]) -> ex.Expression | None:
 
 
 def _chain(operator: type[ex.BinaryExpression], parts: Iterable[ex.Expression]) -> ex.Expression | None:
-    each = iter(parts)
-    first = next(each, None)
-    return None if first is None else reduce(lambda left, right: operator(left=left, right=right), each, first)
+    rest = iter(parts)
+    first = next(rest, None)
+    return None if first is None else reduce(lambda left, right: operator(left=left, right=right), rest, first)

@@ -1,4 +1,4 @@
-"""The type of any expression of a robosc model: thesis table 4.1, made strict by the language reference.
+"""The type of any expression: thesis table 4.1, made strict by the language reference; in sct and rosgraph models, too.
 
 Types are values: the basic ones are members of `BasicType`, arrays compare by their elements, objects and enums by
 their definition (nominally). What can't be known, such as the type of an unresolved name, is `UNKNOWN`, fits
@@ -13,9 +13,12 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
+from robosc.metamodel import rosgraph, sct
+from robosc.semantics.operators import CONDITIONS, Operator, Rule, operator_of
+from robosc.semantics.walks import fold
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
 
 class BasicType(StrEnum):
@@ -66,9 +69,9 @@ class ObjectType:
 
 @dataclass(frozen=True)
 class EnumType:
-    """An enum data type."""
+    """An enum data type, or the enumeration that became of it in an sct or rosgraph model."""
 
-    definition: rsc.EnumDataType
+    definition: Any
 
     def __str__(self) -> str:
         return f"enum {self.definition.name}"
@@ -78,11 +81,15 @@ Type: TypeAlias = BasicType | ArrayType | ObjectType | EnumType
 
 BOOLEAN, INTEGER, DOUBLE, STRING, NONE, UNKNOWN = BasicType
 
-_BASIC: Mapping[type[rsc.DataType], BasicType] = {
+_BASIC: Mapping[type[rsc.DataType] | type[ex.Type], BasicType] = {
     rsc.BooleanDataType: BOOLEAN,
+    ex.BooleanType: BOOLEAN,
     rsc.IntegerDataType: INTEGER,
+    ex.IntegerType: INTEGER,
     rsc.DoubleDataType: DOUBLE,
+    ex.DoubleType: DOUBLE,
     rsc.StringDataType: STRING,
+    ex.StringType: STRING,
     rsc.NoneDataType: NONE,
 }
 _LITERAL: Mapping[type[ex.Expression], BasicType] = {
@@ -91,14 +98,12 @@ _LITERAL: Mapping[type[ex.Expression], BasicType] = {
     ex.DoubleLiteral: DOUBLE,
     ex.StringLiteral: STRING,
 }
-LOGICAL = (ex.Conjunction, ex.Disjunction, ex.Implication, ex.Negation)
-EQUALITY = (ex.Equation, ex.Inequation)
-ORDERING = (ex.LessThan, ex.LessOrEqual, ex.GreaterThan, ex.GreaterOrEqual)
-_ARITHMETIC = (ex.Addition, ex.Subtraction, ex.Multiplication)
 
 
-def declared_type(data_type: rsc.DataType | None) -> Type:
+def declared_type(data_type: rsc.DataType | ex.Type | None) -> Type:
     """The type that a declaration names; UNKNOWN where it is missing or its name is unresolved."""
+    if isinstance(data_type, ex.EnumerationType):
+        return EnumType(data_type.enumeration)
     if isinstance(data_type, rsc.Array):
         return ArrayType(declared_type(data_type.type))
     if isinstance(data_type, rsc.ComplexDataTypeReference):
@@ -183,16 +188,13 @@ def is_number(each: Type) -> bool:
     return each in {INTEGER, DOUBLE}
 
 
-def operator_type(operator: ex.Expression, *operands: Type) -> Type:
+def operator_type(row: Operator, operands: Sequence[Type]) -> Type:
     """The type of an operator's value, given its operands' types; as good as known even if an operand is wrong."""
-    match operator:
-        case ex.Division():
-            return DOUBLE
-        case ex.UnaryMinus():
-            return operands[0] if is_number(operands[0]) else UNKNOWN
-        case _ if not isinstance(operator, _ARITHMETIC):
-            return BOOLEAN
-    if not all(is_number(each) or each == UNKNOWN for each in operands):
+    if row.rule in CONDITIONS:
+        return BOOLEAN
+    if row.rule is Rule.DOUBLE:
+        return DOUBLE
+    if not all(is_number(operand) or operand == UNKNOWN for operand in operands):
         return UNKNOWN
     if DOUBLE in operands:
         return DOUBLE
@@ -237,22 +239,48 @@ def access_types(access: rsc.Access, value: Type | None = None) -> list[Type]:
     return types
 
 
-def infer(expression: ex.Expression | None, value: Type | None = None) -> Type:
-    """The type of an expression (thesis table 4.1). Finds no fault: what has no type is UNKNOWN.
+class Types:
+    """The types of expressions of any model, none of which is looked into twice.
 
-    `value` is the type of `value` there, None where there is none. An object value takes its type from the
-    communication that it is provided to, so that on its own it is UNKNOWN.
+    Finds no fault: what has no type is UNKNOWN. `value` is the type of `value` in the text, None where there is none.
+    An object value takes its type from the communication that it is provided to, so that on its own it is UNKNOWN.
     """
-    match expression:
-        case rsc.Access():
-            return access_types(expression, value)[-1]
-        case ex.BinaryExpression() if isinstance(expression, (*LOGICAL, *EQUALITY, *ORDERING)):
-            return BOOLEAN
-        case ex.BinaryExpression():
-            return operator_type(expression, infer(expression.left, value), infer(expression.right, value))
-        case ex.Negation() | ex.UnaryMinus():
-            return operator_type(expression, infer(expression.operand, value))
-    return _LITERAL.get(type(expression), UNKNOWN) if expression is not None else UNKNOWN
+
+    def __init__(self, value: Type | None = None) -> None:
+        self._value = value
+        self._known: dict[ex.Expression, Type] = {}
+
+    def __call__(self, expression: ex.Expression | None) -> Type:
+        """The type of an expression."""
+        return UNKNOWN if expression is None else fold(self._type, expression, memo=self._known)
+
+    def _type(self, expression: ex.Expression, operands: list[Type]) -> Type:
+        row = operator_of(expression)
+        if row is not None:
+            return operator_type(row, operands)
+        match expression:
+            case ex.Conditional():
+                return operands[1] if operands[1] != UNKNOWN else operands[2]
+            case rsc.Access():
+                return access_types(expression, self._value)[-1]
+            case ex.EnumerationLiteralReference():
+                return EnumType(expression.literal.eContainer())
+            case sct.LocationReference():
+                return BOOLEAN
+            case sct.VariableReference() | rosgraph.NodeVariableReference():
+                return declared_type(expression.variable.type)
+            case sct.InputReference():
+                return declared_type(expression.input.type)
+            case rosgraph.WireAccess():
+                return declared_type(expression.type)
+            case rosgraph.ConversionCall():
+                return EnumType(expression.conversion.enumeration)
+        return _LITERAL.get(type(expression), UNKNOWN)
+
+
+def infer(expression: ex.Expression | None, value: Type | None = None) -> Type:
+    """The type of one expression; `value` as for `Types`."""
+    return Types(value)(expression)
 
 
 def type_of(expression: ex.Expression) -> Type:

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
-from robosc.semantics.printing import conjunction, copied
+from robosc.semantics.printing import conjunction
+from robosc.semantics.walks import copied
 from robosc.synthesis.cover import separating_expression
 from robosc.synthesis.simplification import simplified
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.metamodel import expression as ex
-from robosc.semantics.printing import copied
+from robosc.semantics.walks import copied
 
 if TYPE_CHECKING:
     from robosc.synthesis.bdd import Diagram

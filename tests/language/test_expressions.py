@@ -12,7 +12,8 @@ from robosc.language.text import Text
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
 from robosc.semantics.naming import ROBOSC_KEYWORDS
-from robosc.semantics.printing import PRECEDENCE, RoboscPrinter
+from robosc.semantics.operators import PRECEDENCE
+from robosc.semantics.printing import RoboscPrinter
 
 NAMES = st.sampled_from(["a", "B2", "_", "not", *sorted(ROBOSC_KEYWORDS)])
 SEGMENTS = st.lists(

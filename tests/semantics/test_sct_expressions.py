@@ -4,7 +4,8 @@ import pytest
 from hypothesis import given
 
 from robosc.metamodel.reflection import tree
-from robosc.semantics.printing import SctPrinter, copied
+from robosc.semantics.printing import SctPrinter
+from robosc.semantics.walks import copied
 from tests.random_sct import sct_models
 from tests.sct_models import edge, model, needs, plant
 

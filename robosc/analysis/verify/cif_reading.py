@@ -12,7 +12,7 @@ from robosc.analysis.verify import cif_expressions as types
 from robosc.files.resources import locate
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
-from robosc.semantics.printing import copied
+from robosc.semantics.walks import copied
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

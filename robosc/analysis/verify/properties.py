@@ -16,8 +16,9 @@ from robosc.analysis.wording import listed, name, words
 from robosc.diagnostics import Span
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
-from robosc.semantics.printing import RobotPrinter, copied
+from robosc.semantics.printing import RobotPrinter
 from robosc.semantics.roles import event_name, plant_of
+from robosc.semantics.walks import copied
 from robosc.synthesis.encoding import referenced
 from robosc.synthesis.fixpoint import coreachable, supervise
 from robosc.synthesis.relation import required_moves, steps

@@ -11,7 +11,7 @@ from robosc.m2t.c.nodes import All
 from robosc.m2t.c.types import interval_of, number, signed, type_name
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
-from robosc.semantics.printing import ATOM
+from robosc.semantics.operators import ATOM
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 from robosc.m2t.c.nodes import COMPARISONS, Junction, Not, children_of, is_condition
 from robosc.m2t.c.types import Interval, index_type, number, signed, type_name
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
-from robosc.semantics.printing import ATOM, PRECEDENCE, ExpressionPrinter
+from robosc.semantics.operators import ATOM, PRECEDENCE
 from robosc.semantics.recursion import deep_recursion
 
 if TYPE_CHECKING:
-    from collections.abc import Collection
+    from collections.abc import Collection, Mapping
 
     from robosc.m2t.c.names import CNames
     from robosc.m2t.c.nodes import Node
@@ -51,6 +51,67 @@ def working_type(node: ex.Expression, ranges: Ranges) -> str:
         if signed(bits).holds(values):
             return name
     raise OverflowError(f"a value between {values.low} and {values.high} does not fit into 64 bits")
+
+
+_CHAINS = (ex.Disjunction, ex.Conjunction, ex.Addition, ex.Multiplication)
+_LOOSE_PAIRS = {(2, 3), (1, 2), (1, 3), (4, 5)}
+
+
+class ExpressionPrinter:
+    """Prints an expression with the parentheses that its tree needs.
+
+    A target sets `symbols` (operator class to text) and overrides what it writes differently. An expression class
+    without a method raises TypeError: a target's preconditions must have refused it before.
+    """
+
+    symbols: ClassVar[Mapping[type[ex.Expression], str]]
+
+    def __call__(self, expression: ex.Expression) -> str:
+        """The text of the expression, without parentheses around it."""
+        with deep_recursion():
+            return self.text(expression)
+
+    def text(self, expression: ex.Expression) -> str:
+        """The same, for who is printing already."""
+        if isinstance(expression, ex.BinaryExpression):
+            return self.binary(expression)
+        if isinstance(expression, (ex.Negation, ex.UnaryMinus)):
+            return self.unary(expression)
+        return self.atom(expression)
+
+    def binary(self, expression: ex.BinaryExpression) -> str:
+        """A binary operator between its operands."""
+        left = self.operand(expression, expression.left, chain=True)
+        right = self.operand(expression, expression.right, chain=isinstance(expression, ex.Implication))
+        return f"{left} {self.symbols[type(expression)]} {right}"
+
+    def unary(self, expression: ex.UnaryExpression) -> str:
+        """An operator before its operand; two in a row are kept apart, so that `--x` is never printed."""
+        text = self.text(expression.operand)
+        bare = self.precedence(expression.operand) == ATOM
+        return f"{self.symbols[type(expression)]}{text if bare else f'({text})'}"
+
+    def operand(self, parent: ex.BinaryExpression, child: ex.Expression, *, chain: bool) -> str:
+        """A child of a binary operator, in parentheses where the tree or a reader needs them."""
+        outer, inner = self.precedence(parent), self.precedence(child)
+        same = (
+            outer == inner
+            and chain
+            and (type(parent) is type(child))
+            and isinstance(parent, (*_CHAINS, ex.Implication))
+        )
+        if same and isinstance(parent, ex.Implication):
+            same = child is parent.right
+        bare = (inner > outer and (outer, inner) not in _LOOSE_PAIRS) or same
+        return self.text(child) if bare else f"({self.text(child)})"
+
+    def precedence(self, expression: ex.Expression) -> int:
+        """How tightly the text of the expression binds; a target that writes an atom with an operator says so here."""
+        return PRECEDENCE.get(type(expression), ATOM)
+
+    def atom(self, expression: ex.Expression) -> str:
+        """Everything that is not an operator: literals, references, conversions."""
+        raise TypeError(f"{type(self).__name__} has no text for {type(expression).__name__}")
 
 
 class CPrinter(ExpressionPrinter):

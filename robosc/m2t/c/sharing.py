@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from robosc.m2t.c.expressions import CPrinter
 from robosc.m2t.c.nodes import Junction, Node, children_of, is_condition
 from robosc.metamodel import sct
-from robosc.semantics.printing import ATOM
+from robosc.semantics.operators import ATOM
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

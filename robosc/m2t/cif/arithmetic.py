@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from robosc.m2t.cif.linear import LARGEST, Linear, Unsupported, bounds, shift
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
-from robosc.semantics.printing import copied
+from robosc.semantics.walks import copied
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable

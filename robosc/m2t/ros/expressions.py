@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING
 
 from robosc.m2t.c.comments import string_literal
 from robosc.m2t.c.types import number
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
-from robosc.metamodel.expression_types import is_double
-from robosc.metamodel.reflection import tree
-from robosc.semantics.printing import ATOM, PRECEDENCE, ExpressionPrinter
+from robosc.semantics.operators import ARITHMETIC, PRECEDENCE, SYMBOLS
+from robosc.semantics.printing import Printed, Printer
+from robosc.semantics.typing import DOUBLE, Types
+from robosc.semantics.walks import fold
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Sequence
 
     from robosc.m2t.ros.names import CppNames
 
-_ARITHMETIC = (ex.Addition, ex.Subtraction, ex.Multiplication)
 _CONVERSIONS: dict[type[ex.Type | None], str] = {
     ex.BooleanType: "bool",
     ex.IntegerType: "Integer",
@@ -25,7 +25,7 @@ _CONVERSIONS: dict[type[ex.Type | None], str] = {
 }
 
 
-class CppPrinter(ExpressionPrinter):
+class CppPrinter(Printer):
     """Prints what the node evaluates: doubles as `double`, whole numbers as the node's saturating `Integer`.
 
     `data` is the variable that holds the data which came in, `node` the one with the node's variables. Elements of
@@ -33,21 +33,11 @@ class CppPrinter(ExpressionPrinter):
     and `=>` need them.
     """
 
-    symbols: ClassVar[Mapping[type[ex.Expression], str]] = {
+    symbols = {  # noqa: RUF012  # ClassVar in the parent
+        **SYMBOLS,
         ex.Disjunction: "||",
         ex.Conjunction: "&&",
         ex.Equation: "==",
-        ex.Inequation: "!=",
-        ex.LessThan: "<",
-        ex.LessOrEqual: "<=",
-        ex.GreaterThan: ">",
-        ex.GreaterOrEqual: ">=",
-        ex.Addition: "+",
-        ex.Subtraction: "-",
-        ex.Multiplication: "*",
-        ex.Division: "/",
-        ex.Negation: "!",
-        ex.UnaryMinus: "-",
     }
 
     def __init__(self, names: CppNames, data: str = "message", node: str = "data_", reader: str = "read") -> None:
@@ -55,60 +45,52 @@ class CppPrinter(ExpressionPrinter):
         self._data = data
         self._node = node
         self._reader = reader
+        self._constants: dict[ex.Expression, bool] = {}
+        self._types = Types()
 
-    def precedence(self, expression: ex.Expression) -> int:
-        """A state is a comparison in C++; an implication and a choice are printed in parentheses."""
-        match expression:
-            case sct.LocationReference() if " " in self._names.is_in(expression.location):
-                return PRECEDENCE[ex.Equation]
-            case ex.Implication():
-                return ATOM
-            case ex.Inequation() if is_double(expression.left):
-                return ATOM
-        return super().precedence(expression)
+    def write(self, expression: ex.Expression, given: Sequence[Printed]) -> Printed:
+        """A state is a comparison in C++, a conversion a call."""
+        if isinstance(expression, sct.LocationReference):
+            text = self._names.is_in(expression.location)
+            return Printed(text, PRECEDENCE[ex.Equation]) if " " in text else Printed(text)
+        if isinstance(expression, ex.DoubleConversion):
+            return Printed(f"static_cast<double>({given[0].text})")
+        return super().write(expression, given)
 
-    def binary(self, expression: ex.BinaryExpression) -> str:
+    def binary(self, expression: ex.BinaryExpression, left: Printed, right: Printed) -> Printed:
         """A comparison with NaN is false, `!=` too; no whole number overflows in the compiler's own `int`."""
         if isinstance(expression, ex.Implication):
-            return f"(!{self.tight(expression.left)} || {self.tight(expression.right)})"
-        if isinstance(expression, ex.Inequation) and is_double(expression.left):
-            return f"differ({self.text(expression.left)}, {self.text(expression.right)})"
-        if isinstance(expression, _ARITHMETIC) and not is_double(expression) and is_constant(expression):
-            return (
-                f"Integer({self.text(expression.left)}) {self.symbols[type(expression)]} {self.tight(expression.right)}"
-            )
-        return super().binary(expression)
+            return Printed(f"(!{left.tight} || {right.tight})")
+        if isinstance(expression, ex.Inequation) and self._double(expression.left):
+            return Printed(f"differ({left.text}, {right.text})")
+        if isinstance(expression, ARITHMETIC) and self._constant(expression) and not self._double(expression):
+            text = f"Integer({left.text}) {self.symbols[type(expression)]} {right.tight}"
+            return Printed(text, PRECEDENCE[type(expression)])
+        return super().binary(expression, left, right)
 
-    def unary(self, expression: ex.UnaryExpression) -> str:
+    def unary(self, expression: ex.UnaryExpression, operand: Printed) -> Printed:
         """An operator before its operand; C++ has no literal of the least integer."""
         if isinstance(expression, ex.UnaryMinus) and isinstance(expression.operand, ex.IntegerLiteral):
-            return number(-expression.operand.value)
-        return super().unary(expression)
+            return Printed(number(-expression.operand.value), PRECEDENCE[ex.UnaryMinus])
+        return super().unary(expression, operand)
+
+    def choice(self, condition: Printed, then: Printed, otherwise: Printed) -> Printed:
+        """The conditional operator, in parentheses."""
+        return Printed(f"({condition.tight} ? {then.tight} : {otherwise.tight})")
 
     def atom(self, expression: ex.Expression) -> str:
         """Literals, references to the state, the node's variables and the data that came in, conversions."""
         match expression:
-            case ex.BooleanLiteral():
-                return "true" if expression.value else "false"
-            case ex.IntegerLiteral():
-                return str(expression.value)
             case ex.DoubleLiteral():
                 return repr(expression.value)
             case ex.StringLiteral():
                 return f"std::string({string_literal(expression.value)})"
-            case ex.DoubleConversion():
-                return f"static_cast<double>({self.text(expression.operand)})"
-            case ex.Conditional():
-                parts = (expression.condition, expression.then, expression.otherwise)
-                return "({} ? {} : {})".format(*[self.tight(part) for part in parts])
         return self._reference(expression)
 
     def _reference(self, expression: ex.Expression) -> str:
         match expression:
             case ex.EnumerationLiteralReference():
                 return self._names.literal(expression.literal)
-            case sct.LocationReference():
-                return self._names.is_in(expression.location)
             case sct.VariableReference():
                 value = self._names.state(expression.variable)
                 return f"Integer({value})" if isinstance(expression.variable.type, ex.IntegerType) else value
@@ -137,22 +119,24 @@ class CppPrinter(ExpressionPrinter):
         bounds = ""
         if kind.minimum is not None and kind.maximum is not None:
             bounds = f".within({number(kind.minimum)}, {number(kind.maximum)})"
-        if is_constant(expression):
-            return f"Integer({self.text(expression)}){bounds}"
-        return f"{self.tight(expression)}{bounds}" if bounds else self.text(expression)
+        given = self.printed(expression)
+        if self._constant(expression):
+            return f"Integer({given.text}){bounds}"
+        return f"{given.tight}{bounds}" if bounds else given.text
 
     def tight(self, expression: ex.Expression) -> str:
         """The text, in parentheses where it is not a single operand."""
-        text = self.text(expression)
-        return text if self.precedence(expression) == ATOM else f"({text})"
+        return self.printed(expression).tight
+
+    def _constant(self, expression: ex.Expression) -> bool:
+        return fold(_is_constant, expression, memo=self._constants)
+
+    def _double(self, expression: ex.Expression) -> bool:
+        return self._types(expression) == DOUBLE
 
 
-def parts(expression: ex.Expression) -> Iterator[ex.Expression]:
-    """The expression and everything in it, from the outside inwards and from left to right."""
-    return (part for _, part in tree(expression) if isinstance(part, ex.Expression))
-
-
-def is_constant(expression: ex.Expression) -> bool:
+def _is_constant(expression: ex.Expression, given: list[bool]) -> bool:
     """Whether the expression is made of integer literals only."""
-    operators = (ex.BinaryExpression, ex.UnaryExpression, ex.IntegerLiteral)
-    return all(isinstance(part, operators) for part in parts(expression))
+    return isinstance(expression, ex.IntegerLiteral) or (
+        isinstance(expression, (ex.BinaryExpression, ex.UnaryExpression)) and all(given)
+    )

@@ -8,14 +8,15 @@ from typing import TYPE_CHECKING
 from robosc.m2t.c.types import type_name
 from robosc.m2t.ros import reports
 from robosc.m2t.ros.events import Reasons, message_named
-from robosc.m2t.ros.expressions import CppPrinter, parts
+from robosc.m2t.ros.expressions import CppPrinter
 from robosc.m2t.ros.names import CppNames, kept_for
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
-from robosc.metamodel.expression_types import is_double
 from robosc.semantics.headers import parts_with_headers
-from robosc.semantics.printing import PRECEDENCE
+from robosc.semantics.operators import PRECEDENCE
 from robosc.semantics.received import reads_elements
+from robosc.semantics.typing import DOUBLE, infer
+from robosc.semantics.walks import parts
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -266,8 +267,9 @@ class Node:
     @staticmethod
     def _tested(rule: rosgraph.ConversionRule, printer: CppPrinter) -> str:
         """A rule's condition, fit to stand before `&& read.complete()`."""
-        loose = printer.precedence(rule.condition) < PRECEDENCE[ex.Conjunction] and reads_elements(rule.condition)
-        return printer.tight(rule.condition) if loose else printer(rule.condition)
+        printed = printer.printed(rule.condition)
+        loose = printed.precedence < PRECEDENCE[ex.Conjunction] and reads_elements(rule.condition)
+        return printed.tight if loose else printed.text
 
     # What comes in
 
@@ -395,7 +397,7 @@ class Node:
             self._names.c.enumerator(sending.event),
             self._reasons.of(sending.event),
             [self._alternative(provided) for provided in sending.alternatives],
-            any(is_double(field.value) for provided in sending.alternatives for field in provided.fields),
+            any(infer(field.value) == DOUBLE for provided in sending.alternatives for field in provided.fields),
             self._handler(sending.event) if self._reactions(sending.event) else None,
             [".".join(path) for path in parts_with_headers(sending)],
         )

@@ -12,9 +12,9 @@ from robosc.m2t.c.preconditions import preconditions as engine_preconditions
 from robosc.m2t.ros.events import Reasons, message_named
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph
-from robosc.metamodel.expression_types import is_double
 from robosc.metamodel.places import place
 from robosc.metamodel.reflection import tree
+from robosc.semantics.typing import DOUBLE, infer
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -168,7 +168,9 @@ def _nothing_safe(graph: rosgraph.RosGraph, configuration: Configuration) -> Ite
         outside = _from_outside(graph)
         for sending in (sending for publisher in graph.publishers for sending in publisher.sendings):
             fields = [field for provided in sending.alternatives for field in provided.fields]
-            found = next((field for field in fields if is_double(field.value) and _reads(field.value, outside)), None)
+            found = next(
+                (field for field in fields if infer(field.value) == DOUBLE and _reads(field.value, outside)), None
+            )
             if found is not None:
                 message = (
                     f"{sending.name} is not sent where its {'.'.join(found.path)} is no finite number, nor is anything"
@@ -181,7 +183,10 @@ def _nothing_safe(graph: rosgraph.RosGraph, configuration: Configuration) -> Ite
 def _from_outside(graph: rosgraph.RosGraph) -> set[rosgraph.NodeVariable]:
     """The variables that get, in one step or several, a double that the robot sent or that a division made."""
     assignments = [
-        assignment for reaction in graph.reactions for assignment in reaction.assignments if is_double(assignment.value)
+        assignment
+        for reaction in graph.reactions
+        for assignment in reaction.assignments
+        if infer(assignment.value) == DOUBLE
     ]
     found: set[rosgraph.NodeVariable] = set()
     more = True

@@ -18,7 +18,7 @@ from robosc.m2t.models import Models
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 from robosc.metamodel.reflection import tree
-from robosc.semantics.printing import copied
+from robosc.semantics.walks import copied
 from robosc.synthesis import synthesize
 from tests.m2t.cif.differences import differences
 from tests.m2t.cif.rebuilding import rebuild
