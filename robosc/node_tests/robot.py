@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from robosc.node_tests.shapes import Field, Path, message, wire_type
+from robosc.node_tests.messages import Field, Path, message, wire_type
 from robosc.ros_types import Section
 from robosc.runtime.core.port import Outcome
 
@@ -49,9 +49,9 @@ class Robot:
 
     def _note(self, interface: rosgraph.Interface, section: Section, sending: rosgraph.Sending) -> None:
         fields = self._fields.setdefault((interface, section), {})
-        for each in (field for alternative in sending.alternatives for field in alternative.fields):
-            path = tuple(each.path)
-            fields[path] = Field(each.type, wire_type(self._distribution, interface, section, path))
+        for field in (field for data in sending.alternatives for field in data.fields):
+            path = tuple(field.path)
+            fields[path] = Field(field.type, wire_type(self._distribution, interface, section, path))
 
     # What the controller asks
 
@@ -113,8 +113,4 @@ class Robot:
     def info(self, text: str) -> None:
         """Nobody reads it."""
 
-    def warn(self, text: str) -> None:
-        """Nobody reads it."""
-
-    def error(self, text: str) -> None:
-        """Nobody reads it."""
+    warn = error = info

@@ -1,4 +1,4 @@
-"""Messages of which a node makes something else each time, found by trying."""
+"""Messages that mean something else to a node, found by trying."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph
 from robosc.metamodel.reflection import tree
-from robosc.node_tests.shapes import Field, Leaf, Path, message, reads, wire_type
+from robosc.node_tests.messages import Field, Leaf, Path, message, reads, wire_type
 from robosc.ros_types.wire import INTEGER_RANGES
 from robosc.semantics.received import reads_elements
 
@@ -63,13 +63,14 @@ class Values:
     """Values to try: those around all constants that the models compare with."""
 
     def __init__(self, graph: rosgraph.RosGraph) -> None:
-        found = [each for root in (graph, graph.model) for _, each in tree(root)]
-        texts = [each.value for each in found if isinstance(each, ex.StringLiteral)]
-        integers = [each.value for each in found if isinstance(each, ex.IntegerLiteral)]
-        doubles = [float(each.value) for each in found if isinstance(each, (ex.IntegerLiteral, ex.DoubleLiteral))]
+        elements = [element for root in (graph, graph.model) for _, element in tree(root)]
+        texts = [literal.value for literal in elements if isinstance(literal, ex.StringLiteral)]
+        integers = [literal.value for literal in elements if isinstance(literal, ex.IntegerLiteral)]
+        doubles = [float(value) for value in integers]
+        doubles += [literal.value for literal in elements if isinstance(literal, ex.DoubleLiteral)]
         self._texts = list(dict.fromkeys([*texts, "", "something"]))
-        self._integers = sorted({0, 1, *(near for each in integers for near in (each - 1, each, each + 1, -each))})
-        self._doubles = sorted({each for value in (0.0, 1.0, *doubles) for each in _around(value)})
+        self._integers = sorted({0, 1, *(near for known in integers for near in (known - 1, known, known + 1, -known))})
+        self._doubles = sorted({near for value in (0.0, 1.0, *doubles) for near in _around(value)})
 
     def of(self, field: Field) -> list[Leaf]:
         """Values that a field can hold, in ROS exactly as here."""
@@ -80,10 +81,10 @@ class Values:
                 return list(self._texts)
             case ex.DoubleType() if field.wire_type.startswith(("float", "double")):
                 precise = field.wire in ("float64", "double")
-                return [each for each in self._doubles if precise or _is_single(each)]
+                return [number for number in self._doubles if precise or _is_single(number)]
         low, high = _bounds(field)
-        integers = [each for each in self._integers if low <= each <= high]
-        return [float(each) for each in integers] if isinstance(field.type, ex.DoubleType) else list(integers)
+        integers = [number for number in self._integers if low <= number <= high]
+        return [float(number) for number in integers] if isinstance(field.type, ex.DoubleType) else list(integers)
 
 
 def _around(value: float) -> tuple[float, ...]:
@@ -120,8 +121,8 @@ def incoming(
         for path, kind in reads(values):
             fields.setdefault(path, Field(kind, wire_type(distribution, interface, part, path)))
         found = [
-            Read(path, each.conversion if isinstance(each, rosgraph.ConversionCall) else None)
-            for path, each in shown.items()
+            Read(path, value.conversion if isinstance(value, rosgraph.ConversionCall) else None)
+            for path, value in shown.items()
         ]
         events.append((event, found))
     return Incoming(events, fields, unreadable)
@@ -130,23 +131,23 @@ def incoming(
 def find_samples(kind: Incoming, values: Values, data: NodeData, seed: int) -> None:
     """Fills in `samples`: tries messages until each combination of literals has some, or enough were tried."""
     choice = random.Random(seed)  # noqa: S311  # the same each time
-    pools = {path: values.of(each) for path, each in kind.fields.items()}
+    pools = {path: values.of(field) for path, field in kind.fields.items()}
     paths = [path for path in pools if pools[path]]
     conversions = kind.conversions
-    combinations = math.prod(len(each.conversion.enumeration.literals) for each in conversions if each.conversion)
+    combinations = math.prod(len(read.conversion.enumeration.literals) for read in conversions if read.conversion)
     seen: list[dict[Path, Leaf]] = [{}]
     in_vain = 0
     while in_vain < _TRIALS:
         tried = _tried(choice, paths, pools, seen)
         made = message(kind.fields, tried)
-        literals = tuple(_literal(each, made, data) for each in conversions)
+        literals = tuple(_literal(read, made, data) for read in conversions)
         kept = kind.samples.setdefault(literals, [])
         in_vain += 1
         if len(kept) < _KEPT and tried not in kept:
             kept.append(tried)
             seen.append(tried)
             in_vain = 0
-        if len(kind.samples) == combinations and all(len(each) == _KEPT for each in kind.samples.values()):
+        if len(kind.samples) == combinations and all(len(found) == _KEPT for found in kind.samples.values()):
             break
     kind.samples = {literals: sorted(found, key=len, reverse=True) for literals, found in kind.samples.items()}
 

@@ -62,7 +62,7 @@ class Line:
 def parse(text: str, number: int) -> Line:
     """A line of a log. Raises TraceError."""
     # `json` may follow any number of brackets, until the process ends.
-    if max(accumulate((BRACKETS.get(each, 0) for each in text), initial=0)) > DEEPEST:
+    if max(accumulate((BRACKETS.get(character, 0) for character in text), initial=0)) > DEEPEST:
         raise TraceError(f"line {number} is no line of an event log: nested too deeply")
     try:
         values = json.loads(text)
@@ -121,7 +121,7 @@ def between(tick: int, period: float) -> float:
 def same(one: Any, other: Any) -> bool:
     """Whether data is the same, up to the precision of a float32; null is any number that is not finite."""
     if isinstance(one, dict) and isinstance(other, dict):
-        return one.keys() == other.keys() and all(same(one[each], other[each]) for each in one)
+        return one.keys() == other.keys() and all(same(one[name], other[name]) for name in one)
     if isinstance(one, bool) or isinstance(other, bool):
         return one is other
     numbers = (int, float)
@@ -133,7 +133,7 @@ def same(one: Any, other: Any) -> bool:
 def leaves(value: Any, path: tuple[str, ...] = ()) -> list[tuple[tuple[str, ...], Any]]:
     """Nested objects as pairs of the names on the way and what is there."""
     if isinstance(value, dict):
-        return [leaf for name, each in value.items() for leaf in leaves(each, (*path, name))]
+        return [leaf for name, inner in value.items() for leaf in leaves(inner, (*path, name))]
     return [(path, value)]
 
 
@@ -153,22 +153,22 @@ class Incoming:
     """What the node makes of one kind of data, and how to make data of which the node makes what the trace says."""
 
     def __init__(self, described: dict[str, Any]) -> None:
-        self.events = [each["event"] for each in described["events"]]
+        self.events = [event["event"] for event in described["events"]]
         #: Those that a message may not be, as it can't be read.
-        self.unreadable = {each["event"] for each in described["events"] if each.get("unreadable")}
-        self._reads = {each["event"]: each["reads"] for each in described["events"]}
+        self.unreadable = {event["event"] for event in described["events"] if event.get("unreadable")}
+        self._reads = {event["event"]: event["reads"] for event in described["events"]}
         self._samples = described["samples"]
 
     def message(self, lines: list[Line]) -> dict[str, Any]:
         """The fields of a message that means these lines, and no other events. Raises TraceError."""
-        given = next((each.message for each in lines if each.message is not None), None)
+        given = next((line.message for line in lines if line.message is not None), None)
         if given is not None:
             return dict(given)
         direct: dict[tuple[str, ...], Any] = {}
         literals = []
         absent: list[tuple[str, ...]] = []
         for event, reads in self._reads.items():
-            line = next((each for each in lines if each.event == event), None)
+            line = next((line for line in lines if line.event == event), None)
             found = {} if line is None or line.data is None else self._values(line.data["value"], reads)
             unread = []
             for read in reads:
@@ -193,9 +193,9 @@ class Incoming:
         return {tuple(reads[0]["path"]): value}
 
     def _sample(self, literals: list[Any], line: Line) -> dict[str, Any]:
-        for each in self._samples:
-            if all(wanted in (None, each["literals"][number]) for number, wanted in enumerate(literals)):
-                return dict(each["message"])
+        for sample in self._samples:
+            if all(wanted in (None, sample["literals"][number]) for number, wanted in enumerate(literals)):
+                return dict(sample["message"])
         if not literals:
             return {}
         wanted = ", ".join(map(str, literals))
@@ -214,7 +214,7 @@ def without(message: dict[str, Any], path: tuple[str, ...]) -> dict[str, Any]:
     owner = copy
     for name in path[:end]:
         owner = owner.get(name, {})
-    for index in [each for each in owner if int(each) >= int(path[end])]:
+    for index in [index for index in owner if int(index) >= int(path[end])]:
         del owner[index]
     return copy
 
@@ -240,16 +240,16 @@ def fill(message: Any, fields: dict[str, Any], element: Callable[[Any, str], Any
 def _filled(held: Any, value: Any, make: Callable[[], Any], element: Callable[[Any, str], Any]) -> Any:
     if isinstance(value, dict) and (isinstance(held, (Sequence, array)) or hasattr(held, "dtype")):
         items = list(held)
-        for index, each in value.items():
+        for index, inner in value.items():
             while len(items) <= int(index):
                 items.append(make())
-            items[int(index)] = _filled(items[int(index)], each, make, element)
+            items[int(index)] = _filled(items[int(index)], inner, make, element)
         return items
     if isinstance(value, dict):
         return fill(held, value, element)
     if isinstance(held, bytes):
         return bytes([value])
-    kind = next((each for each in (bool, int, float) if isinstance(held, each)), None)
+    kind = next((basic for basic in (bool, int, float) if isinstance(held, basic)), None)
     return value if kind is None else kind(value)
 
 
@@ -271,9 +271,9 @@ class Log:
                 new = file.read()
             self._position += len(new)
             *whole, self._rest = (self._rest + new).split(b"\n")
-            for each in whole:
+            for text in whole:
                 self._count += 1
-                self._lines.append(parse(each.decode("utf-8", "replace"), self._count))
+                self._lines.append(parse(text.decode("utf-8", "replace"), self._count))
         return self._lines[0] if self._lines else None
 
     def wait(self, seconds: float) -> Line | None:
@@ -293,9 +293,9 @@ class Port:
 
     def __init__(self, connections: dict[str, Any]) -> None:
         self.connections = connections
-        servers = [each["name"] for each in connections["services"] + connections["actions"]]
-        names = [each["topic"] for each in connections["publishers"]] + servers
-        names += [cancelled(each["name"]) for each in connections["actions"]]
+        servers = [server["name"] for server in connections["services"] + connections["actions"]]
+        names = [publisher["topic"] for publisher in connections["publishers"]] + servers
+        names += [cancelled(action["name"]) for action in connections["actions"]]
         self.sent: dict[str, queue.Queue[Any]] = {name: queue.Queue() for name in names}
 
     def connect(self) -> None:
@@ -335,25 +335,25 @@ class Player:
         self._log = log
         self._period: float = connections["period"]
         self._tick = 0
-        self._topics = {each["topic"]: Incoming(each) for each in connections["subscriptions"]}
+        self._topics = {topic["topic"]: Incoming(topic) for topic in connections["subscriptions"]}
         self._answers: dict[str, Callable[[Line], None]] = {}
-        for each in connections["services"]:
-            answer = self._add(each["response"], partial(port.answer, each["name"]))
-            self._answers[each["error"]] = partial(self._fail, each["name"], answer)
-        for each in connections["actions"]:
-            self._add(each["feedback"], partial(port.feed_back, each["name"]))
-            answer = self._add(each["response"], partial(port.end, each["name"], "succeeded"))
-            self._answers[each["error"]] = partial(self._abort, each["name"], answer)
-        self._cancels = {each["cancel"]: each["name"] for each in connections["actions"]}
-        self._goals = {each["trigger"]: each["name"] for each in connections["actions"]}
-        self._outlets = {event: each["topic"] for each in connections["publishers"] for event in each["events"]}
-        self._outlets.update(
-            (each["trigger"], each["name"]) for each in connections["services"] + connections["actions"]
-        )
+        for service in connections["services"]:
+            answer = self._add(service["response"], partial(port.answer, service["name"]))
+            self._answers[service["error"]] = partial(self._fail, service["name"], answer)
+        for action in connections["actions"]:
+            self._add(action["feedback"], partial(port.feed_back, action["name"]))
+            answer = self._add(action["response"], partial(port.end, action["name"], "succeeded"))
+            self._answers[action["error"]] = partial(self._abort, action["name"], answer)
+        self._clients = connections["services"] + connections["actions"]
+        self._cancels = {action["cancel"]: action["name"] for action in connections["actions"]}
+        self._goals = {action["trigger"]: action["name"] for action in connections["actions"]}
+        self._outlets = {
+            event: publisher["topic"] for publisher in connections["publishers"] for event in publisher["events"]
+        }
+        self._outlets.update((client["trigger"], client["name"]) for client in self._clients)
         self._outlets.update((event, cancelled(name)) for event, name in self._cancels.items())
         self._cancelled: set[str] = set()
         self._sent_until = 0
-        self._clients = connections["services"] + connections["actions"]
         #: When a call that nobody answers has failed, and when a client is ready again after a failure.
         self._due: dict[str, float] = {}
         self._now = START * self._period
@@ -490,7 +490,7 @@ class Player:
 
     def _begin_batch(self, lines: list[Line], position: int) -> None:
         """Where something comes in, the node first does what it has not done yet: before its first tick, that is."""
-        ahead = next((each for each in range(position, len(lines)) if lines[each].direction != "internal"), position)
+        ahead = next((later for later in range(position, len(lines)) if lines[later].direction != "internal"), position)
         if (
             ahead >= self._sent_until
             and lines[ahead].direction == "in"
@@ -510,13 +510,13 @@ class Player:
 
     def _note_deadlines(self, event: str) -> None:
         self._due.pop(event, None)
-        for each in self._clients:
-            if event == each["trigger"] and "timeout" in each:
-                self._due[each["error"]] = self._now + each["timeout"]
-            elif event in (each["error"], each["response"]["events"][0]["event"]):
-                self._due.pop(each["error"], None)
-            if event == each["error"]:
-                self._due[each["reset"]] = self._now + each["retry"]
+        for client in self._clients:
+            if event == client["trigger"] and "timeout" in client:
+                self._due[client["error"]] = self._now + client["timeout"]
+            elif event in (client["error"], client["response"]["events"][0]["event"]):
+                self._due.pop(client["error"], None)
+            if event == client["error"]:
+                self._due[client["reset"]] = self._now + client["retry"]
 
     def _end_cancelled(self, lines: list[Line], position: int) -> None:
         """A cancelled goal is over when the trace has a new one at once, or in the next tick."""

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 from robosc.files.resources import locate
 from robosc.m2t.models import TraceTest
-from robosc.node_tests.shapes import nested
 from robosc.node_tests.walk import Walk, parameters
 from robosc.ros_types import RosTypes
+from robosc.runtime.core.event_log import nested
 from robosc.semantics.roles import event_name
 
 if TYPE_CHECKING:
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from robosc.configuration import Configuration
     from robosc.metamodel import rosgraph, sct
     from robosc.node_tests.samples import Incoming
+    from robosc.runtime.core.port import Client
 
 _SEED = 1
 #: How often something comes in: for the topics, and for each service and action.
@@ -36,7 +37,7 @@ def trace_test(
     ROS types are looked up as `check` does; of a type that is unknown, numbers are tried that all of its kind hold.
     The same call gives the same test.
     """
-    distribution = next(each for each in RosTypes(interface_paths).distributions if each.name == f"ROS {version}")
+    distribution = next(known for known in RosTypes(interface_paths).distributions if known.name == f"ROS {version}")
     walk = Walk(graph, configuration, distribution, _SEED)
     stimuli = _STIMULI[0] + _STIMULI[1] * len([*graph.serviceClients, *graph.actionClients])
     trace = "".join(f"{line}\n" for line in walk.go(stimuli))
@@ -59,45 +60,46 @@ def _connections(
         "managed": configuration.lifecycle,
         "period": started["period_ms"] / 1000,
         "subscriptions": [
-            {"topic": each.topic, "type": _type(each.interface), **_described(incoming[each.receptions[0].event])}
-            for each in graph.subscriptions
+            {"topic": topic.topic, "type": _type(topic.interface), **_described(incoming[topic.receptions[0].event])}
+            for topic in graph.subscriptions
         ],
         "publishers": [
             {
-                "topic": each.topic,
-                "type": _type(each.interface),
-                "best_effort": _is_best_effort(each.topic, configuration),
-                "events": [event_name(sending.event) for sending in each.sendings],
+                "topic": publisher.topic,
+                "type": _type(publisher.interface),
+                "best_effort": _is_best_effort(publisher.topic, configuration),
+                "events": [event_name(sending.event) for sending in publisher.sendings],
             }
-            for each in graph.publishers
+            for publisher in graph.publishers
         ],
         "services": [
             {
-                "name": each.identifier,
-                "type": _type(each.interface),
-                "trigger": event_name(each.request.event),
-                "error": event_name(each.error),
-                "reset": event_name(each.reset),
+                **_client(service, started),
                 "timeout": started["service_timeout_ms"] / 1000,
-                "retry": started["retry_ms"] / 1000,
-                "response": _described(incoming[each.response.event]),
+                "response": _described(incoming[service.response.event]),
             }
-            for each in graph.serviceClients
+            for service in graph.serviceClients
         ],
         "actions": [
             {
-                "name": each.identifier,
-                "type": _type(each.interface),
-                "trigger": event_name(each.request.event),
-                "cancel": event_name(each.cancel),
-                "error": event_name(each.error),
-                "reset": event_name(each.reset),
-                "retry": started["retry_ms"] / 1000,
-                "feedback": _described(incoming[each.feedback.event]),
-                "response": _described(incoming[each.response.event]),
+                **_client(action, started),
+                "cancel": event_name(action.cancel),
+                "feedback": _described(incoming[action.feedback.event]),
+                "response": _described(incoming[action.response.event]),
             }
-            for each in graph.actionClients
+            for action in graph.actionClients
         ],
+    }
+
+
+def _client(client: Client, started: Mapping[str, bool | int]) -> dict[str, Any]:
+    return {
+        "name": client.identifier,
+        "type": _type(client.interface),
+        "trigger": event_name(client.request.event),
+        "error": event_name(client.error),
+        "reset": event_name(client.reset),
+        "retry": started["retry_ms"] / 1000,
     }
 
 
@@ -107,7 +109,7 @@ def _described(kind: Incoming) -> dict[str, Any]:
             {
                 "event": event,
                 **({"unreadable": True} if event in kind.unreadable else {}),
-                "reads": [{"path": list(each.path), "converted": each.conversion is not None} for each in shown],
+                "reads": [{"path": list(read.path), "converted": read.conversion is not None} for read in shown],
             }
             for event, shown in kind.events
         ],

@@ -8,13 +8,13 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from robosc.engine import Engine
+from robosc.node_tests.messages import Leaf, message
 from robosc.node_tests.robot import Robot
 from robosc.node_tests.samples import Incoming, Values, find_samples, incoming, shortened
-from robosc.node_tests.shapes import Leaf, message, nested
 from robosc.node_tests.trace_player import START, between, just_after
 from robosc.ros_types import Section
 from robosc.runtime.core.controller import Controller
-from robosc.runtime.core.event_log import EventLog, ReceivedData, json_text
+from robosc.runtime.core.event_log import EventLog, ReceivedData, json_text, nested
 from robosc.runtime.core.event_loop import EventLoop
 from robosc.runtime.core.node_data import NodeData
 from robosc.runtime.core.port import Outcome
@@ -41,7 +41,7 @@ def parameters(graph: rosgraph.RosGraph, configuration: Configuration) -> dict[s
     A robot whose topics are silent between two lines of a trace is not stopped.
     """
     period = configuration.control_loop.period_ms
-    declared = {each.name: each.default for each in controller_parameters(graph, configuration, "")}
+    declared = _defaults(graph, configuration)
     most = _DAY // period * period
     rounded: dict[str, bool | int] = {
         name: min(-(-int(value) // period) * period, most)
@@ -49,6 +49,10 @@ def parameters(graph: rosgraph.RosGraph, configuration: Configuration) -> dict[s
         if name in ("service_timeout_ms", "action_timeout_ms", "retry_ms")
     }
     return {"period_ms": period, **rounded, "watchdog_stops": False}
+
+
+def _defaults(graph: rosgraph.RosGraph, configuration: Configuration) -> dict[str, bool | int | str]:
+    return {parameter.name: parameter.default for parameter in controller_parameters(graph, configuration, "")}
 
 
 class _Lines(EventLog):
@@ -91,7 +95,7 @@ class Walk:
 
     def go(self, stimuli: int) -> Iterator[str]:
         """The lines of the trace of so many stimuli."""
-        declared = {each.name: each.default for each in controller_parameters(self._graph, self._configuration, "")}
+        declared = _defaults(self._graph, self._configuration)
         settings = Settings(declared | self._parameters, self._configuration)
         robot = Robot(self._graph, self._distribution, lambda: self._now)
         event_loop = EventLoop(lambda: self._now)
@@ -136,11 +140,12 @@ class Walk:
             if called < late:
                 return self._answer(robot, service)
         options: list[tuple[float, Callable[[], dict[str, Any] | None]]] = [
-            (3 / (1 + self._used[each]), partial(self._publish, controller, each)) for each in self._graph.subscriptions
+            (3 / (1 + self._used[topic]), partial(self._publish, controller, topic))
+            for topic in self._graph.subscriptions
         ]
-        options += [(2, partial(self._answer, robot, each)) for each in robot.calls]
-        options += [(2, partial(self._feed_back, robot, each)) for each in robot.goals]
-        options += [(1, partial(self._end, robot, each)) for each in robot.goals]
+        options += [(2, partial(self._answer, robot, service)) for service in robot.calls]
+        options += [(2, partial(self._feed_back, robot, action)) for action in robot.goals]
+        options += [(1, partial(self._end, robot, action)) for action in robot.goals]
         if not options:
             return None
         (act,) = self._choice.choices([act for _, act in options], [weight for weight, _ in options])
@@ -178,14 +183,14 @@ class Walk:
         """Now and then, but never so that deadlines meet: which of them comes first, ROS does not say."""
         fails = self._now > self._failing_until and self._choice.randrange(_FAILURES) == 0
         if fails:
-            deadlines = sum(self._parameters[each] for each in (*timeouts, "retry_ms"))
+            deadlines = sum(self._parameters[timeout] for timeout in (*timeouts, "retry_ms"))
             self._failing_until = self._now + deadlines / 1000 + self._period
         return fails
 
     def _message(self, event: sct.Event) -> tuple[Any, dict[str, Any]]:
         """Data that means something which came in least often until now."""
         kind = self.incoming[event]
-        literals = min(kind.samples, key=lambda each: (self._used[event, each], self._choice.random()))
+        literals = min(kind.samples, key=lambda found: (self._used[event, found], self._choice.random()))
         self._used[event, literals] += 1
         values: dict[tuple[str, ...], Leaf] = dict(self._choice.choice(kind.samples[literals]))
         if not kind.conversions:
@@ -200,12 +205,12 @@ class Walk:
         known: dict[sct.Event, Incoming] = {}
         for interface, part, receptions in self._receptions():
             described = []
-            for each in receptions:
-                values = [assigned.value for assigned in each.inputs] + data.values_read(each.event)
-                described.append((event_name(each.event), ReceivedData(values).parts, values))
+            for reception in receptions:
+                values = [assigned.value for assigned in reception.inputs] + data.values_read(reception.event)
+                described.append((event_name(reception.event), ReceivedData(values).parts, values))
             kind = incoming(self._distribution, interface, part, described)
             find_samples(kind, self._values, data, seed)
-            known |= dict.fromkeys((each.event for each in receptions), kind)
+            known |= dict.fromkeys((reception.event for reception in receptions), kind)
         return known
 
     def _receptions(self) -> Iterator[tuple[rosgraph.Interface, Section, Sequence[rosgraph.Reception]]]:

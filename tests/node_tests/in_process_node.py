@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from robosc.node_tests.messages import message
 from robosc.node_tests.robot import Robot, RunningGoal
-from robosc.node_tests.shapes import message
 from robosc.node_tests.trace_player import START, Port, cancelled, leaves
 from robosc.node_tests.walk import Walk, parameters
 from robosc.ros_types import RosTypes

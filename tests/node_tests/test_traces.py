@@ -19,7 +19,7 @@ from robosc.engine import Engine
 from robosc.files.resources import locate
 from robosc.metamodel import expression as ex
 from robosc.node_tests import trace_player
-from robosc.node_tests.shapes import Field, message
+from robosc.node_tests.messages import Field, message
 from robosc.node_tests.trace_player import Log, Player, TraceError, read_trace
 from robosc.node_tests.trace_test import trace_test
 from robosc.node_tests.walk import Walk

@@ -39,7 +39,7 @@ CONVERTERS = {"msg": convert_msg_to_idl, "srv": convert_srv_to_idl, "action": co
 KNOWN = ("action_msgs", "builtin_interfaces", "geometry_msgs", "service_msgs", "std_msgs", "unique_identifier_msgs")
 #: Libraries of each of these, and of the generators.
 KINDS = ("generator_c", "generator_py", "typesupport_c", "typesupport_fastrtps_c", "typesupport_introspection_c")
-RUNTIME = ("rcutils", "fastcdr", "rosidl_runtime_c", *(f"rosidl_{each}" for each in KINDS[2:]))
+RUNTIME = ("rcutils", "fastcdr", "rosidl_runtime_c", *(f"rosidl_{kind}" for kind in KINDS[2:]))
 SUPPORTS = ["rosidl_typesupport_fastrtps_c", "rosidl_typesupport_introspection_c"]
 
 
@@ -51,22 +51,22 @@ def generate(name: str, package: Path, out: Path, work: Path) -> None:
         for path in sorted(package.glob(f"{kind}/*.{kind}")):
             convert(package, name, path.relative_to(package), idl / kind)
             files.append(f"{kind}/{path.stem}.idl")
-    known = [SHARE / each for each in KNOWN]
+    known = [SHARE / package for package in KNOWN]
 
     def arguments(generator: str, **more: object) -> str:
         folder = out / name if generator == "rosidl_generator_py" else work / generator / name
         for file in files:
             (folder / file).parent.mkdir(parents=True, exist_ok=True)
         templates = SHARE / generator / "resource"
-        for each in templates.glob("*visibility_control.h.in"):
+        for template in templates.glob("*visibility_control.h.in"):
             generate_visibility_control_file(
-                package_name=name, template_path=str(each), output_path=str(folder / "msg" / each.stem)
+                package_name=name, template_path=str(template), output_path=str(folder / "msg" / template.stem)
             )
         values = {
             "package_name": name,
             "output_dir": str(folder),
             "template_dir": str(templates),
-            "idl_tuples": [f"{idl}:{each}" for each in files],
+            "idl_tuples": [f"{idl}:{file}" for file in files],
             "ros_interface_dependencies": dependencies_from_include_paths(map(str, known)),
             "target_dependencies": [],
         }
@@ -76,13 +76,13 @@ def generate(name: str, package: Path, out: Path, work: Path) -> None:
 
     descriptions = work / "rosidl_generator_type_description" / name
     generate_type_hash(
-        arguments("rosidl_generator_type_description", include_paths=[f"{each.name}:{each}" for each in known])
+        arguments("rosidl_generator_type_description", include_paths=[f"{share.name}:{share}" for share in known])
     )
     generate_c(
         arguments(
             "rosidl_generator_c",
-            type_description_tuples=[f"{each}:{descriptions / each.replace('.idl', '.json')}" for each in files],
-            ros_interface_files=[str(idl / each) for each in files],
+            type_description_tuples=[f"{file}:{descriptions / file.replace('.idl', '.json')}" for file in files],
+            ros_interface_files=[str(idl / file) for file in files],
         )
     )
     generate_typesupport_fastrtps_c(arguments("rosidl_typesupport_fastrtps_c"))
@@ -97,14 +97,14 @@ def compile_library(
 ) -> Path:
     """Compiles all sources below some folders into one library, linked with those that were made before."""
     objects = []
-    sources = sorted(each for folder in folders for each in folder.rglob("*.c*") if each.suffix in (".c", ".cpp"))
+    sources = sorted(path for folder in folders for path in folder.rglob("*.c*") if path.suffix in (".c", ".cpp"))
     for number, source in enumerate(sources):
         objects.append(work / f"{file.name}.{number}.o")
         compiler = "g++" if source.suffix == ".cpp" else "gcc"
         _run(compiler, "-O0", "-w", "-fPIC", *include, "-c", source, "-o", objects[-1])
     places = [f"-L{PREFIX / 'lib'}", f"-Wl,-rpath,{PREFIX / 'lib'}:$ORIGIN"]
     there = [f"{package}__rosidl_{kind}" for package in KNOWN for kind in KINDS]
-    libraries = [f"-l{each}" for each in (*RUNTIME, *there) if (PREFIX / "lib" / f"lib{each}.so").exists()]
+    libraries = [f"-l{library}" for library in (*RUNTIME, *there) if (PREFIX / "lib" / f"lib{library}.so").exists()]
     # The middleware asks for a type support by its library's name: it has to be loaded already, used or not.
     options = ["-shared", f"-Wl,-soname,{file.name}", "-Wl,--no-as-needed"]
     _run("g++", *options, "-o", file, *objects, *linked, *places, *libraries)
@@ -119,16 +119,16 @@ def build(package: Path, out: Path, work: Path) -> None:
     """The modules of one package, ready to be imported."""
     name = package.name
     generate(name, package, out, work)
-    generated = [work / each for each in ("rosidl_generator_c", "rosidl_typesupport_c", *SUPPORTS)]
+    generated = [work / generator for generator in ("rosidl_generator_c", "rosidl_typesupport_c", *SUPPORTS)]
     folders = [*generated, out, sysconfig.get_path("include"), numpy.get_include()]
     folders += [*sorted((PREFIX / "include").iterdir()), PREFIX / "include"]
-    include = [f"-I{each}" for each in folders]
+    include = [f"-I{folder}" for folder in folders]
 
     def library(file: str, *generators: Path, linked: Sequence[Path] = ()) -> Path:
-        return compile_library(out / name / file, [each / name for each in generators], linked, include, work)
+        return compile_library(out / name / file, [folder / name for folder in generators], linked, include, work)
 
     types = library(f"lib{name}__rosidl_generator_c.so", *generated[:2])
-    made = [types, *(library(f"lib{name}__{each.name}.so", each, linked=[types]) for each in generated[2:])]
+    made = [types, *(library(f"lib{name}__{folder.name}.so", folder, linked=[types]) for folder in generated[2:])]
     library(f"{name}_s__rosidl_typesupport_c{sysconfig.get_config_var('EXT_SUFFIX')}", out, linked=made)
 
 

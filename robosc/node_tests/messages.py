@@ -11,11 +11,11 @@ from robosc.metamodel import rosgraph
 from robosc.metamodel.reflection import tree
 from robosc.ros_types import DefinitionError, RosDistribution, Section
 from robosc.ros_types.wire import Basic, Nested, Sequence
+from robosc.runtime.core.event_log import access_path
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
-    from robosc.runtime.core.event_log import Json
 
 #: Elements of an array that a walk makes at most.
 LONGEST = 10_000
@@ -49,7 +49,7 @@ class Field:
         return self.wire or _DEFAULTS[type(self.type)][0]
 
 
-def wire_type(distribution: RosDistribution, interface: rosgraph.Interface, part: Section, path: Path) -> str | None:
+def wire_type(distribution: RosDistribution, interface: rosgraph.Interface, section: Section, path: Path) -> str | None:
     """The basic ROS type at the end of a path; None where it is unknown."""
     package, name = interface.package, interface.type
     found: object = None
@@ -58,12 +58,12 @@ def wire_type(distribution: RosDistribution, interface: rosgraph.Interface, part
             found = found.element if isinstance(found, Sequence) else None
         else:
             try:
-                fields = distribution.fields(package, name, part)
+                fields = distribution.fields(package, name, section)
             except DefinitionError:
                 return None
             found = None if fields is None else fields.get(step)
         if isinstance(found, Nested):
-            package, name, part = found.package, found.name, Section.MESSAGE
+            package, name, section = found.package, found.name, Section.MESSAGE
     return found.name if isinstance(found, Basic) else None
 
 
@@ -75,17 +75,9 @@ def reads(values: Iterable[ex.Expression], prefix: Path = ()) -> Iterator[tuple[
             if isinstance(part, rosgraph.ConversionCall):
                 arguments.append(part.argument)
                 conditions = [rule.condition for rule in part.conversion.rules]
-                yield from reads(conditions, prefix + steps(part.argument))
+                yield from reads(conditions, prefix + access_path(part.argument))
             elif isinstance(part, rosgraph.WireAccess) and part not in arguments and part.type is not None:
-                yield prefix + steps(part), part.type
-
-
-def steps(access: rosgraph.WireAccess) -> Path:
-    """The names and indices on the way that an access takes."""
-    return tuple(
-        step.name if isinstance(step, rosgraph.FieldStep) else str(step.index)  # type: ignore[attr-defined]
-        for step in access.steps
-    )
+                yield prefix + access_path(part), part.type
 
 
 def message(fields: Mapping[Path, Field], values: Mapping[Path, Leaf]) -> Any:
@@ -96,29 +88,18 @@ def message(fields: Mapping[Path, Field], values: Mapping[Path, Leaf]) -> Any:
     if () in fields:
         return values.get((), fields[()].default)
     heads = list(dict.fromkeys(path[0] for path in fields))
-    if not all(each.isdigit() for each in heads):
+    if not all(head.isdigit() for head in heads):
         return SimpleNamespace(
-            **{each: message(_below(each, fields), _below(each, values)) for each in heads},
+            **{head: message(_below(head, fields), _below(head, values)) for head in heads},
             wire_types={path[0]: field.wire_type for path, field in fields.items() if len(path) == 1},
         )
     element: dict[Path, Field] = {}
-    for each in heads:
-        element |= _below(each, fields)
+    for head in heads:
+        element |= _below(head, fields)
     length = 1 + max((int(path[0]) for path in values if int(path[0]) < LONGEST), default=-1)
     if () in element:
         return [values.get((str(index),), element[()].default) for index in range(length)]
     return [message(element, _below(str(index), values)) for index in range(length)]
-
-
-def nested(values: Mapping[Path, Leaf]) -> dict[str, Json]:
-    """The values as objects in objects, arrays from index to element."""
-    made: dict[str, Any] = {}
-    for path, value in values.items():
-        owner = made
-        for name in path[:-1]:
-            owner = owner.setdefault(name, {})
-        owner[path[-1]] = value
-    return made
 
 
 def _below(head: str, paths: Mapping[Path, Any]) -> dict[Path, Any]:
