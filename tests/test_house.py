@@ -3,6 +3,7 @@
 import ast
 import sys
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -74,16 +75,20 @@ LIBRARIES = {
 }
 
 
-def modules() -> Iterator[tuple[tuple[str, ...], ast.Module]]:
-    """Every module, as the parts of its name below `robosc`, and its syntax tree."""
+@cache
+def modules() -> list[tuple[tuple[str, ...], list[ast.AST]]]:
+    """Every module, as the parts of its name below `robosc`, and the nodes of its syntax tree."""
+    found = []
     for path in sorted(PACKAGE.rglob("*.py")):
         parts = path.relative_to(PACKAGE).with_suffix("").parts
-        yield tuple(each for each in parts if each != "__init__"), ast.parse(path.read_text(encoding="utf-8"))
+        nodes = list(ast.walk(ast.parse(path.read_text(encoding="utf-8"))))
+        found.append((tuple(part for part in parts if part != "__init__"), nodes))
+    return found
 
 
-def imports(tree: ast.Module) -> Iterator[tuple[str, ...]]:
+def imports(nodes: list[ast.AST]) -> Iterator[tuple[str, ...]]:
     """The parts of the name of every module that a module imports, anywhere, for type checkers too."""
-    for node in ast.walk(tree):
+    for node in nodes:
         if isinstance(node, ast.Import):
             yield from (tuple(alias.name.split(".")) for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
@@ -102,7 +107,7 @@ def may(importer: tuple[str, ...], imported: tuple[str, ...]) -> bool:
     """Whether one module of the house may import another."""
     here, there = room(importer), room(imported)
     if here == there == "m2t":
-        ours, theirs = ("".join(each[1:2]) for each in (importer, imported))
+        ours, theirs = ("".join(parts[1:2]) for parts in (importer, imported))
         return ours == theirs or (theirs in SHARED and theirs in SHARED.get(ours, SHARED))
     return here == there or there not in ROOMS or there in ALLOWED.get(here, set())
 
@@ -110,8 +115,8 @@ def may(importer: tuple[str, ...], imported: tuple[str, ...]) -> bool:
 def test_no_import_breaks_the_rule() -> None:
     broken = [
         f"{'.'.join(importer)} imports {'.'.join(imported)}"
-        for importer, tree in modules()
-        for root, *imported in imports(tree)
+        for importer, nodes in modules()
+        for root, *imported in imports(nodes)
         if root == "robosc" and not may(importer, tuple(imported))
     ]
     assert broken == []
@@ -119,13 +124,13 @@ def test_no_import_breaks_the_rule() -> None:
 
 @pytest.mark.parametrize("library", LIBRARIES)
 def test_a_library_stays_in_its_room(library: str) -> None:
-    used = {room(importer) for importer, tree in modules() for name, *_ in imports(tree) if name == library}
+    used = {room(importer) for importer, nodes in modules() for name, *_ in imports(nodes) if name == library}
     assert used == LIBRARIES[library]
 
 
 def test_every_other_library_is_the_standard_one() -> None:
     known = {*LIBRARIES, "robosc", *sys.stdlib_module_names}
-    assert {name for _, tree in modules() for name, *_ in imports(tree) if name not in known} == set()
+    assert {name for _, nodes in modules() for name, *_ in imports(nodes) if name not in known} == set()
 
 
 #: What opens, makes or moves files, and who may: what others name goes through `files` and `output`.
@@ -169,7 +174,7 @@ def opens(node: ast.AST) -> bool:
 
 
 def test_files_that_others_name_go_through_one_place() -> None:
-    opening = {".".join(parts) for parts, tree in modules() if any(map(opens, ast.walk(tree)))}
+    opening = {".".join(parts) for parts, nodes in modules() if any(map(opens, nodes))}
     assert opening == OPENERS
 
 

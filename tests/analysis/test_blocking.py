@@ -85,6 +85,7 @@ def is_blocked(oracle: Oracle, state: State) -> bool:
     return not any(map(oracle.is_marked, oracle.reach(state, requirements=True)))
 
 
+@pytest.mark.slow
 @given(sct_models(data=False))
 @RANDOM_MODELS
 def test_the_trace_leads_to_the_fault(random_model):

@@ -144,6 +144,7 @@ class Definitions:
         ]
 
 
+@pytest.mark.slow
 @given(communicating_models())
 @RANDOM_MODELS
 def test_random_models(random_model):

@@ -1,6 +1,8 @@
 """A folder with a small robot, and a way to call the command line in it."""
 
-from collections.abc import Callable
+import signal
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -38,7 +40,25 @@ def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Run:
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv("ROBOSC_PATH", raising=False)
     monkeypatch.delenv("ROBOSC_TRACEBACK", raising=False)
-    return lambda *arguments: CliRunner().invoke(main, [str(each) for each in arguments], catch_exceptions=False)
+    return lambda *arguments: CliRunner().invoke(
+        main, [str(argument) for argument in arguments], catch_exceptions=False
+    )
+
+
+@contextmanager
+def not_longer_than(seconds: int) -> Iterator[None]:
+    """Fails where what is called waits, for a pipe that nobody writes, say."""
+
+    def give_up(*_: object) -> None:
+        raise TimeoutError(f"not done within {seconds} s")
+
+    before = signal.signal(signal.SIGALRM, give_up)
+    signal.alarm(seconds)
+    try:
+        yield
+    finally:
+        signal.alarm(0)
+        signal.signal(signal.SIGALRM, before)
 
 
 @pytest.fixture

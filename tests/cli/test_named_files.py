@@ -11,7 +11,7 @@ import pytest
 
 from robosc.language import libraries, read, reading
 
-from .conftest import DOOR, LAMPS, Run
+from .conftest import DOOR, LAMPS, Run, not_longer_than
 
 COMMANDS = {
     "model": ("check", "pipe.rscd"),
@@ -24,19 +24,13 @@ COMMANDS = {
 
 
 @pytest.mark.parametrize("call", COMMANDS.values(), ids=list(COMMANDS))
-def test_a_pipe_or_device_is_not_read(door: Path, call: tuple[str, ...]) -> None:
+def test_a_pipe_or_device_is_not_read(run: Run, door: Path, call: tuple[str, ...]) -> None:
     for name in ("pipe", "pipe.rscd", "pipe.xmi"):
         os.mkfifo(door.parent / name)
-    done = subprocess.run(
-        [sys.executable, "-m", "robosc", *call],
-        cwd=door.parent,
-        capture_output=True,
-        text=True,
-        timeout=60,
-        check=False,
-    )
+    with not_longer_than(60):
+        done = run(*call)
     said = done.stdout + done.stderr
-    assert (done.returncode, "only regular files are read" in said) == (1 if call[1] == "pipe.xmi" else 2, True), said
+    assert (done.exit_code, "only regular files are read" in said) == (1 if call[1] == "pipe.xmi" else 2, True), said
 
 
 def test_a_standard_input_without_end_is_not_read_to_it(door: Path) -> None:
@@ -116,10 +110,9 @@ def test_a_saved_model_shows_no_other_file(run: Run, courier: Path, file: str, m
     (out / "below").mkdir()
     os.mkfifo(out / "below" / "pipe.rscd")
     forged(saved, file.format(out=out.resolve()))
-    done = subprocess.run(
-        [sys.executable, "-m", "robosc", "check", saved], capture_output=True, text=True, timeout=60, check=False
-    )
-    assert done.returncode == 1
+    with not_longer_than(60):
+        done = run("check", saved)
+    assert done.exit_code == 1
     assert "[marked-state]" in done.stdout
     assert "secret" not in done.stdout.replace("secret.rscd:", "")
 

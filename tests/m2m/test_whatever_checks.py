@@ -122,6 +122,7 @@ def test_a_long_expression_is_transformed(path: Path, operator: str, operand: st
         (f"{'(' * 10_000}C.b{')' * 10_000}", "this is nested more than 50 levels deep"),
         ("!" * 10_000 + "C.b", "this is nested more than 50 levels deep"),
     ],
+    ids=["operators", "brackets", "negations"],
 )
 def test_an_expression_beyond_reason_is_a_finding(path: Path, condition: str, message: str) -> None:
     behaviour = "behaviour { variable b: boolean initial marked state s { } }"

@@ -42,6 +42,8 @@ HOSTILE = [
     f"\\u000a{MARK}();",
     f"\u2028{MARK}();\u202e",
 ]
+#: All of them: each that gets out of its place brings its own mark out.
+TOGETHER = " ".join(HOSTILE)
 MODEL = """
 robot Robot {
   component Part {
@@ -57,6 +59,7 @@ robot Robot {
   provide said with "provided" if Part.here
 }
 """
+PLACES = ('"/heard"', '"/said"', '"/asked"')
 TARGETS = ("cif", "supervisor", "ros1", "ros2", "ros1-layer", "ros2-layer")
 
 #: How the configuration starts a controller behind a supervisory layer.
@@ -67,7 +70,7 @@ LAUNCH = {"packageName": "drive", "file": "drive.launch"}
 def quoted(text: str) -> str:
     """A string literal of the language."""
     escapes = {"\\": "\\\\", '"': '\\"', "\n": "\\n", "\r": "\\r"}
-    return '"' + "".join(escapes.get(each, each) for each in text) + '"'
+    return '"' + "".join(escapes.get(character, character) for character in text) + '"'
 
 
 @pytest.fixture(scope="module")
@@ -89,7 +92,7 @@ def generated(
         else:
             findings = []
         assert files or findings
-        assert all(each.span.line >= 1 and each.message for each in findings)
+        assert all(finding.span.line >= 1 and finding.message for finding in findings)
         yield from files.items()
 
 
@@ -101,7 +104,7 @@ def models_of(text: str, folder: Path) -> Models | None:
         robot = robosc.load(path)
     except robosc.ModelError:
         return None
-    assert not any(each.severity == "error" for each in robosc.check(robot))
+    assert not any(finding.severity == "error" for finding in robosc.check(robot))
     plants = robosc.to_sct(robot)
     robosc.synthesize(plants)
     return Models(plants, robosc.to_rosgraph(robot), robot)
@@ -123,10 +126,10 @@ def bare(path: str, text: str) -> str:
         return re.sub(r'"(?:\\.|[^"\\\n])*"|#[^\n]*|^ +\w+(?=: \d+$)', "", text, flags=re.MULTILINE)
     if kind == ".py":
         tree_of_it = ast.parse(text)
-        return " ".join(each.id for each in ast.walk(tree_of_it) if isinstance(each, ast.Name))
+        return " ".join(node.id for node in ast.walk(tree_of_it) if isinstance(node, ast.Name))
     if kind in {".xml", ".launch"}:
         root = ET.fromstring(text)  # noqa: S314 - the text is ours
-        return " ".join(each.tag for each in root.iter())
+        return " ".join(element.tag for element in root.iter())
     return text
 
 
@@ -143,48 +146,91 @@ def assert_contained(files: Iterator[tuple[str, str]]) -> int:
     return count
 
 
-@pytest.mark.parametrize("text", HOSTILE)
-@pytest.mark.parametrize("place", ['"provided"', '"initial"', '"/heard"', '"/said"', '"/asked"'])
-def test_texts_of_a_model(place: str, text: str, tmp_path: Path) -> None:
-    models = models_of(MODEL.replace(place, quoted(text)), tmp_path)
-    if models is not None:
-        assert assert_contained(generated(models)) > 0
-
-
-@pytest.mark.parametrize("text", HOSTILE)
-@pytest.mark.parametrize("key", ["description", "maintainer", "license", "name", "version", "email"])
-def test_texts_of_the_configuration(key: str, text: str, tmp_path: Path) -> None:
-    models = models_of(MODEL, tmp_path)
+def test_values_of_a_model(tmp_path: Path) -> None:
+    variables = "\n".join(f"      variable kept{n}: string = {quoted(text)}" for n, text in enumerate(HOSTILE))
+    messages = "\n".join(
+        f'    incoming message said{n} with identifier: "/said{n}", type: string' for n in range(len(HOSTILE))
+    )
+    provided = "\n".join(
+        f"  requirement said{n} needs Part.here\n  provide said{n} with {quoted(text)} if Part.here"
+        for n, text in enumerate(HOSTILE)
+    )
+    model = MODEL.replace("    behaviour {\n", f"{messages}\n    behaviour {{\n{variables}\n")
+    models = models_of(model.replace("  provide", f"{provided}\n  provide"), tmp_path)
     assert models is not None
-    try:
-        configuration = Configuration.model_validate({"package": {key: text}})
-    except ValueError:
-        return  # Refused where it is read.
-    assert_contained(generated(models, configuration))
+    for target in TARGETS:
+        assert assert_contained(generated(models, targets=[target])) > 0, f"{target} refuses them"
 
 
-@pytest.mark.parametrize("text", HOSTILE)
-@pytest.mark.parametrize(("form", "key"), [*(("run", each) for each in RUN), *(("launch", each) for each in LAUNCH)])
-def test_how_an_existing_controller_is_started(form: str, key: str, text: str, harmless: Models) -> None:
-    started = {**(RUN if form == "run" else LAUNCH), key: text}
-    settings = {"supervisor": {"controller": {form: started}}}
-    assert_contained(generated(harmless, Configuration.model_validate(settings), TARGETS[-2:]))
+def test_topics_of_a_model(tmp_path: Path) -> None:
+    """ROS refuses all of them, each at its place; other targets have them as texts."""
+    declarations = [line for line in MODEL.splitlines() if any(place in line for place in PLACES)]
+    more = [
+        re.sub(r'(heard|said|asked)( with identifier: )".*?"', rf"\g<1>{n}\g<2>@", line).replace("@", quoted(text))
+        for n, text in enumerate(HOSTILE)
+        for line in declarations
+    ]
+    assert len(more) == len(HOSTILE) * len(PLACES)
+    model = MODEL.replace("    behaviour {", "\n".join([*more, "    behaviour {"]))
+    models = models_of(model, tmp_path)
+    assert models is not None
+    for target in TARGETS[:2]:
+        assert assert_contained(generated(models, targets=[target])) > 0, f"{target} refuses them"
+    lines = {n for n, line in enumerate(model.splitlines(), 1) if line in more and f'"/{MARK}"' not in line}
+    for target in TARGETS[2:]:
+        with pytest.raises(robosc.ModelError) as refused:
+            robosc.generate(target, models)
+        assert lines <= {finding.span.line for finding in refused.value.diagnostics}
 
 
-@pytest.mark.parametrize("text", HOSTILE)
+@pytest.mark.parametrize("place", PLACES)
+def test_a_topic_that_ros_takes(place: str, tmp_path: Path) -> None:
+    models = models_of(MODEL.replace(place, f'"/{MARK}"'), tmp_path)
+    assert models is not None
+    for target in TARGETS:
+        assert assert_contained(generated(models, targets=[target])) > 0, f"{target} refuses it"
+
+
+@pytest.mark.parametrize("key", ["description", "maintainer", "license", "name", "version", "email"])
+def test_texts_of_the_configuration(key: str, harmless: Models) -> None:
+    def taken(*texts: str) -> bool:
+        """Whether neither the configuration nor the target refuses them."""
+        try:
+            configuration = Configuration.model_validate({"package": {key: " ".join(texts)}})
+            robosc.generate("ros1-layer", harmless, configuration=configuration)
+        except (ValueError, robosc.ModelError):
+            return False
+        return True
+
+    texts = HOSTILE if taken(*HOSTILE) else [text for text in HOSTILE if taken(text)]
+    assert bool(texts) == (key in ("description", "maintainer", "license"))
+    if texts:
+        configuration = Configuration.model_validate({"package": {key: " ".join(texts)}})
+        for target in TARGETS[2:]:
+            assert assert_contained(generated(harmless, configuration, [target])) > 0
+
+
+@pytest.mark.parametrize(("form", "key"), [*(("run", key) for key in RUN), *(("launch", key) for key in LAUNCH)])
+def test_how_an_existing_controller_is_started(form: str, key: str, harmless: Models) -> None:
+    for text in HOSTILE:
+        started = {**(RUN if form == "run" else LAUNCH), key: text}
+        configuration = Configuration.model_validate({"supervisor": {"controller": {form: started}}})
+        contained = assert_contained(generated(harmless, configuration, TARGETS[-2:]))
+        assert (contained > 0) == (key == "namespace" and text == f"/{MARK}")
+
+
 @pytest.mark.parametrize("part", ["model", "graph", "elements of the graph"])
-def test_names_that_no_text_could_have(part: str, text: str, tmp_path: Path) -> None:
+def test_names_that_no_text_could_have(part: str, tmp_path: Path) -> None:
     """A saved model may come from anywhere, with any name on anything: on all at once that targets refuse alike."""
     models = models_of(MODEL, tmp_path)
     assert models is not None
     assert models.rosgraph is not None
     elements = {
-        "model": [each for _, each in tree(models.sct)],
+        "model": [element for _, element in tree(models.sct)],
         "graph": [models.rosgraph],
-        "elements of the graph": [each for _, each in tree(models.rosgraph)][1:],
+        "elements of the graph": [element for _, element in tree(models.rosgraph)][1:],
     }[part]
     hostile = [element for element in elements if isinstance(element, ex.NamedElement)]
     for number, element in enumerate(hostile):
-        element.name = f"{text}{number}"
-    contained = assert_contained(generated(models))
-    assert contained > 0
+        element.name = f"{TOGETHER}{number}"
+    assert assert_contained(generated(models)) > 0

@@ -13,6 +13,8 @@ from robosc.metamodel import robosc
 from robosc.metamodel.xmi import load, to_texts
 from tests.sct_models import edge, model, needs, plant
 
+pytestmark = pytest.mark.build
+
 JARS = [
     Path("/usr/share/java") / f"{name}.jar"
     for name in ("eclipse-emf-common", "eclipse-emf-ecore", "eclipse-emf-ecore-xmi", "equinox-common")

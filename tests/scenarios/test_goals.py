@@ -40,6 +40,7 @@ def test_stands_while_stop_is_pressed(name: str) -> None:
     assert moved_while_stopped(run_of(name).record, allowance=0.3) < 0.005
 
 
+@pytest.mark.slow
 @EACH
 def test_errors_of_sensors_change_the_way_but_not_its_end(name: str) -> None:
     other = played(name, seed=1)
@@ -48,6 +49,7 @@ def test_errors_of_sensors_change_the_way_but_not_its_end(name: str) -> None:
     assert BOOKS[name]().violations(other.log) == []
 
 
+@pytest.mark.slow
 @EACH
 def test_a_run_is_always_the_same(name: str) -> None:
     first, second = run_of(name), played(name)

@@ -34,6 +34,7 @@ DEMANDS = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "demand", "instead"), DEMANDS)
 def test_a_demand_less_is_noticed(name: str, demand: str, instead: str, tmp_path: Path) -> None:
     text = (EXAMPLES / name / f"{name}.rscd").read_text()

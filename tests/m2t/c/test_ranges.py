@@ -29,6 +29,7 @@ def _expressions(made: sct.SupervisoryControlModel) -> Iterator[ex.Expression]:
         roots += children_of(expression)
 
 
+@pytest.mark.slow
 @settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
 @given(sct_models(), st.randoms(use_true_random=False))
 def test_values_stay_in_their_interval_and_depend_on_their_cells_only(made, random) -> None:
