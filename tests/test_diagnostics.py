@@ -25,21 +25,6 @@ def finding(
     return Diagnostic(file, span, severity, rule, message, hint, edits)
 
 
-@pytest.mark.parametrize(
-    ("source", "expected"),
-    [
-        ("3:5-4:12", Span(3, 5, 4, 12)),
-        ("models/a:b.rscd:3:5-3:12", Span(3, 5, 3, 12)),
-        ("", None),
-        (None, None),
-        ("3:5", None),
-        ("a:b-c:d", None),
-    ],
-)
-def test_span_of_a_source(source: str | None, expected: Span | None) -> None:
-    assert Span.parse(source) == expected
-
-
 def test_span_contains() -> None:
     outer = Span(2, 5, 4, 3)
     assert outer.contains(outer)

@@ -188,8 +188,8 @@ class SynthesizedSystem(SupervisedSystem):
         The requirement that says so stands at the action itself.
         """
         plant, requirements = plant_of(event), self.relations[event].requirements
-        sources = [requirement.source for requirement in requirements]
-        if event.kind != sct.EventKind.cancel or sources != [plant.source or ""]:
+        stands_there = plant.source is not None and [one.source for one in requirements] == [plant.source]
+        if event.kind != sct.EventKind.cancel or not stands_there:
             return None
         return next((other for other in plant.events if other.kind == sct.EventKind.trigger), None)
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from itertools import groupby
 from typing import TYPE_CHECKING
 
-from robosc.diagnostics import Span
 from robosc.metamodel import sct
 from robosc.semantics.edges import edges_from
 from robosc.semantics.roles import event_name, plant_of, provide_number
@@ -61,11 +60,11 @@ def with_words(event: sct.Event) -> str:
 
 def _where(event: sct.Event) -> str:
     """The line of an event, with the column where another of its plant stands in that line."""
-    span = Span.parse(event.source)
-    if span is None:
+    if event.source is None:
         return ""
-    others = (Span.parse(other.source) for other in plant_of(event).events if other is not event)
-    shared = any(other is not None and other.line == span.line and other != span for other in others)
+    span = event.source.span
+    others = (other.source.span for other in plant_of(event).events if other is not event and other.source)
+    shared = any(other.line == span.line and other != span for other in others)
     return f"line {span.line}, column {span.column}" if shared else f"line {span.line}"
 
 
@@ -93,9 +92,8 @@ def called(requirements: Sequence[sct.Requirement]) -> str:
 
 
 def _called(requirement: sct.Requirement) -> str:
-    span = Span.parse(requirement.source)
     text = f"`{requirement.text}`" if requirement.text else f"a requirement on the {words(requirement.event)}"
-    return f"{text} (line {span.line})" if span else text
+    return f"{text} (line {requirement.source.span.line})" if requirement.source else text
 
 
 def forbid(requirements: Sequence[sct.Requirement], what: str) -> str:

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING
 from robosc.checks.libraries import reachable, remembering
 from robosc.checks.rule import RULES
 from robosc.diagnostics import Diagnostic, in_order
-from robosc.metamodel.files import path_of
 from robosc.metamodel.places import place
 from robosc.ros_types import RosTypes
 from robosc.semantics.recursion import deep_recursion
@@ -47,12 +46,12 @@ def check(
     interfaces = interfaces or RosTypes()
     with remembering():
         for each_base in [base, *reachable(base)]:
-            findings += _findings(each_base, unread.get(path_of(each_base), []), interfaces)
+            findings += _findings(each_base, unread.get(place(each_base)[0], []), interfaces)
     return in_order(findings)
 
 
 def _findings(base: rsc.Base, unread: Sequence[Diagnostic], interfaces: RosTypes) -> Iterator[Diagnostic]:
-    file = path_of(base)
+    file = place(base)[0]
     for rule in RULES.values():
         for each in rule.check(base, interfaces):
             if not each.can_be_false(unread):

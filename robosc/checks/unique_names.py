@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 from robosc.checks.automata import behaviours
 from robosc.checks.rule import Finding, rule
-from robosc.diagnostics import Span
 from robosc.metamodel import robosc as rsc
 
 if TYPE_CHECKING:
@@ -104,5 +103,4 @@ def declared_again(kind: str, second: ex.NamedElement, first: ex.NamedElement, w
 
 def on_line(element: ex.Located) -> str:
     """` (line 12)`, or nothing where the element comes from no text."""
-    span = Span.parse(element.source)
-    return f" (line {span.line})" if span else ""
+    return f" (line {element.source.span.line})" if element.source else ""

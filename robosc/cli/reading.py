@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path, PurePath
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import robosc
 from robosc.checks import check
@@ -13,9 +13,7 @@ from robosc.language.libraries import search_folders
 from robosc.m2t.models import Models
 from robosc.metamodel import robosc as rsc
 from robosc.metamodel import rosgraph, sct
-from robosc.metamodel.files import set_locate
 from robosc.ros_types import RosTypes
-from robosc.semantics.instances import libraries
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -37,10 +35,9 @@ def read(path: str, library_paths: Sequence[str], report: Report, interface_path
 
         texts: dict[str, str] = {}
         try:
-            root: Root | None = xmi.load(path, texts)
+            root: Root | None = xmi.load(path, texts, _Sources(path, library_paths, report).locate)
         finally:
             report.add((), texts)
-        _locate_sources(root, _Sources(path, library_paths, report))
         findings = []
     else:
         reading = read_text(path, library_paths, interfaces)
@@ -61,15 +58,13 @@ class _Sources:
     def __init__(self, path: str, library_paths: Sequence[str], report: Report) -> None:
         self._folders = [Path(path).parent, *search_folders(library_paths)]
         self._report = report
-        self._found: dict[str, str | None] = {}
 
     def locate(self, name: str) -> str | None:
         """The path of a text, whose lines may then be quoted; None where there is none."""
-        if name not in self._found:
-            self._found[name] = next((path for folder in self._folders if (path := _text_below(folder, name))), None)
-            if self._found[name]:
-                self._report.may_quote(str(self._found[name]))
-        return self._found[name]
+        path = next((path for folder in self._folders if (path := _text_below(folder, name))), None)
+        if path is not None:
+            self._report.may_quote(path)
+        return path
 
 
 def _text_below(folder: Path, name: str) -> str | None:
@@ -83,16 +78,6 @@ def _text_below(folder: Path, name: str) -> str | None:
     except (OSError, ValueError, RuntimeError):  # a null character, links in a circle
         return None
     return str(path) if is_text else None
-
-
-def _locate_sources(root: Any, sources: _Sources) -> None:
-    roots = [root]
-    if isinstance(root, rosgraph.RosGraph):
-        roots.append(root.model)
-    elif isinstance(root, rsc.Base):
-        roots += libraries(root)
-    for each in roots:
-        set_locate(each, sources.locate)
 
 
 def read_configuration(model: str, chosen: str | None, report: Report) -> Configuration:

@@ -5,7 +5,6 @@ How findings are shown is in `as_text`, `as_json` and `as_sarif`; what their rul
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import TYPE_CHECKING
@@ -29,12 +28,6 @@ class Span:
     column: int
     end_line: int
     end_column: int
-
-    @classmethod
-    def parse(cls, source: str | None) -> Span | None:
-        """The span of a model element's `source`, with or without a file before it; None where there is none."""
-        found = re.search(r"(\d{1,9}):(\d{1,9})-(\d{1,9}):(\d{1,9})$", source or "")
-        return cls(*(int(number) for number in found.groups())) if found else None
 
     def contains(self, other: Span) -> bool:
         """Whether the other span lies within this one."""

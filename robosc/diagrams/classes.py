@@ -10,7 +10,7 @@ from robosc.metamodel.reflection import documentation, is_attribute, metamodel
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-_TYPES = {"EString": "String", "EBoolean": "Boolean", "EDouble": "Double"} | dict.fromkeys(
+_TYPES = {"EString": "String", "EBoolean": "Boolean", "EDouble": "Double", "Place": "Place"} | dict.fromkeys(
     ("ELong", "ELongObject", "EBigInteger"), "Integer"
 )
 
@@ -52,7 +52,8 @@ class ClassDiagram:
     def of(cls, name: str) -> ClassDiagram:
         """The diagram of a metamodel."""
         package = metamodel(name)
-        return cls(name, documentation(package), [_class(each, package) for each in package.eClassifiers])
+        shown = [classifier for classifier in package.eClassifiers if classifier.name not in _TYPES]
+        return cls(name, documentation(package), [_class(classifier, package) for classifier in shown])
 
 
 def _class(classifier: Any, package: Any) -> Class:

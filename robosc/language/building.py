@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from robosc.diagnostics import Diagnostic
     from robosc.language.grammar import Node
     from robosc.language.text import Text
+    from robosc.metamodel.places import Place
 
 _LARGEST = 2**63 - 1
 _ESCAPES = {"b": "\b", "t": "\t", "n": "\n", "f": "\f", "r": "\r", '"': '"', "'": "'", "\\": "\\"}
@@ -189,7 +190,7 @@ class Builder:
         finding = self._text.error("syntax", first + self._offset, end + self._offset, message, hint)
         self.findings.append(finding)
 
-    def _source(self, start: int, end: int) -> str:
+    def _source(self, start: int, end: int) -> Place:
         return self._text.source(start + self._offset, end + self._offset)
 
 

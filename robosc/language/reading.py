@@ -15,7 +15,6 @@ from robosc.language.recovery import parse_file
 from robosc.language.scopes import File
 from robosc.language.text import Documents, Repair, decode
 from robosc.metamodel import robosc as rsc
-from robosc.metamodel.files import set_path
 from robosc.ros_types import RosTypes
 from robosc.semantics.recursion import deep_recursion
 
@@ -105,7 +104,9 @@ class _Reader:
     def _open(self, path: Path, shown: str) -> File:
         """A file whose libraries are read next, in the order of its text."""
         identity = path.resolve()
-        text, findings = decode(shown, self._documents.read(path))
+        content = self._documents.read(path)
+        name = self._name(path)
+        text, findings = decode(shown, content, name)
         self.findings += findings
         parsed = parse_file(text)
         self.findings += parsed.findings
@@ -117,7 +118,7 @@ class _Reader:
             names["library"] for element, names in references if isinstance(element, rsc.ImportedComponent)
         )
         if file.base is not None:
-            set_path(file.base, self._name(path), shown)
+            file.base.file = name
         return file
 
     def _name(self, path: Path) -> str:

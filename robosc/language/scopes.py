@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from robosc.diagnostics import Span
 from robosc.language.unread import Declared, Unread
 from robosc.metamodel import robosc as rsc
 from robosc.semantics.instances import Instance, Instances
@@ -111,7 +110,7 @@ class File:
     def may_hold(self, definition: rsc.Definition, name: str, kind: Declared) -> bool:
         """Whether a definition, of this file or of a library, may declare a name in text that could not be read."""
         unread = self._homes[definition.eContainer()].unread
-        return unread.may_declare(name, (kind,), Span.parse(definition.source))
+        return unread.may_declare(name, (kind,), definition.source.span if definition.source else None)
 
     @cached_property
     def _files(self) -> list[File]:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from robosc.diagnostics import Diagnostic, Edit, Severity, Span
 from robosc.files import reading as files
+from robosc.metamodel.places import Place, SourceFile
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -28,6 +29,8 @@ class Repair(NamedTuple):
 class Text:
     """What a file holds, its line breaks all line feeds; `file` is its path as the user wrote it.
 
+    `source_file` is what model elements call it.
+
     An offset counts code points from 0. A `Span` counts lines and code points from 1. A UTF-16 position, as the
     Language Server Protocol has it, counts lines from 0, and in a line units of UTF-16 from 0: a character beyond
     U+FFFF takes two.
@@ -35,6 +38,7 @@ class Text:
 
     file: str
     content: str
+    source_file: SourceFile | None = None
 
     @cached_property
     def _line_starts(self) -> list[int]:
@@ -84,10 +88,9 @@ class Text:
         ends = self._line_starts[number + 1 :][:1]
         return self._line_starts[number], ends[0] - 1 if ends else len(self.content)
 
-    def source(self, start: int, end: int) -> str:
-        """The span between two offsets as a model element keeps it."""
-        span = self.span(start, end)
-        return f"{span.line}:{span.column}-{span.end_line}:{span.end_column}"
+    def source(self, start: int, end: int) -> Place:
+        """The place between two offsets."""
+        return Place(self.source_file, self.span(start, end))
 
     def error(self, rule: str, start: int, end: int, message: str, repair: Repair | str | None = None) -> Diagnostic:
         """A finding between two offsets; a `Repair` with a text is an edit of all that stands between them."""
@@ -125,8 +128,11 @@ class Documents:
         return [folder / name for name in sorted(names)]
 
 
-def decode(file: str, content: bytes) -> tuple[Text, list[Diagnostic]]:
-    """The text in the bytes of a file, and what is wrong with them: a finding of the rule `syntax`, or none."""
+def decode(file: str, content: bytes, name: str | None = None) -> tuple[Text, list[Diagnostic]]:
+    """The text in the bytes of a file, and what is wrong with them: a finding of the rule `syntax`, or none.
+
+    `name` is what models call the file; None: as the user does.
+    """
     content = content.removeprefix(codecs.BOM_UTF8)
     findings = []
     try:
@@ -138,4 +144,4 @@ def decode(file: str, content: bytes) -> tuple[Text, list[Diagnostic]]:
         findings.append(before.error("syntax", len(before.content), len(before.content), message, hint))
         # The rest is checked with blanks in such places, so that one fault draws one finding.
         text = content.decode("utf-8", errors="replace").replace("\N{REPLACEMENT CHARACTER}", " ")
-    return Text(file, text.replace("\r\n", "\n").replace("\r", "\n")), findings
+    return Text(file, text.replace("\r\n", "\n").replace("\r", "\n"), SourceFile(name or file, file)), findings

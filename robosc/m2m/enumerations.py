@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robosc.m2m.sources import source
 from robosc.metamodel import expression as ex
 from robosc.semantics.naming import Names
 
@@ -29,10 +28,9 @@ class Enumerations:
     def enumeration(self, enum: robosc.EnumDataType) -> ex.Enumeration:
         """The enumeration of an enum."""
         if enum not in self.known:
-            home = enum.eContainer()
-            enumeration = ex.Enumeration(name=self._names.fresh(enum.name), source=source(enum, home))
+            enumeration = ex.Enumeration(name=self._names.fresh(enum.name), source=enum.source)
             for rule in enum.rules:
-                literal = ex.EnumerationLiteral(name=rule.value.name, source=source(rule.value, home))
+                literal = ex.EnumerationLiteral(name=rule.value.name, source=rule.value.source)
                 enumeration.literals.append(literal)
                 self.literals[rule.value] = literal
             self._owner.enumerations.append(enumeration)

@@ -7,14 +7,12 @@ from typing import TYPE_CHECKING, NamedTuple
 from robosc.m2m.constants import default_value, initial_value, literal
 from robosc.m2m.enumerations import Enumerations
 from robosc.m2m.node_expressions import NodeExpressions
-from robosc.m2m.sources import source
 from robosc.m2m.trace import EVENT_OF
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc, rosgraph, sct
-from robosc.metamodel.files import derive_paths
 from robosc.ros_types import RosTypes, Section
 from robosc.semantics.cone_of_influence import transitions
-from robosc.semantics.instances import Instance, InstanceVariable, Occurrence, libraries
+from robosc.semantics.instances import Instance, InstanceVariable, Occurrence
 from robosc.semantics.naming import Names
 from robosc.semantics.recursion import deep_recursion
 
@@ -60,8 +58,7 @@ class _Transformation:
         self.known = interfaces
         self.instances = trace.instances
         robot = self.instances.base
-        self.graph = rosgraph.RosGraph(name=robot.name, model=trace.model, source=source(robot, robot))
-        derive_paths(self.graph, [robot, *libraries(robot)])
+        self.graph = rosgraph.RosGraph(name=robot.name, model=trace.model, source=robot.source)
         self.interfaces: dict[tuple[str, str, str], rosgraph.Interface] = {}
         self.variables: dict[InstanceVariable, rosgraph.NodeVariable] = {}
         self.conversions: dict[robosc.EnumDataType, rosgraph.Conversion] = {}
@@ -98,7 +95,7 @@ class _Transformation:
             component=owned.instance.name,
             type=self.type(owned.variable.type),
             initial=literal(self.enumerations.literal(value) if isinstance(value, robosc.EnumValue) else value),
-            source=source(owned.variable, owned.instance.home),
+            source=owned.variable.source,
         )
         self.variables[owned] = variable
         self.graph.variables.append(variable)
@@ -124,7 +121,7 @@ class _Transformation:
         interface = self.interface(message, message.type, rosgraph.InterfaceKind.message)
         # Written with a slash or without, it is one topic, and what comes on it one batch.
         key = topic.removeprefix("/"), interface
-        where = source(message, occurrence.instance.home)
+        where = message.source
         if message.direction == robosc.MessageDirection.outgoing:
             subscription = self.subscriptions.get(key)
             if subscription is None:
@@ -149,7 +146,7 @@ class _Transformation:
                 response=self.reception(occurrence, robosc.ResultType.response),
                 error=self.trace.event(occurrence, sct.EventKind.error),
                 reset=self.trace.event(occurrence, sct.EventKind.reset),
-                source=source(service, occurrence.instance.home),
+                source=service.source,
             )
         )
 
@@ -164,7 +161,7 @@ class _Transformation:
                 error=self.trace.event(occurrence, sct.EventKind.error),
                 cancel=self.trace.event(occurrence, sct.EventKind.cancel),
                 reset=self.trace.event(occurrence, sct.EventKind.reset),
-                source=source(action, occurrence.instance.home),
+                source=action.source,
             )
         )
 
@@ -181,7 +178,7 @@ class _Transformation:
         key = (package, name, kind.name)
         if key not in self.interfaces:
             interface = rosgraph.Interface(package=package, type=name, kind=kind)
-            interface.source = source(linked, _home(linked)) if linked is not None else None
+            interface.source = linked.source if linked is not None else None
             self.interfaces[key] = interface
             self.graph.interfaces.append(interface)
         return self.interfaces[key]
@@ -190,12 +187,10 @@ class _Transformation:
         sending = rosgraph.Sending(
             name=occurrence.communication.name,
             event=self.trace.event(occurrence, sct.EventKind.trigger),
-            source=source(occurrence.communication, occurrence.instance.home),
+            source=occurrence.communication.source,
         )
         for statement in self.instances.provided(occurrence):
-            alternative = rosgraph.ProvidedData(
-                location=self.trace.provided[statement], source=source(statement, self.instances.base)
-            )
+            alternative = rosgraph.ProvidedData(location=self.trace.provided[statement], source=statement.source)
             sent = _sent(occurrence)
             lone = () if isinstance(statement.data, robosc.ObjectValue) else (self.field(sent),)
             for field in self.fields(statement.data, lone, sent.type):
@@ -218,7 +213,7 @@ class _Transformation:
                 path=list(path),
                 type=self.type(declared),
                 value=self.expressions.as_double(value) if isinstance(declared, robosc.DoubleDataType) else value,
-                source=source(data, self.instances.base),
+                source=data.source,
             )
         ]
 
@@ -230,7 +225,7 @@ class _Transformation:
         reception = rosgraph.Reception(
             name=occurrence.communication.name,
             event=self.trace.event(occurrence, EVENT_OF[result_type.name]),
-            source=source(occurrence.communication, occurrence.instance.home),
+            source=occurrence.communication.source,
         )
         for data, declared in self.trace.inputs.items():
             if data.occurrence == occurrence and data.result_type == result_type:
@@ -265,12 +260,11 @@ class _Transformation:
     def conversion(self, enum: robosc.EnumDataType) -> rosgraph.Conversion:
         """Listing 5.13."""
         if enum not in self.conversions:
-            home = enum.eContainer()
             conversion = rosgraph.Conversion(
                 name=self.conversion_names.fresh(enum.name),
                 enumeration=self.enumerations.enumeration(enum),
                 default=self.enumerations.literal(default_value(enum)),
-                source=source(enum, home),
+                source=enum.source,
             )
             self.conversions[enum] = conversion
             for rule in enum.rules:
@@ -280,7 +274,7 @@ class _Transformation:
                         rosgraph.ConversionRule(
                             condition=condition,
                             literal=self.enumerations.literal(rule.value),
-                            source=source(rule, home),
+                            source=rule.source,
                         )
                     )
             self.graph.conversions.append(conversion)
@@ -312,14 +306,12 @@ class _Transformation:
             reaction = rosgraph.Reaction(
                 event=event,
                 locations=list(places) if state is None else [self.trace.locations[instance, state]],
-                source=source(transition, instance.home),
+                source=transition.source,
             )
             for owned, each in assignments.items():
                 variable = self.variables[owned]
                 value = self.expressions(each.value, instance, data)
-                reaction.assignments.append(
-                    rosgraph.NodeAssignment(variable=variable, value=value, source=source(each, instance.home))
-                )
+                reaction.assignments.append(rosgraph.NodeAssignment(variable=variable, value=value, source=each.source))
             self.graph.reactions.append(reaction)
 
     def event_and_data(
@@ -333,12 +325,6 @@ class _Transformation:
         event = self.trace.event(occurrence, EVENT_OF[transition.resultType.name])
         carried = _received(occurrence, transition.resultType)
         return event, None if carried is None else self.wire(carried)
-
-
-def _home(element: ex.Located) -> robosc.Base:
-    while not isinstance(element, robosc.Base):
-        element = element.eContainer()
-    return element
 
 
 def _wire_type(kind: robosc.DataType) -> robosc.DataType:

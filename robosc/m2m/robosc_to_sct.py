@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from robosc.m2m.constants import initial_value, literal
 from robosc.m2m.enumerations import Enumerations
 from robosc.m2m.sct_expressions import SctExpressions
-from robosc.m2m.sources import source
 from robosc.m2m.trace import EVENT_OF, Trace
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc, sct
-from robosc.metamodel.files import derive_paths
 from robosc.semantics.cone_of_influence import Data, needed, transitions
-from robosc.semantics.instances import Instance, Instances, InstanceVariable, Occurrence, libraries
+from robosc.semantics.instances import Instance, Instances, InstanceVariable, Occurrence
 from robosc.semantics.naming import Names
 from robosc.semantics.printing import RoboscPrinter, conjunction, disjunction
 from robosc.semantics.recursion import deep_recursion
+
+if TYPE_CHECKING:
+    from robosc.metamodel.places import Place
 
 #: What comes from outside, or must always be possible: a component elsewhere than in the right state ignores it.
 _NEVER_BLOCKED = (sct.EventKind.response, sct.EventKind.error, sct.EventKind.feedback, sct.EventKind.cancel)
@@ -34,8 +37,7 @@ class _Transformation:
     def __init__(self, robot: robosc.Robot) -> None:
         self.robot = robot
         self.instances = Instances(robot)
-        self.model = sct.SupervisoryControlModel(name=robot.name, source=source(robot, robot))
-        derive_paths(self.model, [robot, *libraries(robot)])
+        self.model = sct.SupervisoryControlModel(name=robot.name, source=robot.source)
         self.trace = Trace(self.instances, needed(self.instances), self.model, Enumerations(self.model))
         self.enumerations = self.trace.enumerations
         self.expressions = SctExpressions(self.trace)
@@ -69,7 +71,7 @@ class _Transformation:
             kind=getattr(sct.PlantKind, kind),
             origin=f"{instance.name}.{communication.name}",
             topic=instance.topic(communication),
-            source=source(communication, instance.home),
+            source=communication.source,
         )
         self.model.plants.append(plant)
         self.trace.plants[occurrence] = plant
@@ -180,7 +182,7 @@ class _Transformation:
             name=self.plant_names.fresh(f"component_{instance.name}"),
             kind=sct.PlantKind.behaviour,
             origin=instance.name,
-            source=source(instance.component, self.robot),
+            source=instance.component.source,
         )
         self.model.plants.append(plant)
         self.trace.behaviours[instance] = plant
@@ -188,14 +190,14 @@ class _Transformation:
         names = Names()
         for state in _states(instance):
             location = _location(plant, names.fresh(state.name), initial=state.initial, marked=state.marked)
-            location.source = source(state, instance.home)
+            location.source = state.source
             self.trace.locations[instance, state] = location
             self.trace.origins[location] = state
         for owned in self.needed_variables(instance):
             variable = sct.DiscreteVariable(
                 name=names.fresh(owned.variable.name),
                 type=self.type(owned.variable.type),
-                source=source(owned.variable, instance.home),
+                source=owned.variable.source,
             )
             plant.variables.append(variable)
             self.trace.variables[owned] = variable
@@ -206,7 +208,7 @@ class _Transformation:
                 name=names.fresh(f"c_tau{number}"),
                 kind=sct.EventKind.tau,
                 controllable=True,
-                source=source(transition, instance.home),
+                source=transition.source,
             )
             plant.events.append(event)
             self.trace.taus[instance, transition] = event
@@ -251,7 +253,7 @@ class _Transformation:
     def edge(self, location: sct.Location, transition: robosc.Transition, instance: Instance) -> None:
         target = location if transition.target is None else self.trace.locations[instance, transition.target]
         edge = _edge(location, self.event_of(transition, instance), target)
-        edge.source = source(transition, instance.home)
+        edge.source = transition.source
         self.trace.origins[edge] = transition
         if isinstance(transition, robosc.TauTransition) and transition.guard is not None:
             edge.guard = self.expressions.condition(transition.guard, instance)
@@ -262,7 +264,7 @@ class _Transformation:
                     sct.Update(
                         variable=self.trace.variables[owned],
                         value=value,
-                        source=source(assignment, instance.home),
+                        source=assignment.source,
                     )
                 )
 
@@ -277,14 +279,14 @@ class _Transformation:
             name=self.plant_names.fresh(f"data_{self.communication_name(occurrence)}"),
             kind=sct.PlantKind.data,
             origin=self.trace.plants[occurrence].origin,
-            source=source(statements[0], self.robot),
+            source=statements[0].source,
         )
         self.model.plants.append(plant)
         steps: list[tuple[sct.Event, sct.Location, robosc.ProvideStatement | None]] = []
         nothing = _location(plant, "none", initial=True, marked=True)
         for number, statement in enumerate(statements, start=1):
             location = _location(plant, f"d{number}", marked=True)
-            location.source = source(statement, self.robot)
+            location.source = statement.source
             steps.append((_data_event(plant, f"c_d{number}", location.source), location, statement))
             self.trace.provided[statement] = location
             self.trace.origins[location] = statement
@@ -328,7 +330,7 @@ class _Transformation:
             kind=sct.RequirementKind.disables if disables else sct.RequirementKind.needs,
             condition=self.expressions.condition(requirement.condition, None),
             text=f"requirement {condition} disables {name}" if disables else f"requirement {name} needs {condition}",
-            source=source(requirement, self.robot),
+            source=requirement.source,
         )
         self.model.requirements.append(target)
         self.trace.origins[target] = requirement
@@ -376,7 +378,7 @@ def _edge(leaving: sct.Location | sct.Plant, event: sct.Event, target: sct.Locat
     return edge
 
 
-def _data_event(plant: sct.Plant, name: str, where: str | None) -> sct.Event:
+def _data_event(plant: sct.Plant, name: str, where: Place | None) -> sct.Event:
     event = sct.Event(name=name, kind=sct.EventKind.data, controllable=True, source=where)
     plant.events.append(event)
     return event

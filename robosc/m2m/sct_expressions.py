@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robosc.diagnostics import START, Diagnostic, ModelError, Severity, Span
+from robosc.diagnostics import Diagnostic, ModelError, Severity
 from robosc.m2m.tabulation import TooLargeError, tabulate
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc, sct
-from robosc.metamodel.files import path_of
+from robosc.metamodel.places import place
 from robosc.semantics.cone_of_influence import Data, property_path
 from robosc.semantics.evaluation import evaluate
 from robosc.semantics.operators import COMPARISONS
@@ -49,7 +49,7 @@ class SctExpressions:
                     return ex.BooleanLiteral(value=bool(evaluate(original, lambda reference: reference)))
             made = with_operands(type(original), operands)
             if isinstance(made, COMPARISONS) and DOUBLE in [self._types(operand) for operand in operands]:
-                return self._tabulate(made, original, within)
+                return self._tabulate(made, original)
             return made
 
         return fold(translated, expression)
@@ -75,17 +75,17 @@ class SctExpressions:
         assert owned is not None
         return sct.VariableReference(variable=self._trace.variables[owned])
 
-    def _tabulate(self, comparison: ex.Expression, original: ex.Expression, within: Instance | None) -> ex.Expression:
+    def _tabulate(self, comparison: ex.Expression, original: ex.Expression) -> ex.Expression:
         references = list({_declaration(each): each for each in _references(comparison)}.values())
         try:
             return tabulate(comparison, references, [_range(each) for each in references], _copy)
         except TooLargeError as error:
-            home = self._trace.instances.base if within is None else within.home
+            file, span = place(original)
             raise ModelError(
                 [
                     Diagnostic(
-                        file=path_of(home),
-                        span=Span.parse(original.source) or START,
+                        file=file,
+                        span=span,
                         severity=Severity.ERROR,
                         rule="integer-range",
                         message=f"this comparison of doubles depends on {error}, too many to tabulate",

@@ -10,6 +10,7 @@ from pyecore.ecore import EClass, EPackage
 from pyecore.resources import URI, ResourceSet
 
 from robosc.files.resources import locate
+from robosc.metamodel.places import Place
 
 PACKAGES = ("expression", "robosc", "sct", "rosgraph")
 
@@ -32,6 +33,7 @@ def packages(*, documented: bool = False) -> dict[str, EPackage]:
     loaded = {
         name: resources.get_resource(kind(str(locate(f"metamodel/{name}.ecore")))).contents[0] for name in PACKAGES
     }
+    loaded["expression"].getEClassifier("Place").eType = Place
     for package in loaded.values():
         for classifier in package.eClassifiers:
             if isinstance(classifier, EClass):

@@ -4,6 +4,7 @@ from collections.abc import Iterable, MutableSequence
 from typing import Any, ClassVar
 
 from robosc.metamodel import expression, sct
+from robosc.metamodel.places import Place
 
 class RosGraph(expression.NamedElement):
     """The node of one robot's controller and everything it is connected to."""
@@ -17,14 +18,14 @@ class RosGraph(expression.NamedElement):
     serviceClients: MutableSequence[ServiceClient]
     actionClients: MutableSequence[ActionClient]
     reactions: MutableSequence[Reaction]
-    def __init__(self, *, model: sct.SupervisoryControlModel | None = ..., interfaces: Iterable[Interface] = ..., enumerations: Iterable[expression.Enumeration] = ..., conversions: Iterable[Conversion] = ..., variables: Iterable[NodeVariable] = ..., subscriptions: Iterable[Subscription] = ..., publishers: Iterable[Publisher] = ..., serviceClients: Iterable[ServiceClient] = ..., actionClients: Iterable[ActionClient] = ..., reactions: Iterable[Reaction] = ..., name: str | None = ..., source: str | None = ...) -> None: ...
+    def __init__(self, *, model: sct.SupervisoryControlModel | None = ..., interfaces: Iterable[Interface] = ..., enumerations: Iterable[expression.Enumeration] = ..., conversions: Iterable[Conversion] = ..., variables: Iterable[NodeVariable] = ..., subscriptions: Iterable[Subscription] = ..., publishers: Iterable[Publisher] = ..., serviceClients: Iterable[ServiceClient] = ..., actionClients: Iterable[ActionClient] = ..., reactions: Iterable[Reaction] = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class Interface(expression.Located):
     """A ROS type."""
     package: str
     type: str
     kind: InterfaceKind
-    def __init__(self, *, package: str | None = ..., type: str | None = ..., kind: InterfaceKind | None = ..., source: str | None = ...) -> None: ...
+    def __init__(self, *, package: str | None = ..., type: str | None = ..., kind: InterfaceKind | None = ..., source: Place | None = ...) -> None: ...
 
 class InterfaceKind:
     """The kinds of ROS types."""
@@ -38,65 +39,65 @@ class NodeVariable(expression.NamedElement):
     component: str
     type: expression.Type
     initial: expression.Expression
-    def __init__(self, *, component: str | None = ..., type: expression.Type | None = ..., initial: expression.Expression | None = ..., name: str | None = ..., source: str | None = ...) -> None: ...
+    def __init__(self, *, component: str | None = ..., type: expression.Type | None = ..., initial: expression.Expression | None = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class Conversion(expression.NamedElement):
     """Turns data into a literal of an enumeration; the first rule that matches decides. A rule that reads past the end of an array does not match."""
     enumeration: expression.Enumeration
     rules: MutableSequence[ConversionRule]
     default: expression.EnumerationLiteral
-    def __init__(self, *, enumeration: expression.Enumeration | None = ..., rules: Iterable[ConversionRule] = ..., default: expression.EnumerationLiteral | None = ..., name: str | None = ..., source: str | None = ...) -> None: ...
+    def __init__(self, *, enumeration: expression.Enumeration | None = ..., rules: Iterable[ConversionRule] = ..., default: expression.EnumerationLiteral | None = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class ConversionRule(expression.Located):
     """A rule of a conversion."""
     condition: expression.Expression
     literal: expression.EnumerationLiteral
-    def __init__(self, *, condition: expression.Expression | None = ..., literal: expression.EnumerationLiteral | None = ..., source: str | None = ...) -> None: ...
+    def __init__(self, *, condition: expression.Expression | None = ..., literal: expression.EnumerationLiteral | None = ..., source: Place | None = ...) -> None: ...
 
 class Subscription(expression.Located):
     """A topic that the node listens to. All receptions of one ROS message are one batch: inputs are set and events performed in this order with nothing in between."""
     topic: str
     interface: Interface
     receptions: MutableSequence[Reception]
-    def __init__(self, *, topic: str | None = ..., interface: Interface | None = ..., receptions: Iterable[Reception] = ..., source: str | None = ...) -> None: ...
+    def __init__(self, *, topic: str | None = ..., interface: Interface | None = ..., receptions: Iterable[Reception] = ..., source: Place | None = ...) -> None: ...
 
 class Reception(expression.NamedElement):
     """Data that comes in with an event; its name is the communication's in the robot model."""
     event: sct.Event
     inputs: MutableSequence[InputAssignment]
-    def __init__(self, *, event: sct.Event | None = ..., inputs: Iterable[InputAssignment] = ..., name: str | None = ..., source: str | None = ...) -> None: ...
+    def __init__(self, *, event: sct.Event | None = ..., inputs: Iterable[InputAssignment] = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class InputAssignment(expression.Located):
     """Sets an input before its event happens. An integer outside the input's range becomes the nearest bound. Where it reads past the end of an array and a transition that the event takes reads the input, the event does not happen."""
     input: sct.Input
     value: expression.Expression
-    def __init__(self, *, input: sct.Input | None = ..., value: expression.Expression | None = ..., source: str | None = ...) -> None: ...
+    def __init__(self, *, input: sct.Input | None = ..., value: expression.Expression | None = ..., source: Place | None = ...) -> None: ...
 
 class Publisher(expression.Located):
     """A topic that the node sends to."""
     topic: str
     interface: Interface
     sendings: MutableSequence[Sending]
-    def __init__(self, *, topic: str | None = ..., interface: Interface | None = ..., sendings: Iterable[Sending] = ..., source: str | None = ...) -> None: ...
+    def __init__(self, *, topic: str | None = ..., interface: Interface | None = ..., sendings: Iterable[Sending] = ..., source: Place | None = ...) -> None: ...
 
 class Sending(expression.NamedElement):
     """Data that goes out with an event; its name is the communication's in the robot model."""
     event: sct.Event
     alternatives: MutableSequence[ProvidedData]
-    def __init__(self, *, event: sct.Event | None = ..., alternatives: Iterable[ProvidedData] = ..., name: str | None = ..., source: str | None = ...) -> None: ...
+    def __init__(self, *, event: sct.Event | None = ..., alternatives: Iterable[ProvidedData] = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class ProvidedData(expression.Located):
     """The data of one provide statement."""
     location: sct.Location
     fields: MutableSequence[FieldAssignment]
-    def __init__(self, *, location: sct.Location | None = ..., fields: Iterable[FieldAssignment] = ..., source: str | None = ...) -> None: ...
+    def __init__(self, *, location: sct.Location | None = ..., fields: Iterable[FieldAssignment] = ..., source: Place | None = ...) -> None: ...
 
 class FieldAssignment(expression.Located):
     """Sets a field of data that goes out."""
     path: MutableSequence[str]
     type: expression.Type
     value: expression.Expression
-    def __init__(self, *, path: Iterable[str] = ..., type: expression.Type | None = ..., value: expression.Expression | None = ..., source: str | None = ...) -> None: ...
+    def __init__(self, *, path: Iterable[str] = ..., type: expression.Type | None = ..., value: expression.Expression | None = ..., source: Place | None = ...) -> None: ...
 
 class ServiceClient(expression.Located):
     """A service that the node calls."""
@@ -106,7 +107,7 @@ class ServiceClient(expression.Located):
     response: Reception
     error: sct.Event
     reset: sct.Event
-    def __init__(self, *, identifier: str | None = ..., interface: Interface | None = ..., request: Sending | None = ..., response: Reception | None = ..., error: sct.Event | None = ..., reset: sct.Event | None = ..., source: str | None = ...) -> None: ...
+    def __init__(self, *, identifier: str | None = ..., interface: Interface | None = ..., request: Sending | None = ..., response: Reception | None = ..., error: sct.Event | None = ..., reset: sct.Event | None = ..., source: Place | None = ...) -> None: ...
 
 class ActionClient(expression.Located):
     """An action that the node starts."""
@@ -118,48 +119,48 @@ class ActionClient(expression.Located):
     error: sct.Event
     cancel: sct.Event
     reset: sct.Event
-    def __init__(self, *, identifier: str | None = ..., interface: Interface | None = ..., request: Sending | None = ..., feedback: Reception | None = ..., response: Reception | None = ..., error: sct.Event | None = ..., cancel: sct.Event | None = ..., reset: sct.Event | None = ..., source: str | None = ...) -> None: ...
+    def __init__(self, *, identifier: str | None = ..., interface: Interface | None = ..., request: Sending | None = ..., feedback: Reception | None = ..., response: Reception | None = ..., error: sct.Event | None = ..., cancel: sct.Event | None = ..., reset: sct.Event | None = ..., source: Place | None = ...) -> None: ...
 
 class Reaction(expression.Located):
     """What an event changes in the node, when a component is in one of the locations. Values are read as they were before the event."""
     event: sct.Event
     locations: MutableSequence[sct.Location]
     assignments: MutableSequence[NodeAssignment]
-    def __init__(self, *, event: sct.Event | None = ..., locations: Iterable[sct.Location] = ..., assignments: Iterable[NodeAssignment] = ..., source: str | None = ...) -> None: ...
+    def __init__(self, *, event: sct.Event | None = ..., locations: Iterable[sct.Location] = ..., assignments: Iterable[NodeAssignment] = ..., source: Place | None = ...) -> None: ...
 
 class NodeAssignment(expression.Located):
     """Gives a variable of the node a value."""
     variable: NodeVariable
     value: expression.Expression
-    def __init__(self, *, variable: NodeVariable | None = ..., value: expression.Expression | None = ..., source: str | None = ...) -> None: ...
+    def __init__(self, *, variable: NodeVariable | None = ..., value: expression.Expression | None = ..., source: Place | None = ...) -> None: ...
 
 class NodeVariableReference(expression.Expression):
     """The value of a variable of the node."""
     variable: NodeVariable
-    def __init__(self, *, variable: NodeVariable | None = ..., source: str | None = ...) -> None: ...
+    def __init__(self, *, variable: NodeVariable | None = ..., source: Place | None = ...) -> None: ...
 
 class WireAccess(expression.Expression):
     """Reads the data that came in with the event at hand, or, in a conversion's rule, the conversion's argument."""
     steps: MutableSequence[WireStep]
     type: expression.Type | None
-    def __init__(self, *, steps: Iterable[WireStep] = ..., type: expression.Type | None = ..., source: str | None = ...) -> None: ...
+    def __init__(self, *, steps: Iterable[WireStep] = ..., type: expression.Type | None = ..., source: Place | None = ...) -> None: ...
 
 class WireStep(expression.Located):
     """One step into ROS data."""
-    def __init__(self, *, source: str | None = ...) -> None: ...
+    def __init__(self, *, source: Place | None = ...) -> None: ...
 
 class FieldStep(WireStep):
     """A field."""
     name: str
-    def __init__(self, *, name: str | None = ..., source: str | None = ...) -> None: ...
+    def __init__(self, *, name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class IndexStep(WireStep):
     """An element of an array."""
     index: int
-    def __init__(self, *, index: int | None = ..., source: str | None = ...) -> None: ...
+    def __init__(self, *, index: int | None = ..., source: Place | None = ...) -> None: ...
 
 class ConversionCall(expression.Expression):
     """The literal that a conversion gives."""
     conversion: Conversion
     argument: WireAccess
-    def __init__(self, *, conversion: Conversion | None = ..., argument: WireAccess | None = ..., source: str | None = ...) -> None: ...
+    def __init__(self, *, conversion: Conversion | None = ..., argument: WireAccess | None = ..., source: Place | None = ...) -> None: ...

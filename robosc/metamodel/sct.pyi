@@ -4,6 +4,7 @@ from collections.abc import Iterable, MutableSequence
 from typing import Any, ClassVar
 
 from robosc.metamodel import expression
+from robosc.metamodel.places import Place
 
 class SupervisoryControlModel(expression.NamedElement):
     """Everything about one robot."""
@@ -11,7 +12,7 @@ class SupervisoryControlModel(expression.NamedElement):
     plants: MutableSequence[Plant]
     requirements: MutableSequence[Requirement]
     supervisor: Supervisor | None
-    def __init__(self, *, enumerations: Iterable[expression.Enumeration] = ..., plants: Iterable[Plant] = ..., requirements: Iterable[Requirement] = ..., supervisor: Supervisor | None = ..., name: str | None = ..., source: str | None = ...) -> None: ...
+    def __init__(self, *, enumerations: Iterable[expression.Enumeration] = ..., plants: Iterable[Plant] = ..., requirements: Iterable[Requirement] = ..., supervisor: Supervisor | None = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class Plant(expression.NamedElement):
     """An automaton with variables. From each location, at most one edge has a given event."""
@@ -23,7 +24,7 @@ class Plant(expression.NamedElement):
     variables: MutableSequence[DiscreteVariable]
     locations: MutableSequence[Location]
     edges: MutableSequence[Edge]
-    def __init__(self, *, kind: PlantKind | None = ..., origin: str | None = ..., topic: str | None = ..., events: Iterable[Event] = ..., inputs: Iterable[Input] = ..., variables: Iterable[DiscreteVariable] = ..., locations: Iterable[Location] = ..., edges: Iterable[Edge] = ..., name: str | None = ..., source: str | None = ...) -> None: ...
+    def __init__(self, *, kind: PlantKind | None = ..., origin: str | None = ..., topic: str | None = ..., events: Iterable[Event] = ..., inputs: Iterable[Input] = ..., variables: Iterable[DiscreteVariable] = ..., locations: Iterable[Location] = ..., edges: Iterable[Edge] = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class PlantKind:
     """message, service, action: communication (thesis listings 5.1 to 5.3); behaviour: a component's automaton; data: the provide statements of one communication (listing 5.4)."""
@@ -39,7 +40,7 @@ class Event(expression.NamedElement):
     controllable: bool
     kind: EventKind
     inputs: MutableSequence[Input]
-    def __init__(self, *, controllable: bool | None = ..., kind: EventKind | None = ..., inputs: Iterable[Input] = ..., name: str | None = ..., source: str | None = ...) -> None: ...
+    def __init__(self, *, controllable: bool | None = ..., kind: EventKind | None = ..., inputs: Iterable[Input] = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class EventKind:
     """trigger, cancel: sent by the controller; response, error, feedback: come from the robot; reset, tau: silent; data: which provided data goes out."""
@@ -56,20 +57,20 @@ class EventKind:
 class Input(expression.NamedElement):
     """Data that comes with an event. Only updates on edges of an event that names the input read it."""
     type: expression.Type
-    def __init__(self, *, type: expression.Type | None = ..., name: str | None = ..., source: str | None = ...) -> None: ...
+    def __init__(self, *, type: expression.Type | None = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class DiscreteVariable(expression.NamedElement):
     """A variable of a plant."""
     type: expression.Type
     initial: expression.Expression
-    def __init__(self, *, type: expression.Type | None = ..., initial: expression.Expression | None = ..., name: str | None = ..., source: str | None = ...) -> None: ...
+    def __init__(self, *, type: expression.Type | None = ..., initial: expression.Expression | None = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class Location(expression.NamedElement):
     """A location of a plant."""
     initial: bool
     marked: bool
     edges: MutableSequence[Edge]
-    def __init__(self, *, initial: bool | None = ..., marked: bool | None = ..., edges: Iterable[Edge] = ..., name: str | None = ..., source: str | None = ...) -> None: ...
+    def __init__(self, *, initial: bool | None = ..., marked: bool | None = ..., edges: Iterable[Edge] = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class Edge(expression.Located):
     """A possible step of one plant."""
@@ -77,13 +78,13 @@ class Edge(expression.Located):
     guard: expression.Expression | None
     updates: MutableSequence[Update]
     target: Location
-    def __init__(self, *, event: Event | None = ..., guard: expression.Expression | None = ..., updates: Iterable[Update] = ..., target: Location | None = ..., source: str | None = ...) -> None: ...
+    def __init__(self, *, event: Event | None = ..., guard: expression.Expression | None = ..., updates: Iterable[Update] = ..., target: Location | None = ..., source: Place | None = ...) -> None: ...
 
 class Update(expression.Located):
     """Gives a variable a value. A value outside the range of an integer variable becomes the nearest bound."""
     variable: DiscreteVariable
     value: expression.Expression
-    def __init__(self, *, variable: DiscreteVariable | None = ..., value: expression.Expression | None = ..., source: str | None = ...) -> None: ...
+    def __init__(self, *, variable: DiscreteVariable | None = ..., value: expression.Expression | None = ..., source: Place | None = ...) -> None: ...
 
 class Requirement(expression.Located):
     """Restricts a controllable event."""
@@ -91,7 +92,7 @@ class Requirement(expression.Located):
     kind: RequirementKind
     condition: expression.Expression
     text: str | None
-    def __init__(self, *, event: Event | None = ..., kind: RequirementKind | None = ..., condition: expression.Expression | None = ..., text: str | None = ..., source: str | None = ...) -> None: ...
+    def __init__(self, *, event: Event | None = ..., kind: RequirementKind | None = ..., condition: expression.Expression | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
 
 class RequirementKind:
     """needs: the event happens only where the condition holds; disables: only where it does not."""
@@ -106,7 +107,7 @@ class Supervisor(expression.Located):
     bddNodes: int
     settlingBound: int | None
     guards: MutableSequence[EventGuard]
-    def __init__(self, *, uncontrolledStates: int | None = ..., controlledStates: int | None = ..., bddNodes: int | None = ..., settlingBound: int | None = ..., guards: Iterable[EventGuard] = ..., source: str | None = ...) -> None: ...
+    def __init__(self, *, uncontrolledStates: int | None = ..., controlledStates: int | None = ..., bddNodes: int | None = ..., settlingBound: int | None = ..., guards: Iterable[EventGuard] = ..., source: Place | None = ...) -> None: ...
 
 class EventGuard(expression.Located):
     """When the supervisor allows an event: where both parts hold. What the plants forbid is not repeated."""
@@ -116,19 +117,19 @@ class EventGuard(expression.Located):
     synthesis: expression.Expression | None
     explanation: str | None
     everEnabled: bool
-    def __init__(self, *, event: Event | None = ..., requirement: expression.Expression | None = ..., requirements: Iterable[Requirement] = ..., synthesis: expression.Expression | None = ..., explanation: str | None = ..., everEnabled: bool | None = ..., source: str | None = ...) -> None: ...
+    def __init__(self, *, event: Event | None = ..., requirement: expression.Expression | None = ..., requirements: Iterable[Requirement] = ..., synthesis: expression.Expression | None = ..., explanation: str | None = ..., everEnabled: bool | None = ..., source: Place | None = ...) -> None: ...
 
 class LocationReference(expression.Expression):
     """True while its plant is in the location."""
     location: Location
-    def __init__(self, *, location: Location | None = ..., source: str | None = ...) -> None: ...
+    def __init__(self, *, location: Location | None = ..., source: Place | None = ...) -> None: ...
 
 class VariableReference(expression.Expression):
     """The value of a variable."""
     variable: DiscreteVariable
-    def __init__(self, *, variable: DiscreteVariable | None = ..., source: str | None = ...) -> None: ...
+    def __init__(self, *, variable: DiscreteVariable | None = ..., source: Place | None = ...) -> None: ...
 
 class InputReference(expression.Expression):
     """The value of an input."""
     input: Input
-    def __init__(self, *, input: Input | None = ..., source: str | None = ...) -> None: ...
+    def __init__(self, *, input: Input | None = ..., source: Place | None = ...) -> None: ...

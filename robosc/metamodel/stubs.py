@@ -14,6 +14,7 @@ _TYPES = {
     "ELongObject": "int",
     "EBigInteger": "int",
     "EDouble": "float",
+    "Place": "Place",
 }
 
 
@@ -49,8 +50,11 @@ def stub(name: str) -> str:
         "from typing import Any, ClassVar",
         "",
     ]
-    lines += [f"from robosc.metamodel import {', '.join(others)}", ""] if others else []
+    lines += [f"from robosc.metamodel import {', '.join(others)}"] if others else []
+    lines += ["from robosc.metamodel.places import Place", ""]
     for classifier in package.eClassifiers:
+        if classifier.name == "Place":
+            continue  # a class of Python
         doc = f'    """{documentation(classifier)}"""'
         if not isinstance(classifier, EClass):
             lines += [f"class {classifier.name}:", doc, "    name: str"]

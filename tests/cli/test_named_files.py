@@ -79,7 +79,7 @@ def saved_courier(run: Run, courier: Path) -> Path:
 
 def forged(saved: Path, file: str) -> None:
     """Lets the model say that it comes from a file, and each element that it stands in its first line."""
-    text = re.sub(r'source="[0-9:-]*"', 'source="1:1-1:20"', saved.read_text())
+    text = re.sub(r'source="[^"]*"', 'source="1:1-1:20"', saved.read_text())
     saved.write_text(re.sub(r'file="[^"]*"', f'file="{file}"', text))
 
 

@@ -126,8 +126,8 @@ def test_the_levels_of_the_language_reference() -> None:
 def test_parentheses_belong_to_an_operator_and_not_to_its_operand() -> None:
     tree = parse("(a + b) * c", "Expression")
     product = Builder(Text("", "(a + b) * c")).build(tree)
-    assert product.source == "1:1-1:12"
-    assert product.left.source == "1:2-1:7"
+    assert str(product.source) == "1:1-1:12"
+    assert str(product.left.source) == "1:2-1:7"
 
 
 def test_a_long_chain_is_no_deep_recursion() -> None:

@@ -61,7 +61,7 @@ def findings(folder: Path, interfaces: RosTypes, *texts: str) -> list[tuple[str,
     """Rules, messages and hints for the first of several files of one folder."""
     for number, text in enumerate(texts):
         (folder / f"model{number}.rscd").write_text(text)
-    reading = read(folder / "model0.rscd", interfaces=interfaces)
+    reading = read(folder / "model0.rscd", ros_types=interfaces)
     found = [*reading.findings, *check(reading.base, reading.findings, interfaces)]
     return [(each.rule, each.message, each.hint) for each in found]
 
@@ -77,7 +77,7 @@ def test_nothing_is_wrong(tmp_path: Path, interfaces: RosTypes) -> None:
 def test_the_object_has_what_is_used(tmp_path: Path, interfaces: RosTypes) -> None:
     path = tmp_path / "robot.rscd"
     path.write_text(ROBOT)
-    base = read(path, interfaces=interfaces).base
+    base = read(path, ros_types=interfaces).base
     assert isinstance(base, rsc.Robot)
     made = [
         (each.rosType, [every.name for every in each.definition.properties])
@@ -107,7 +107,7 @@ def test_the_object_has_what_is_used(tmp_path: Path, interfaces: RosTypes) -> No
 def test_communication_has_the_interface_of_its_data(tmp_path: Path, interfaces: RosTypes) -> None:
     path = tmp_path / "robot.rscd"
     path.write_text(ROBOT)
-    base = read(path, interfaces=interfaces).base
+    base = read(path, ros_types=interfaces).base
     assert isinstance(base, rsc.Robot)
     _, trace = robosc_to_sct.transform(base)
     graph = robosc_to_rosgraph.transform(trace, interfaces)

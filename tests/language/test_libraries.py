@@ -8,7 +8,7 @@ import pytest
 from robosc.files.resources import locate
 from robosc.language import read
 from robosc.metamodel import robosc as rsc
-from robosc.metamodel.files import path_of
+from robosc.metamodel.places import place
 from tests.language.texts import places, reading, underlined
 
 ROBOT = "robot R {\n  component C from L import C\n}\n"
@@ -191,12 +191,12 @@ def test_paths_are_as_the_user_gave_them(tmp_path: Path, monkeypatch: pytest.Mon
     monkeypatch.chdir(tmp_path)
     found = read("robots/r.rscd")
     assert found.base is not None
-    assert (path_of(found.base), found.base.file) == ("robots/r.rscd", "r.rscd")
+    assert (place(found.base)[0], found.base.file) == ("robots/r.rscd", "r.rscd")
     assert [each.file for each in found.findings] == ["robots/l.rscd"]
     monkeypatch.chdir(tmp_path / "robots")
     found = read("r.rscd")
     assert [each.file for each in found.findings] == ["l.rscd"]
-    assert path_of(rsc.Robot(file="saved.rscd")) == "saved.rscd"
+    assert place(rsc.Robot(file="saved.rscd"))[0] == "saved.rscd"
 
 
 def test_a_file_that_is_not_there_is_the_callers_fault(tmp_path: Path) -> None:

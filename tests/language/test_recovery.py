@@ -230,7 +230,7 @@ def test_what_is_nested_too_deep_is_a_finding(tmp_path: Path, statement: str, at
 
 def test_nothing_stands_behind_the_end_of_a_text(tmp_path: Path) -> None:
     found = reading(tmp_path, "robot R { component C { behaviour { initial marked state s { }")
-    assert found.base.definitions[0].source == "1:11-1:63"
+    assert str(found.base.definitions[0].source) == "model.rscd:1:11-1:63"
 
 
 def test_forty_levels_are_not_too_deep(tmp_path: Path) -> None:

@@ -279,7 +279,7 @@ def test_a_comparison_of_doubles_becomes_one_of_integers(to_sct):
 
 def test_every_element_says_where_it_comes_from(to_sct):
     model, trace = to_sct(MESSAGES)
-    assert model.requirements[0].source == "robot.rscd:12:3-12:36"
+    assert str(model.requirements[0].source) == "robot.rscd:12:3-12:36"
     assert trace.origins[plant(model, "component_Sensor")].name == "Sensor"
     assert plant(model, "component_Sensor").origin == "Sensor"
     assert plant(model, "message_near").origin == "Sensor.near"

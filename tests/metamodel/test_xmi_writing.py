@@ -9,6 +9,7 @@ import pytest
 from robosc.diagnostics import ModelError, Span
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc, rosgraph, sct
+from robosc.metamodel.places import Place
 from robosc.metamodel.xmi import load, to_texts
 from robosc.metamodel.xmi.format import DEEPEST
 from tests.sct_models import edge, model, needs, plant
@@ -143,7 +144,7 @@ def test_lists_of_texts_are_elements(texts: dict[str, str]) -> None:
 def test_what_xml_cannot_hold_is_located() -> None:
     saved = machine()
     saved.plants[0].origin = "bell \x07"
-    saved.plants[0].source = "robot.rscd:3:1-4:2"
+    saved.plants[0].source = Place.parse("robot.rscd:3:1-4:2")
     with pytest.raises(ModelError) as raised:
         to_texts({"x": saved})
     [finding] = raised.value.diagnostics

@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given
 
 from robosc.diagnostics import ModelError
+from robosc.metamodel.places import Place
 from robosc.synthesis import acceleration, encoding, synthesize
 from tests.random_sct import sct_models
 from tests.sct_models import edge, model, needs, plant
@@ -140,7 +141,7 @@ def test_where_nothing_helps_the_widest_integer_is_named(monkeypatch):
     monkeypatch.setattr(acceleration, "_HOPELESS", 64)
     monkeypatch.setattr(acceleration, "_LARGE", 1)
     endless = counter()
-    endless.plants[0].variables[0].source = "robot.rscd:7:9-7:20"
+    endless.plants[0].variables[0].source = Place.parse("robot.rscd:7:9-7:20")
     with pytest.raises(ModelError, match="the range of n, 4294967296 values, is too wide") as caught:
         synthesize(endless)
     [finding] = caught.value.diagnostics

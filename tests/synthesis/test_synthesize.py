@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from robosc.diagnostics import ModelError
+from robosc.metamodel.places import Place
 from robosc.semantics.printing import SctPrinter
 from robosc.synthesis import bdd, synthesize
 from tests.sct_models import edge, model, needs, plant
@@ -92,7 +93,7 @@ def test_doubles_are_refused_where_they_stand(condition):
         [plant("P", {"only": [edge("c")]}, controllable=["c"], variables={"v": "0..3"})], [needs("c", condition)]
     )
     for each in (made.requirements[0].condition, made.requirements[0].condition.left):
-        each.source = "robot.rscd:3:7-3:16"
+        each.source = Place.parse("robot.rscd:3:7-3:16")
     with pytest.raises(ModelError, match="has no place in an sct model") as caught:
         synthesize(made)
     [finding] = caught.value.diagnostics

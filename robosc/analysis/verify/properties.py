@@ -13,7 +13,6 @@ from robosc.analysis.verify.loop import ControlLoop, asked_of_the_loop
 from robosc.analysis.verify.response import bounded_response, confluence, finite_response
 from robosc.analysis.verify.verdict import Outcome, Verdict, happening
 from robosc.analysis.wording import listed, name, words
-from robosc.diagnostics import Span
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 from robosc.semantics.printing import RobotPrinter
@@ -116,9 +115,8 @@ def input_enabledness(system: GuardedSystem) -> Verdict:
 
 def requirement_name(requirement: sct.Requirement) -> str:
     """The requirement in the robot model's words, and its line there."""
-    span = Span.parse(requirement.source)
     said = requirement.text or f"requirement on {event_name(requirement.event)}"
-    return f"{said} (line {span.line})" if span else said
+    return f"{said} (line {requirement.source.span.line})" if requirement.source else said
 
 
 def requirement_holds(system: GuardedSystem, requirement: sct.Requirement) -> Verdict:

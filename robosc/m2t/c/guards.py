@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 from robosc.m2t.c.nodes import All, Node, Not, Some
 from robosc.metamodel import sct
-from robosc.metamodel.places import parse_source
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Sequence
@@ -114,8 +113,8 @@ def _possible(plant: sct.Plant, edges: Edges, printer: CPrinter) -> Node:
 
 
 def _file(requirement: sct.Requirement) -> str:
-    file, _ = parse_source(requirement.source) or (None, None)
-    return f" ({PurePath(file).name})" if file else ""
+    file = requirement.source.file if requirement.source else None
+    return f" ({PurePath(file.name).name})" if file else ""
 
 
 def _given(expression: ex.Expression | None) -> list[Node]:

@@ -6,10 +6,11 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from pyecore.ecore import EEnum
+from pyecore.ecore import EClass, EEnum
 
 from robosc.diagnostics import Diagnostic, Severity, Span
 from robosc.metamodel._ecore import packages
+from robosc.metamodel.places import Place, SourceFile
 from robosc.metamodel.reflection import features, is_attribute
 from robosc.metamodel.xmi.format import XMI, XSI, a
 from robosc.metamodel.xmi.markup import Element
@@ -41,14 +42,24 @@ class Reference:
 
 @dataclass(eq=False)
 class Document:
-    """A file: its name as the user would write it, its root (None where it has no usable one) and what was found."""
+    """A file: its name as the user would write it, its root (None where it has no usable one) and what was found.
+
+    `sources` are the files that the elements come from, by their names, for all documents of a model.
+    """
 
     name: str
     path: Path
+    sources: dict[str, SourceFile]
     root: Any = None
+    #: The file of the places that name none.
+    source: str = ""
     markup: dict[Any, Element] = field(default_factory=dict)
     references: list[Reference] = field(default_factory=list)
     findings: list[Diagnostic] = field(default_factory=list)
+
+    def place(self, text: str) -> Place | None:
+        """The place in a source that a text stands for; None where it stands for none."""
+        return Place.parse(text, self.sources, self.source)
 
     def report(self, span: Span, message: str, hint: str | None = None) -> None:
         """Adds a finding of the rule `xmi`."""
@@ -61,6 +72,7 @@ def build(document: Document, top: Element) -> None:
     if metaclass is None:
         return
     document.root = metaclass.python_class()
+    document.source = top.attributes.get(("", "file"), "")
     pending = [(top, document.root)]
     while pending:
         markup, element = pending.pop()
@@ -172,7 +184,7 @@ class _Filling:
         written = child.attributes.get((XSI, "type"))
         if child.type is not None:
             found = _classifier(*child.type)
-        if found is None or isinstance(found, EEnum):
+        if found is None or not isinstance(found, EClass):
             self.document.report(child.attribute_span("xsi:type"), f"there is no class '{written}'")
         elif not issubclass(found.python_class, feature.eType.python_class):
             message = f"'{feature.name}' wants {a(feature.eType)}, which {a(found)} is not"
@@ -184,7 +196,7 @@ class _Filling:
         return None
 
     def set(self, feature: Any, text: str, where: Callable[[], Span]) -> None:
-        value = from_text(feature.eType, text)
+        value = self.document.place(text) if feature.eType.eType is Place else from_text(feature.eType, text)
         if value is None:
             kind = feature.eType
             hint = f"one of {', '.join(each.name for each in kind.eLiterals)}" if isinstance(kind, EEnum) else None

@@ -1,9 +1,9 @@
 """XMI files to models, with everything found wrong at once."""
 
 import re
-from collections.abc import MutableMapping
+from collections.abc import Callable, MutableMapping
 from pathlib import Path, PurePosixPath
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from urllib.parse import unquote
 
 from robosc.diagnostics import ModelError, Span
@@ -15,20 +15,32 @@ from robosc.metamodel.xmi.format import a
 from robosc.metamodel.xmi.markup import parse
 from robosc.semantics.recursion import deep_recursion
 
+if TYPE_CHECKING:
+    from robosc.metamodel.places import SourceFile
+
 _FRAGMENT = re.compile(r"/(/@\w+(\.[0-9]{1,9})?)*", re.ASCII)
 _ADDRESS = re.compile(r"[\w.+-]+:|/")
 
 
 @deep_recursion()
-def load(path: str | Path, texts: MutableMapping[str, str] | None = None) -> Any:
+def load(
+    path: str | Path,
+    texts: MutableMapping[str, str] | None = None,
+    locate: Callable[[str], str | None] | None = None,
+) -> Any:
     """The root element of the model in an XMI file; files that it refers to are loaded with it.
 
     These must lie in the file's folder or below. Raises ModelError with all findings, located in the files: `syntax`
     for what is no XML, `xmi` for what is no model of these metamodels, refers to nothing, or breaks a rule that every
     such model keeps (`robosc.metamodel.validity`). Nothing is ever fetched, and no entity expanded. `texts` gets
-    what was read, by the names that findings carry.
+    what was read, by the names that findings carry. `locate` gives the path, as the user would write it, of a text
+    that elements come from, by the name that the model has of it.
     """
-    return _Loading(Path(path), {} if texts is None else texts).root
+    loading = _Loading(Path(path), {} if texts is None else texts)
+    if locate is not None:
+        for source in loading.sources.values():
+            source.path = locate(source.name) or source.name
+    return loading.root
 
 
 class _Loading:
@@ -36,6 +48,7 @@ class _Loading:
         self._texts = texts
         self._folder = path.resolve().parent
         self._documents: dict[Path, Document] = {}
+        self.sources: dict[str, SourceFile] = {}
         self._sought: set[tuple[Document, str]] = set()
         main = self._read(path.as_posix(), path.resolve())
         for document in self._documents.values():
@@ -56,7 +69,7 @@ class _Loading:
 
     def _read(self, name: str, path: Path) -> Document:
         """Reads a file and all that it refers to."""
-        main = self._documents[path] = Document(name, path)
+        main = self._documents[path] = Document(name, path, self.sources)
         pending = [main]
         while pending:
             document = pending.pop()
@@ -87,7 +100,7 @@ class _Loading:
                 document.report(reference.span, f"there is no file '{href}'")
             elif path not in self._documents:
                 name = (PurePosixPath(document.name).parent / href).as_posix()
-                found.append(self._documents.setdefault(path, Document(name, path)))
+                found.append(self._documents.setdefault(path, Document(name, path, self.sources)))
         return found
 
     def _path(self, document: Document, href: str) -> Path | None:

@@ -17,6 +17,7 @@ from robosc.m2t import cif
 from robosc.m2t.models import Models
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
+from robosc.metamodel.places import Place
 from robosc.metamodel.reflection import tree
 from robosc.semantics.walks import copied
 from robosc.synthesis import synthesize
@@ -283,9 +284,9 @@ def test_a_negative_range_is_shifted_and_says_so() -> None:
 )
 def test_what_cannot_be_said_is_an_error_at_its_place(given: sct.SupervisoryControlModel, message: str | None) -> None:
     location = given.plants[0].locations[0]
-    location.edges[0].source = "robot.rscd:7:5-8:9"
+    location.edges[0].source = Place.parse("robot.rscd:7:5-8:9")
     for variable in given.plants[0].variables:
-        variable.source = "robot.rscd:7:5-8:9"
+        variable.source = Place.parse("robot.rscd:7:5-8:9")
     found = cif.preconditions(Models(given), Configuration())
     if message is None:
         assert found == []
@@ -300,8 +301,8 @@ def test_what_cannot_be_said_in_a_guard_stands_at_its_event() -> None:
         [plant("p", {"l": [edge("e")]}, controllable=["e"], variables={"a": "0..2147483646"})],
         [needs("e", "a - 3 + a > 3")],
     )
-    given.plants[0].events[0].source = "robot.rscd:7:5-8:9"
-    given.requirements[0].source = "robot.rscd:9:5-9:9"
+    given.plants[0].events[0].source = Place.parse("robot.rscd:7:5-8:9")
+    given.requirements[0].source = Place.parse("robot.rscd:9:5-9:9")
     condition = copied(given.requirements[0].condition)
     guard = sct.EventGuard(event=given.plants[0].events[0], requirement=condition)
     given.supervisor = sct.Supervisor(guards=[guard])

@@ -1,6 +1,7 @@
 """Models at the corners of what the engine in C must handle."""
 
 from robosc.metamodel import sct
+from robosc.metamodel.places import Place
 from tests.sct_models import edge, model, plant
 
 
@@ -166,7 +167,7 @@ def texts() -> sct.SupervisoryControlModel:
             kind=sct.RequirementKind.needs,
             condition=condition,
             text=evil,
-            source="*/evil*/.rscd:1:1-1:2",
+            source=Place.parse("*/evil*/.rscd:1:1-1:2"),
         )
     )
     return made

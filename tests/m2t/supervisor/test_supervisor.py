@@ -16,6 +16,7 @@ from robosc.m2t import supervisor
 from robosc.m2t.c.behaviour import SMALL
 from robosc.m2t.models import Models
 from robosc.metamodel import sct
+from robosc.metamodel.places import Place
 from tests.m2t.supervisor import corners
 from tests.m2t.supervisor.driver import STRICT, build, run, write
 from tests.m2t.supervisor.walk import Walk
@@ -221,7 +222,7 @@ def test_what_could_overflow_is_refused_where_it_stands(update: str, fits: bool)
         "p", {"x": [edge("u_response", do={variable: update})]}, uncontrollable=["u_response"], variables=variables
     )
     made = model([p], guards={})
-    made.plants[0].locations[0].edges[0].updates[0].source = "big.rscd:3:5-3:17"
+    made.plants[0].locations[0].edges[0].updates[0].source = Place.parse("big.rscd:3:5-3:17")
     found = supervisor.preconditions(Models(made), Configuration())
     assert bool(found) is not fits
     for each in found:
