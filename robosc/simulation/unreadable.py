@@ -10,14 +10,14 @@ from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph
 from robosc.runtime.core.node_data import PastEndError
 from robosc.semantics.evaluation import Value, evaluate
+from robosc.semantics.operators import operator_of
+from robosc.semantics.walks import operands, walk
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Generator, Iterable, Sequence
 
 #: A value that a script does not give.
 _UNKNOWN: Any = object()
-#: For the operators that need no right side, the left one with which that is so.
-_DECIDED = {ex.Conjunction: False, ex.Disjunction: True, ex.Implication: False}
 
 
 @dataclass(frozen=True)
@@ -40,24 +40,24 @@ def past_end(expressions: Iterable[ex.Expression], value: Any) -> PastEndError |
 
     The value is that of an event's data, as JSON: of an array that is not there nothing is known.
     """
-    return next(filter(None, (_missing(expression, value) for expression in expressions)), None)
 
+    def missing(expression: ex.Expression) -> Generator[ex.Expression, PastEndError | None, PastEndError | None]:
+        match expression:
+            case rosgraph.WireAccess():
+                return _past_end(expression.steps, value)
+            case rosgraph.ConversionCall():
+                return _past_end(expression.argument.steps, value)
+        operator = operator_of(expression)
+        for operand in operands(expression):
+            fault = yield operand
+            if fault is not None:
+                return fault
+            decided = None if operator is None else operator.decided
+            if decided is not None and _known(operand, value) is not (not decided):
+                return None  # the right side is not read, or nobody knows
+        return None
 
-def _missing(expression: ex.Expression, value: Any) -> PastEndError | None:
-    match expression:
-        case rosgraph.WireAccess():
-            return _past_end(expression.steps, value)
-        case rosgraph.ConversionCall():
-            return _past_end(expression.argument.steps, value)
-        case ex.Conjunction() | ex.Disjunction() | ex.Implication():
-            fault = _missing(expression.left, value)
-            known = fault is None and _known(expression.left, value) is (not _DECIDED[type(expression)])
-            return _missing(expression.right, value) if known else fault
-        case ex.BinaryExpression():
-            return _missing(expression.left, value) or _missing(expression.right, value)
-        case ex.UnaryExpression():
-            return _missing(expression.operand, value)
-    return None
+    return next(filter(None, (walk(missing, expression) for expression in expressions)), None)
 
 
 def _past_end(steps: Sequence[rosgraph.WireStep], value: Any) -> PastEndError | None:

@@ -86,7 +86,7 @@ class InProcessNode(Port):
         self._robot = _Robot(graph, distribution, lambda: self._now)
         self._robot.port = self
         self._event_loop = EventLoop(lambda: self._now)
-        values = {each.name: each.default for each in controller_parameters(graph, configuration, "")}
+        values = {parameter.name: parameter.default for parameter in controller_parameters(graph, configuration, "")}
         settings = Settings(values | parameters(graph, configuration), configuration)
         self._controller = Controller(graph, settings, self._robot, self._event_loop)
         self._controller.log_to(_AtOnce(log))
@@ -99,12 +99,12 @@ class InProcessNode(Port):
         self._work()
 
     def publish(self, topic: str, fields: dict[str, Any]) -> None:
-        subscription = next(each for each in self._graph.subscriptions if each.topic == topic)
+        subscription = next(known for known in self._graph.subscriptions if known.topic == topic)
         self._controller.receive(subscription, self._made(subscription.receptions[0].event, fields))
         self._work()
 
     def answer(self, service: str, fields: dict[str, Any]) -> None:
-        client, (_, handlers) = next(each for each in self._robot.calls.items() if each[0].identifier == service)
+        client, (_, handlers) = next(call for call in self._robot.calls.items() if call[0].identifier == service)
         handlers.answered(self._made(client.response.event, fields))
         self._work()
 
@@ -122,7 +122,7 @@ class InProcessNode(Port):
         self._work()
 
     def _goal(self, action: str) -> tuple[rosgraph.ActionClient, RunningGoal]:
-        return next(each for each in self._robot.goals.items() if each[0].identifier == action)
+        return next(goal for goal in self._robot.goals.items() if goal[0].identifier == action)
 
     def _made(self, event: sct.Event, fields: dict[str, Any]) -> Any:
         return message(self._incoming[event].fields, dict(leaves(fields)) if fields else {})

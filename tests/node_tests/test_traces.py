@@ -99,10 +99,10 @@ def test_a_walk_is_an_event_log(case: Case) -> None:
 @pytest.mark.parametrize("case", ["line_follower", "porter"], indirect=True)
 def test_a_walk_sees_every_event(case: Case) -> None:
     assert {line["event"] for line in case.trace} == {
-        event_name(each)
+        event_name(event)
         for plant in case.graph.model.plants
-        for each in plant.events
-        if each.name != "c_none"  # a provide statement always holds
+        for event in plant.events
+        if event.name != "c_none"  # a provide statement always holds
     }
 
 
@@ -192,7 +192,7 @@ def requirements() -> list[str]:
     for name in ("line_follower", "porter"):
         text = MODELS[name].read_text(encoding="utf-8")
         names[name] = re.findall(r"^  requirement (\w+) needs", text, re.MULTILINE)
-    return [f"{name}:{each}" for name, found in names.items() for each in found]
+    return [f"{name}:{fields}" for name, found in names.items() for fields in found]
 
 
 @pytest.mark.parametrize("fault", requirements())
@@ -202,9 +202,9 @@ def test_a_dropped_requirement_is_noticed(fault: str, tmp_path: Path, monkeypatc
     case = Case(name, tmp_path)
     assert case.graph.model.supervisor is not None
     guards = [
-        each
-        for each in case.graph.model.supervisor.guards
-        if event_name(each.event).endswith(f"_{event}.c_trigger") and each.requirement is not None
+        guard
+        for guard in case.graph.model.supervisor.guards
+        if event_name(guard.event).endswith(f"_{event}.c_trigger") and guard.requirement is not None
     ]
     assert len(guards) == 1
     guards[0].requirement = None
@@ -213,7 +213,7 @@ def test_a_dropped_requirement_is_noticed(fault: str, tmp_path: Path, monkeypatc
 
 
 def test_wrong_data_is_noticed(case: Case) -> None:
-    move = next(each for each in case.graph.publishers[0].sendings if each.name == "move")
+    move = next(sending for sending in case.graph.publishers[0].sendings if sending.name == "move")
     speed = move.alternatives[0].fields[0].value
     assert isinstance(speed, ex.DoubleLiteral)
     speed.value = 0.25
@@ -235,7 +235,7 @@ def test_data_that_changes_on_its_way_is_noticed(case: Case, monkeypatch: pytest
 
 
 def test_a_node_that_forgets_is_noticed(case: Case) -> None:
-    lidar = next(each for each in case.graph.model.plants if each.origin == "Lidar" and each.variables)
+    lidar = next(plant for plant in case.graph.model.plants if plant.origin == "Lidar" and plant.variables)
     for location in lidar.locations:
         for edge in edges_from(location):
             edge.updates.clear()
@@ -250,7 +250,7 @@ def test_a_node_that_forgets_is_noticed(case: Case) -> None:
 def test_samples_mean_what_they_say(case: Case) -> None:
     data = NodeData(case.graph, Engine(case.graph.model))
     known = Walk(case.graph, case.configuration, RosTypes().distributions[0], 1).incoming
-    for kind in {id(each): each for each in known.values()}.values():
+    for kind in {id(kind): kind for kind in known.values()}.values():
         for literals, found in kind.samples.items():
             for values in found:
                 made = message(kind.fields, values)
@@ -264,8 +264,8 @@ def test_samples_mean_what_they_say(case: Case) -> None:
 
 @pytest.mark.parametrize("case", ["maze_solver"], indirect=True)
 def test_all_literals_that_can_meet_are_found(case: Case) -> None:
-    (scan,) = [each for each in case.connections["subscriptions"] if each["topic"] == "/scan"]
-    assert len({tuple(each["literals"]) for each in scan["samples"]}) == 3 * 2 * 2
+    (scan,) = [topic for topic in case.connections["subscriptions"] if topic["topic"] == "/scan"]
+    assert len({tuple(sample["literals"]) for sample in scan["samples"]}) == 3 * 2 * 2
 
 
 # The files
@@ -276,9 +276,9 @@ def test_the_player_runs_where_ros_1_does() -> None:
     text = locate("node_tests/trace_player.py").read_text(encoding="utf-8")
     tree = ast.parse(text, feature_version=(3, 8))
     names = {
-        each.names[0].name if isinstance(each, ast.Import) else str(each.module)
-        for each in tree.body
-        if isinstance(each, (ast.Import, ast.ImportFrom))
+        statement.names[0].name if isinstance(statement, ast.Import) else str(statement.module)
+        for statement in tree.body
+        if isinstance(statement, (ast.Import, ast.ImportFrom))
     }
     assert not any(name.startswith("robosc") for name in names)
 

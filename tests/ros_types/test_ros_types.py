@@ -33,7 +33,7 @@ def shown(
 ) -> list[dict[str, str] | None]:
     """The fields in ROS 2 and in ROS 1."""
     found = [known.fields(package, name, part) for known in interfaces.distributions]
-    return [None if each is None else {key: str(value) for key, value in each.items()} for each in found]
+    return [None if fields is None else {key: str(value) for key, value in fields.items()} for fields in found]
 
 
 def test_standard_types() -> None:
@@ -214,7 +214,7 @@ def test_loads_definitions_only_where_a_model_links_them(tmp_path: Path, links: 
     program = (
         "import sys, robosc; robot = robosc.load(sys.argv[1]);"
         "assert robosc.check(robot) == []; robosc.to_rosgraph(robot);"
-        "print(any(each.split('.')[0] == 'rosbags' for each in sys.modules))"
+        "print(any(module.split('.')[0] == 'rosbags' for module in sys.modules))"
     )
     done = subprocess.run([sys.executable, "-c", program, model], check=True, capture_output=True, text=True)
     assert done.stdout == f"{loaded}\n"

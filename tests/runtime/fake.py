@@ -32,7 +32,7 @@ class Record:
 
     def plain(self) -> dict[str, Any]:
         """The fields that were set, as nested dicts."""
-        return {name: each.plain() if isinstance(each, Record) else each for name, each in vars(self).items()}
+        return {name: value.plain() if isinstance(value, Record) else value for name, value in vars(self).items()}
 
 
 @dataclass
@@ -114,8 +114,10 @@ class World:
         self.event_loop = EventLoop(lambda: self.port.time)
         self.log = log
         chosen = configuration or Configuration()
-        values = {each.name: each.default for each in controller_parameters(self.graph, chosen, str(log))}
-        sendings = {each.name: each for topic in self.graph.publishers for each in topic.sendings}
+        values = {
+            parameter.name: parameter.default for parameter in controller_parameters(self.graph, chosen, str(log))
+        }
+        sendings = {sending.name: sending for topic in self.graph.publishers for sending in topic.sendings}
         safe = SafeMessages(*([sendings[name] for name in names] for names in (chosen.on_shutdown, chosen.on_withheld)))
         self.controller = Controller(
             self.graph, Settings(values | parameters, chosen), self.port, self.event_loop, safe
@@ -137,7 +139,7 @@ class World:
         self.event_loop.run_pending()
 
     def hear(self, topic: str, **fields: Any) -> None:
-        subscription = next(each for each in self.graph.subscriptions if each.topic.removeprefix("/") == topic)
+        subscription = next(known for known in self.graph.subscriptions if known.topic.removeprefix("/") == topic)
         self.controller.receive(subscription, Record(**fields))
 
 

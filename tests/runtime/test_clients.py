@@ -25,7 +25,7 @@ class Bench:
         self.event_loop = EventLoop(lambda: self.port.time)
         self.told: list[tuple[str, Any]] = []
         self.inside = False
-        answers = Answers(*(self._hear(each) for each in ("response", "error", "feedback")), self._ended)
+        answers = Answers(*(self._hear(what) for what in ("response", "error", "feedback")), self._ended)
         client: Any = SimpleNamespace(identifier="/light")
         self.client = kind(self.port, self.event_loop, client, TIMEOUT, answers)
 
@@ -160,7 +160,7 @@ def test_no_server_a_rejection_and_a_server_that_goes_are_errors() -> None:
     accepted(bench)
     bench.port.served = False
     bench.wait(1)
-    assert [each for _, each in bench.told] == ["no server within 5000 ms", "rejected", "the server is gone"]
+    assert [text for _, text in bench.told] == ["no server within 5000 ms", "rejected", "the server is gone"]
 
 
 def test_a_goal_accepted_too_late_is_cancelled_and_keeps_others_away() -> None:
@@ -277,7 +277,7 @@ def test_every_goal_comes_to_one_end(steps: list[tuple[str, int]]) -> None:
     bench.port.served = False
     bench.wait(3 * TIMEOUT)
     ends = [what for what, _ in bench.told if what != "feedback"]
-    late = sum(each == ("error", "not accepted within 5000 ms") for each in bench.told)
+    late = sum(told == ("error", "not accepted within 5000 ms") for told in bench.told)
     assert not bench.client.busy
     assert len(ends) == started + late, "a goal not accepted in time is an error, and told again when it is over"
-    assert all(each.cancels <= 2 for each in bench.port.goals)
+    assert all(goal.cancels <= 2 for goal in bench.port.goals)

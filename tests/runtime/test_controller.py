@@ -41,7 +41,7 @@ def events(world: World) -> list[dict[str, Any]]:
 
 
 def sent(world: World, topic: str) -> list[dict[str, Any]]:
-    return [data for each, data in world.port.sent if each == topic]
+    return [data for name, data in world.port.sent if name == topic]
 
 
 def component(world: World, name: str) -> dict[str, Any]:
@@ -87,8 +87,8 @@ def test_the_log_has_each_event_with_its_data(courier: World) -> None:
     courier.controller.close()
     told = events(courier)
     validator = Draft202012Validator(json.loads(locate("schemas/event-log.schema.json").read_text()))
-    assert not [error for each in told for error in validator.iter_errors(each)]
-    data = {each["event"]: each.get("data") for each in told}
+    assert not [error for line in told for error in validator.iter_errors(line)]
+    data = {line["event"]: line.get("data") for line in told}
     assert data["message_word.u_response"] == {"value": 'idle "ü"'}
     assert data["message_side.u_response"] == {"value": "ahead"}
     assert data["message_detail.u_response"] == {"value": {"ranges": {"0": 0.5, "3": 7.0}}}
@@ -99,13 +99,13 @@ def test_what_one_message_feeds_is_one_batch(tmp_path: Path) -> None:
     # Turning on half a scan would be a command between two events of one message.
     world = World(MAZE, tmp_path / "events.jsonl").start()
     world.wait(0.15)
-    subscription = next(each for each in world.graph.subscriptions if each.topic == "/scan")
-    batch = [f"message_{each.name}.u_response" for each in subscription.receptions]
+    subscription = next(topic for topic in world.graph.subscriptions if topic.topic == "/scan")
+    batch = [f"message_{reception.name}.u_response" for reception in subscription.receptions]
     assert len(batch) > 1
     for distance in (0.2, 3.0, 0.3, 2.0):
         world.hear("scan", ranges=[distance] * 360)
     world.controller.close()
-    names = [each["event"] for each in events(world)]
+    names = [line["event"] for line in events(world)]
     starts = [place for place, name in enumerate(names) if name == batch[0]]
     assert len(starts) == 4
     assert all(names[start : start + len(batch)] == batch for start in starts)
@@ -132,8 +132,8 @@ def test_a_service_is_called_again_after_the_retry_time(make: Callable[..., Worl
     assert len(world.port.calls) == 1
     world.wait(0.3)
     assert len(world.port.calls) == 2
-    assert [each for each in world.port.said if "lamp" in each] == ["/lamp: the call failed: torn"]
-    names = [each["event"] for each in events(world)]
+    assert [text for text in world.port.said if "lamp" in text] == ["/lamp: the call failed: torn"]
+    names = [line["event"] for line in events(world)]
     assert names.index("service_lamp.u_error") < names.index("service_lamp.c_reset")
 
 
@@ -151,10 +151,10 @@ def test_a_silent_topic_trips_the_watchdog_and_speaking_again_ends_it(make: Call
     world.wait(0.45)
     world.hear("scan", ranges=[3.0, 0.3])
     world.wait(0.49)
-    assert not any("silent" in each for each in world.port.said)
+    assert not any("silent" in text for text in world.port.said)
     world.wait(0.1)
     assert "/scan: silent for 500 ms" in world.port.said
-    assert [each for each in events(world) if each["direction"] == "outside"]
+    assert [line for line in events(world) if line["direction"] == "outside"]
     count = len(world.port.sent)
     world.wait(1)
     assert len(world.port.sent) == count
@@ -168,7 +168,7 @@ def test_a_withheld_command_has_something_safe_sent_in_its_place_once(make: Call
     """Again where it was not to be sent meanwhile, or was sent."""
 
     def halted() -> int:
-        return len([each for each in events(world) if each["direction"] == "outside"])
+        return len([line for line in events(world) if line["direction"] == "outside"])
 
     world = make(onWithheld=["halt"])
     world.wait(0.15)
@@ -189,7 +189,7 @@ def test_a_withheld_command_has_something_safe_sent_in_its_place_once(make: Call
         world.hear("scan", ranges=[3.0, pace])
         world.wait(0.15)
     assert halted() == 3, "it had been sent in between"
-    assert {each["event"] for each in events(world) if each["direction"] == "outside"} == {"message_halt.c_trigger"}
+    assert {line["event"] for line in events(world) if line["direction"] == "outside"} == {"message_halt.c_trigger"}
 
 
 @pytest.mark.parametrize(
@@ -221,7 +221,7 @@ def test_stopping_cancels_goals_then_sends_the_last_messages_and_nothing_more(ma
     world.wait(2)
     assert not world.controller.busy
     assert len(world.port.sent) == count + 1
-    assert [each["event"] for each in events(world) if each["direction"] == "outside"] == ["message_halt.c_trigger"]
+    assert [line["event"] for line in events(world) if line["direction"] == "outside"] == ["message_halt.c_trigger"]
 
 
 @pytest.mark.parametrize(("accepted", "ended"), [(True, 4.5), (False, 5.5)])
@@ -279,7 +279,7 @@ def test_the_state_is_told_on_change_and_to_whoever_comes(make: Callable[..., Wo
     states = [json.loads(text) for what, text in world.port.told if what == "state"]
     validator = Draft202012Validator(json.loads(locate("schemas/state.schema.json").read_text()))
     assert states
-    assert not [error for each in states for error in validator.iter_errors(each)]
+    assert not [error for report in states for error in validator.iter_errors(report)]
     world.port.hearing = 0
     count = len(world.port.told)
     world.wait(0.5)
@@ -324,9 +324,9 @@ def test_what_goes_out_is_what_is_logged(steps: list[tuple[str, int]], tmp_path:
     told = events(world)
     assert len(world.port.sent) == count
     messages = [
-        each for each in told if each["direction"] in ("out", "outside") and each["event"].startswith("message")
+        line for line in told if line["direction"] in ("out", "outside") and line["event"].startswith("message")
     ]
     assert len(messages) == count
-    assert sum(each["event"] == "action_travel.c_trigger" for each in told) >= len(world.port.goals)
-    assert sum(each["event"] == "service_lamp.c_trigger" for each in told) >= len(world.port.calls)
-    assert all(each.cancels <= 2 for each in world.port.goals)
+    assert sum(line["event"] == "action_travel.c_trigger" for line in told) >= len(world.port.goals)
+    assert sum(line["event"] == "service_lamp.c_trigger" for line in told) >= len(world.port.calls)
+    assert all(goal.cancels <= 2 for goal in world.port.goals)

@@ -32,7 +32,9 @@ class Passage:
         self.event_loop = EventLoop(lambda: self.port.time)
         self.log = log
         configuration = Configuration()
-        values = {each.name: each.default for each in layer_parameters(self.graph, configuration, str(log))}
+        values = {
+            parameter.name: parameter.default for parameter in layer_parameters(self.graph, configuration, str(log))
+        }
         self.layer = Layer(self.graph, Settings(values, configuration), self.port, self.event_loop)
         (self.action,) = self.graph.actionClients
         (self.service,) = self.graph.serviceClients
@@ -44,12 +46,14 @@ class Passage:
         self.cancelled += 1
 
     def hear(self, topic: str, **fields: Any) -> None:
-        subscription = next(each for each in self.graph.subscriptions if each.topic == topic)
+        subscription = next(known for known in self.graph.subscriptions if known.topic == topic)
         self.layer.receive(subscription, Record(**fields))
 
     def sending(self, name: str) -> rosgraph.Sending:
-        sendings = [each for publisher in self.graph.publishers for each in publisher.sendings]
-        return next(each for each in [*sendings, self.service.request, self.action.request] if each.name == name)
+        sendings = [sending for publisher in self.graph.publishers for sending in publisher.sendings]
+        return next(
+            sending for sending in [*sendings, self.service.request, self.action.request] if sending.name == name
+        )
 
     def passes(self, name: str) -> bool:
         return self.layer.passes(self.sending(name))
@@ -60,7 +64,7 @@ class Passage:
     def directions(self) -> list[tuple[str, str]]:
         self.layer._log.flush()
         lines = [json.loads(line) for line in self.log.read_text().splitlines()]
-        return [(each["direction"], each["event"]) for each in lines]
+        return [(line["direction"], line["event"]) for line in lines]
 
 
 @pytest.fixture
@@ -114,7 +118,7 @@ def test_answers_and_failures_move_the_supervisor_and_it_settles(passage: Passag
     passage.layer.fail(passage.service, "no server within 5000 ms")
     assert passage.passes("light")
     assert passage.port.said == ["/lamp/light: no server within 5000 ms"]
-    told = [each for each in passage.directions() if each[1].startswith("service")]
+    told = [line for line in passage.directions() if line[1].startswith("service")]
     assert told == [
         ("out", "service_light.c_trigger"),
         ("in", "service_light.u_response"),
@@ -154,4 +158,4 @@ def test_who_is_turned_away_is_told_busy(passage: Passage) -> None:
 def test_provided_data_plays_no_part(passage: Passage) -> None:
     passage.hear("/stop")
     passage.hear("/resume")
-    assert not [each for _, each in passage.directions() if each.startswith("data_")]
+    assert not [name for _, name in passage.directions() if name.startswith("data_")]

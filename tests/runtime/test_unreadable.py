@@ -40,7 +40,7 @@ def events(world: World) -> list[dict[str, Any]]:
 
 
 def names(world: World) -> list[str]:
-    return [each["event"] for each in events(world)]
+    return [line["event"] for line in events(world)]
 
 
 def component(world: World, name: str) -> dict[str, Any]:
@@ -82,7 +82,7 @@ def test_read_is_only_what_the_present_state_needs(world: World) -> None:
     world.hear("route", name="empty", poses=[])
     assert component(world, "Planner")["variables"]["name"] == "empty"
     assert world.port.said == []
-    assert "data" in next(each for each in events(world) if each["event"] == "message_route.u_response")
+    assert "data" in next(line for line in events(world) if line["event"] == "message_route.u_response")
 
 
 def test_an_index_within_an_index(world: World) -> None:
@@ -98,7 +98,7 @@ def test_an_index_within_an_index(world: World) -> None:
 
 def test_it_is_said_once_in_five_seconds(world: World) -> None:
     def said() -> int:
-        return len([each for each in world.port.said if "element" in each])
+        return len([text for text in world.port.said if "element" in text])
 
     for number in range(3):
         world.hear("route", name="short", poses=[pose(20.0)] * (number % 2))
@@ -112,7 +112,7 @@ def test_the_log_shows_what_can_be_read(world: World) -> None:
     world.hear("toggle")
     world.hear("route", name="one", poses=[pose(10.0)])
     world.controller.close()
-    (line,) = [each for each in events(world) if each["event"] == "message_route.u_response"]
+    (line,) = [line for line in events(world) if line["event"] == "message_route.u_response"]
     assert line["data"] == {"value": {"poses": {"0": {"x": 10.0}}, "name": "one"}}
 
 
@@ -139,11 +139,11 @@ def test_an_answer_that_is_too_short_is_an_error(world: World) -> None:
     world.port.calls[1].answered(Record(cost=6.0, stops=[]))
     world.wait(0.6)
     # The reason is said once, and again after an answer that could be read.
-    assert [each for each in world.port.said if "plan" in each] == ["/plan: there is no element 0 in an array of 0"]
+    assert [text for text in world.port.said if "plan" in text] == ["/plan: there is no element 0 in an array of 0"]
     world.port.calls[2].answered(Record(cost=7.0, stops=[3]))
     assert component(world, "Visitor")["variables"] == {"cost": 7.0, "stop": 3, "next": 0, "failures": 2}
-    answers = [each for each in events(world) if each["event"].startswith("service_plan.u")]
-    assert [each["event"] for each in answers] == [*["service_plan.u_error"] * 2, "service_plan.u_response"]
+    answers = [line for line in events(world) if line["event"].startswith("service_plan.u")]
+    assert [answer["event"] for answer in answers] == [*["service_plan.u_error"] * 2, "service_plan.u_response"]
     assert answers[0]["data"] == {"value": {"cost": 5.0}}
 
 

@@ -86,7 +86,7 @@ def test_data(event, value, name, result) -> None:
 
 def test_without_data_it_is_that_of_ros() -> None:
     answers = play('message_level.u_response {"value": 3}', "message_level.u_response", "message_lamp.u_response")
-    assert [each["state"]["Gauge.level"] for each in answers] == [3, 0, 0]
+    assert [answer["state"]["Gauge.level"] for answer in answers] == [3, 0, 0]
     assert answers[-1]["state"]["Gauge.lamp"] == "other"
 
 
@@ -114,7 +114,7 @@ def test_all_faults_are_found_before_anything_is_played() -> None:
         'message_level.u_response {"value": NaN}',
         f'message_level.u_response {{"value": {"9" * 5000}}}',
     )
-    assert [each.split(": error: ")[0] for each in found] == [
+    assert [finding.split(": error: ")[0] for finding in found] == [
         "<stdin>:4:1",
         "<stdin>:5:1",
         "<stdin>:6:26",
@@ -186,8 +186,8 @@ def test_random_events_are_the_same_for_the_same_seed_and_can_be_played() -> Non
     assert first != simulate("--random", "60", "--seed", "6").stdout
     answers = play(*first.splitlines())
     assert len(answers) == 60
-    assert all(each["accepted"] for each in answers)
-    assert len({json.dumps(each["state"]) for each in answers}) > 10
+    assert all(answer["accepted"] for answer in answers)
+    assert len({json.dumps(answer["state"]) for answer in answers}) > 10
 
 
 def test_the_control_loop_does_the_rest_itself() -> None:
@@ -201,7 +201,7 @@ def test_the_control_loop_does_the_rest_itself() -> None:
         "tick",
         options=("--loop",),
     )
-    happened = [each["happened"] for each in answers]
+    happened = [answer["happened"] for answer in answers]
     assert happened[:2] == [["message_level.u_response"], ["message_drain.c_trigger"]]
     assert answers[3]["by"] is None
     assert answers[-1]["state"]["component_Gauge"] == "drained"

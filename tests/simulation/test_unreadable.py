@@ -29,7 +29,7 @@ def play(*lines: str, loop: bool = False) -> list[dict[str, Any]]:
 
 
 def poses(*tags: int) -> str:
-    return json.dumps({"value": {"poses": [{"x": 1.0, "tags": [5] * each} for each in tags]}})
+    return json.dumps({"value": {"poses": [{"x": 1.0, "tags": [5] * count} for count in tags]}})
 
 
 def test_an_event_whose_data_is_too_short_does_not_happen() -> None:
@@ -39,17 +39,17 @@ def test_an_event_whose_data_is_too_short_does_not_happen() -> None:
         f"{ROUTE} {poses(1, 1, 1)}",
         f"{ROUTE} {poses(2, 0, 0)}",
     )
-    assert [each["by"] for each in answers] == [None, "data", "data", None]
-    assert [each["state"]["component_Recorder"] for each in answers] == ["empty", "empty", "empty", "filled"]
+    assert [answer["by"] for answer in answers] == [None, "data", "data", None]
+    assert [answer["state"]["component_Recorder"] for answer in answers] == ["empty", "empty", "empty", "filled"]
 
 
 def test_only_what_the_present_state_reads_has_to_be_there() -> None:
-    assert [each["by"] for each in play("message_toggle.u_response", f"{ROUTE} {poses()}")] == [None, None]
+    assert [answer["by"] for answer in play("message_toggle.u_response", f"{ROUTE} {poses()}")] == [None, None]
 
 
 def test_of_what_is_left_out_nothing_is_known() -> None:
     texts = ("", '{"value": {"name": "only"}}', '{"value": {"poses": {"2": {"x": 1.0}}}}')
-    assert [each["accepted"] for each in play(*(f"{ROUTE} {each}" for each in texts))] == [True, True, True]
+    assert [answer["accepted"] for answer in play(*(f"{ROUTE} {text}" for text in texts))] == [True, True, True]
     assert play('%s {"value": {"poses": {"1": {"x": 1.0}}}}' % ROUTE)[0]["by"] == "data"  # noqa: UP031
 
 
@@ -75,7 +75,7 @@ def test_by_hand_it_is_said_why() -> None:
 
 def _read(*path: str | int, kind: ex.Type | None = None) -> rosgraph.WireAccess:
     steps = [
-        rosgraph.IndexStep(index=each) if isinstance(each, int) else rosgraph.FieldStep(name=each) for each in path
+        rosgraph.IndexStep(index=step) if isinstance(step, int) else rosgraph.FieldStep(name=step) for step in path
     ]
     return rosgraph.WireAccess(steps=steps, type=kind or ex.DoubleType())
 

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 import struct
+from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
 from robosc.ros_types.wire import INTEGER_RANGES
-from robosc.semantics.evaluation import Value, as_double, evaluate, saturate
+from robosc.semantics.evaluation import Program, Value, as_double, saturate
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -52,6 +53,7 @@ class NodeData:
 
     def __init__(self, graph: rosgraph.RosGraph, engine: Engine) -> None:
         self._engine = engine
+        self._programs: dict[ex.Expression, Program[Value]] = {}
         self.variables: dict[rosgraph.NodeVariable, Value] = {}
         for variable in graph.variables:
             self.variables[variable] = self.value(variable.initial)
@@ -61,7 +63,11 @@ class NodeData:
 
     def value(self, expression: ex.Expression, data: Message = None) -> Value:
         """The value of an expression; `data` is what came in. Raises PastEndError."""
-        return evaluate(expression, lambda reference: self._read(reference, data), fit)
+        program = self._programs.get(expression)
+        if program is None:
+            program = Program[Value](expression, lambda reference: partial(self._read, reference), fit)
+            self._programs[expression] = program
+        return program(data)
 
     def is_in(self, location: sct.Location) -> bool:
         """Whether its plant is in a location."""
