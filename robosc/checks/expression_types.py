@@ -111,15 +111,15 @@ class ExpressionCheck:
         if row.rule is Rule.EQUALITY:
             self._equality(operator, types)
         else:
-            logical = row.rule is Rule.LOGICAL
-            wants = "boolean" if logical else "integer or double"
+            wanted = {Rule.LOGICAL: BOOLEAN, Rule.INTEGER: INTEGER}.get(row.rule)
+            what = "argument" if row.parameters else "operand"
             for operand, found in zip(operands(operator), types, strict=True):
-                fits = found == BOOLEAN if logical else is_number(found)
+                fits = is_number(found) if wanted is None else found == wanted
                 if operand is not None and not fits and found != UNKNOWN:
                     self.report(
                         operand,
-                        f"an operand of `{row.symbol}` must be {wants}, found {found}",
-                        repair(operand, found, BOOLEAN if logical else DOUBLE),
+                        f"an {what} of `{row.symbol}` must be {wanted or 'integer or double'}, found {found}",
+                        repair(operand, found, wanted or DOUBLE),
                     )
         return operator_type(row, types)
 

@@ -78,7 +78,7 @@ class Engine:
         self.events: tuple[str, ...] = tuple(event_name(each) for each in self.roles.events)
         self._layout = Layout(model)
         declared = [each for plant in model.plants for each in plant.inputs]
-        self._input_domains = [Domain.of(each.type) for each in declared]
+        self._input_domains = [Domain(each.type) for each in declared]
         self._inputs = [each.clamp(0) for each in self._input_domains]
         self._input_position = {each: position for position, each in enumerate(declared)}
         self._compile = Compiler(self._layout.cells, self._input_position)

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING
 
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
+from robosc.semantics.domains import domain
 from robosc.semantics.naming import Names
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
 
 #: What a reader sees: a boolean, an integer, or the name of a location or literal.
 Value = bool | int | str
@@ -21,26 +18,14 @@ Cell = sct.Plant | sct.DiscreteVariable
 class Domain:
     """The values of a cell or input, as the engine and as its readers see them."""
 
-    def __init__(self, names: Sequence[str] | None, low: int, high: int, *, boolean: bool = False) -> None:
-        self.low = low
-        self.high = high
-        self._names = names
-        self._boolean = boolean
-
-    @classmethod
-    def of(cls, declared: sct.Plant | ex.Type) -> Domain:
+    def __init__(self, declared: sct.Plant | ex.Type) -> None:
         """The domain of a plant's location or of a type."""
-        match declared:
-            case sct.Plant():
-                return cls([each.name for each in declared.locations], 0, len(declared.locations) - 1)
-            case ex.EnumerationType():
-                literals = declared.enumeration.literals
-                return cls([each.name for each in literals], 0, len(literals) - 1)
-            case ex.BooleanType():
-                return cls(None, 0, 1, boolean=True)
-            case ex.IntegerType(minimum=int(low), maximum=int(high)):
-                return cls(None, low, high)
-        raise ValueError(f"an sct model holds no {type(declared).__name__} without bounds")
+        self.low, self.high = self._values = domain(declared)
+        self._boolean = isinstance(declared, ex.BooleanType)
+        self._names: list[str] | None = None
+        if not self._boolean and not isinstance(declared, ex.IntegerType):
+            named = declared.locations if isinstance(declared, sct.Plant) else declared.enumeration.literals  # type: ignore[attr-defined]
+            self._names = [element.name for element in named]
 
     def shown(self, value: int) -> Value:
         """A value as a reader sees it."""
@@ -59,7 +44,7 @@ class Domain:
 
     def clamp(self, value: int) -> int:
         """The nearest value of the domain."""
-        return min(max(value, self.low), self.high)
+        return self._values.clamp(value)
 
 
 class Layout:
@@ -72,11 +57,9 @@ class Layout:
         names = Names()
         for plant in model.plants:
             if len(plant.locations) > 1:
-                self._add(plant, names.fresh(plant.name), Domain.of(plant))
+                self._add(plant, names.fresh(plant.name), Domain(plant))
             for variable in plant.variables:
-                self._add(
-                    variable, names.fresh(f"{plant.origin or plant.name}.{variable.name}"), Domain.of(variable.type)
-                )
+                self._add(variable, names.fresh(f"{plant.origin or plant.name}.{variable.name}"), Domain(variable.type))
 
     def _add(self, cell: Cell, name: str, domain: Domain) -> None:
         self.cells[cell] = self.position[name] = len(self.domains)

@@ -136,6 +136,8 @@ class Builder:
         match node.rule_name:
             case "Name" | "UnreservedName":
                 return node.value.lstrip("^")
+            case "Function":
+                return node.value
             case "Integer" | "SignedInteger":
                 return self._integer(node, literal=False)
             case "Double":

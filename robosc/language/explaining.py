@@ -71,7 +71,7 @@ _GROUPS = (
     (
         "an expression",
         {"value", "UnreservedName", "!"},
-        {"Double", "Integer", "String", "true", "false", "-", "("},
+        {"Double", "Integer", "String", "true", "false", "-", "(", "Function"},
     ),
     (
         "an operator",

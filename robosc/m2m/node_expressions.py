@@ -57,7 +57,7 @@ class NodeExpressions:
                 and DOUBLE in [self._types(operand) for operand in operands]
             ):
                 operands = [self.as_double(operand) for operand in operands]
-            return with_operands(type(original), operands)
+            return with_operands(original, operands)
 
         return fold(translated, expression)
 

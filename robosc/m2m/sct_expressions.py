@@ -47,7 +47,7 @@ class SctExpressions:
                 case ex.Equation() | ex.Inequation() if isinstance(original.left, ex.StringLiteral):
                     # The supervisor needs no string, so that both sides are constants.
                     return ex.BooleanLiteral(value=bool(evaluate(original, lambda reference: reference)))
-            made = with_operands(type(original), operands)
+            made = with_operands(original, operands)
             if isinstance(made, COMPARISONS) and DOUBLE in [self._types(operand) for operand in operands]:
                 return self._tabulate(made, original)
             return made

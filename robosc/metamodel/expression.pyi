@@ -140,6 +140,12 @@ class Conditional(Expression):
     otherwise: Expression
     def __init__(self, *, condition: Expression | None = ..., then: Expression | None = ..., otherwise: Expression | None = ..., source: Place | None = ...) -> None: ...
 
+class FunctionCall(Expression):
+    """A function of its arguments, such as `mod(a, b)`. What each function means stands in robosc/semantics/operators.py."""
+    function: str
+    arguments: MutableSequence[Expression]
+    def __init__(self, *, function: str | None = ..., arguments: Iterable[Expression] = ..., source: str | None = ...) -> None: ...
+
 class BooleanLiteral(Expression):
     """`true` or `false`."""
     value: bool

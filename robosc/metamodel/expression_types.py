@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
 Fault = tuple[ex.Expression, str]
+_WANTED = {Rule.LOGICAL: BOOLEAN, Rule.DOUBLE: DOUBLE, Rule.INTEGER: INTEGER}
 
 
 def _named(kind: Type) -> str:
@@ -47,10 +48,10 @@ class ExpressionTypes:
         elif isinstance(expression, ex.Conditional):
             yield from self.unless(expression.condition, BOOLEAN)
             yield from self._differ(expression, given[1:])
-        elif row is not None and row.rule in {Rule.LOGICAL, Rule.DOUBLE}:
-            wanted = BOOLEAN if row.rule is Rule.LOGICAL else DOUBLE
+        elif row is not None and row.rule in _WANTED:
+            conversion = isinstance(expression, ex.DoubleConversion)
             for operand in given:
-                yield from self.unless(operand, INTEGER if isinstance(expression, ex.DoubleConversion) else wanted)
+                yield from self.unless(operand, INTEGER if conversion else _WANTED[row.rule])
         elif row is not None:
             faults = [*self._differ(expression, given)]
             yield from faults

@@ -71,6 +71,9 @@ class Program(Generic[_Result]):
                 stack[-1] = argument(stack[-1])
             elif kind == _CONSTANT:
                 stack.append(argument)
+            elif kind == _CALL:
+                count, function = argument
+                stack[len(stack) - count :] = [function(*stack[len(stack) - count :])]
             elif kind == _DECIDE:
                 decided, value, end = argument
                 if bool(stack[-1]) is decided:
@@ -100,6 +103,8 @@ class Program(Generic[_Result]):
         compute = row.compute
         if self._fit is not None and row.rule is Rule.ARITHMETIC:
             compute = partial(_fitted, self._fit, compute)
+        if isinstance(expression, ex.FunctionCall):
+            return [*given, (_CALL, (len(given), compute))]
         return [*given, (_UNARY if len(given) == 1 else _BINARY, compute)]
 
 
@@ -110,7 +115,7 @@ class _Label:
 
 
 #: The instructions: what each does with its argument and the values on the stack.
-_READ, _CONSTANT, _UNARY, _BINARY, _DECIDE, _UNLESS, _JUMP = range(7)
+_READ, _CONSTANT, _UNARY, _BINARY, _DECIDE, _UNLESS, _JUMP, _CALL = range(8)
 
 
 def _fitted(fit: Callable[[int], int], compute: Callable[..., Any], *values: Any) -> Any:

@@ -1,6 +1,7 @@
-"""The operators of expressions, each fact about them once: what parses, prints, types and computes them reads it here.
+"""The operators of expressions, each fact about them once: who parses, prints, types or computes reads it here.
 
-A new operator or function is a class of `metamodel/expression.ecore`, an alternative in the grammar, and a row below.
+A new operator is a class of `metamodel/expression.ecore`, an alternative in the grammar, and a row below; a function is
+a word of the grammar and a row. The rest is what can not be said by its symbol: the encoding of synthesis, C, CIF, C++.
 """
 
 from __future__ import annotations
@@ -34,6 +35,8 @@ class Rule(Enum):
     ARITHMETIC = auto()
     #: Numbers, each read as a double; a double.
     DOUBLE = auto()
+    #: Integers; an integer.
+    INTEGER = auto()
 
 
 #: The operators with a boolean value.
@@ -59,6 +62,7 @@ class Operator:
     are of the right types: by IEEE 754 for doubles, integers however large. `interval` does the same for all values
     between bounds (None: no sct model has it). `decided` is the left operand's value at which the right one is not
     looked at, if there is such: the value is then `compute(decided, anything)`.
+    A function has a number of `parameters`, and those of them that are `divisors` (from 0) must be positive constants.
     """
 
     metaclass: type[ex.Expression]
@@ -69,6 +73,8 @@ class Operator:
     interval: Callable[..., Interval] | None
     associativity: Associativity = Associativity.LEFT
     decided: bool | None = None
+    parameters: int = 0
+    divisors: frozenset[int] = frozenset()
 
 
 def as_double(number: Value) -> float:
@@ -192,6 +198,9 @@ OPERATORS = (
     Operator(ex.UnaryMinus, "-", 8, Rule.ARITHMETIC, operator.neg, lambda value: Interval(-value.high, -value.low)),
 )
 
+#: The functions, by their names.
+FUNCTIONS: dict[str, Operator] = {}
+
 _BY_CLASS = {row.metaclass: row for row in OPERATORS} | {
     # Only transformations make it; no text has it.
     ex.DoubleConversion: Operator(ex.DoubleConversion, "", 9, Rule.DOUBLE, as_double, None)
@@ -212,5 +221,7 @@ COMPARISONS = cast("tuple[type[ex.BinaryExpression], ...]", (*EQUALITY, *ORDERIN
 
 
 def operator_of(expression: ex.Expression | None) -> Operator | None:
-    """The row of an expression's outermost operator; None of literals, references and choices."""
+    """The row of an expression's outermost operator or function; None of literals, references and choices."""
+    if isinstance(expression, ex.FunctionCall):
+        return FUNCTIONS[expression.function]
     return _BY_CLASS.get(type(expression))  # type: ignore[arg-type]

@@ -63,6 +63,8 @@ class Printer:
             return self.unary(expression, *given)
         if isinstance(expression, ex.Conditional):
             return self.choice(*given)
+        if isinstance(expression, ex.FunctionCall):
+            return self.call(expression, given)
         return Printed(self.atom(expression))
 
     def binary(self, expression: ex.BinaryExpression, left: Printed, right: Printed) -> Printed:
@@ -82,6 +84,10 @@ class Printer:
         """An operand of a binary operator, in parentheses where the tree or a reader needs them."""
         binds = given.precedence > outer and (outer, given.precedence) not in _LOOSE_PAIRS
         return given.text if binds or (bare and given.precedence == outer) else f"({given.text})"
+
+    def call(self, expression: ex.FunctionCall, given: Sequence[Printed]) -> Printed:
+        """A function of its arguments."""
+        return Printed(f"{expression.function}({', '.join(text for text, _ in given)})")
 
     def choice(self, condition: Printed, then: Printed, otherwise: Printed) -> Printed:
         """One value where the condition holds, else the other."""

@@ -25,6 +25,8 @@ def operands(expression: ex.Expression | None) -> list[ex.Expression]:
             return [expression.operand]
         case ex.Conditional():
             return [expression.condition, expression.then, expression.otherwise]
+        case ex.FunctionCall():
+            return list(expression.arguments)
         case robosc.ObjectValue():
             return [given.value for given in expression.properties]
         case rosgraph.ConversionCall():
@@ -32,10 +34,15 @@ def operands(expression: ex.Expression | None) -> list[ex.Expression]:
     return []
 
 
-def with_operands(kind: Any, given: Sequence[ex.Expression]) -> ex.Expression:
-    """A new expression of an operator's class over these operands, which it contains then."""
-    names = ("operand",) if len(given) == 1 else ("left", "right")
-    made: ex.Expression = kind(**dict(zip(names, given, strict=True)))
+def with_operands(original: ex.Expression, given: Sequence[ex.Expression]) -> ex.Expression:
+    """The operator or function of an expression, of other operands; the new expression contains them."""
+    kind: Any = type(original)
+    made: ex.Expression
+    if isinstance(original, ex.FunctionCall):
+        made = kind(function=original.function, arguments=given)
+    else:
+        names = ("operand",) if len(given) == 1 else ("left", "right")
+        made = kind(**dict(zip(names, given, strict=True)))
     return made
 
 

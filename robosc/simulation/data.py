@@ -71,7 +71,7 @@ class EventData:
         value = data.get("value", _ABSENT)
         found = {}
         for given in declared.inputs:
-            domain = Domain.of(given.type)
+            domain = Domain(given.type)
             try:
                 found[given.name] = domain.shown(domain.internal(self._value(given, value)))
             except ValueError as error:
@@ -231,5 +231,5 @@ def _label(given: sct.Input) -> str:
 
 
 def _default(kind: ex.Type) -> Value:
-    domain = Domain.of(kind)
+    domain = Domain(kind)
     return domain.shown(domain.clamp(0))

@@ -18,6 +18,7 @@ from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 from robosc.metamodel.places import place
 from robosc.metamodel.reflection import tree
+from robosc.semantics import domains
 from robosc.semantics.edges import edges_of
 from robosc.synthesis import arithmetic
 from robosc.synthesis.order import variable_order
@@ -108,18 +109,12 @@ def foreign(expression: ex.Expression) -> ModelError:
 
 def domain_size(element: Element) -> int:
     """The number of an element's values."""
-    if isinstance(element, sct.Plant):
-        return len(element.locations)
-    kind = element.type
-    if isinstance(kind, ex.IntegerType):
-        return kind.maximum - kind.minimum + 1  # type: ignore[operator]  # both bounds are given in an sct model
-    return len(kind.enumeration.literals) if isinstance(kind, ex.EnumerationType) else 2
+    return domains.domain(element if isinstance(element, sct.Plant) else element.type).size
 
 
 def smallest(element: Element) -> int:
     """The integer that code 0 stands for; 0 for what has no integers."""
-    kind = None if isinstance(element, sct.Plant) else element.type
-    return (kind.minimum or 0) if isinstance(kind, ex.IntegerType) else 0
+    return domains.domain(element if isinstance(element, sct.Plant) else element.type).low
 
 
 def referenced(expression: ex.Expression | None) -> Iterator[Element]:

@@ -14,7 +14,7 @@ from robosc.semantics.naming import ROBOSC_KEYWORDS
 
 TEXT = locate("grammar/robosc.tx").read_text(encoding="utf-8")
 RULES = re.findall(r"^(\w+):", TEXT, re.MULTILINE)
-WORDS = {"Name", "UnreservedName", "Integer", "SignedInteger", "Double", "String", "Boolean", "Comment"}
+WORDS = {"Function", "Name", "UnreservedName", "Integer", "SignedInteger", "Double", "String", "Boolean", "Comment"}
 #: What a text can't say: transformations make it.
 MADE_BY_TRANSFORMATIONS = {
     *("Type", "BooleanType", "IntegerType", "DoubleType", "StringType", "EnumerationType", "Enumeration"),

@@ -38,7 +38,7 @@ class LoopWalk:
         self._events = [event for plant in model.plants for event in plant.events]
         self._incoming: list[int] = []
         inputs = [parameter for plant in model.plants for parameter in plant.inputs]
-        self._inputs = {parameter: (number, Domain.of(parameter.type)) for number, parameter in enumerate(inputs)}
+        self._inputs = {parameter: (number, Domain(parameter.type)) for number, parameter in enumerate(inputs)}
         numbers = {name: number for number, name in enumerate(self._names)}
         parts = _SETTINGS * _PARTS
         for part, settings in enumerate(parts, 1):

@@ -5,9 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from robosc.m2t.c.comments import comment, comment_text, string_literal
-from robosc.m2t.c.types import index_type, interval_of, number, type_name
+from robosc.m2t.c.types import index_type, number, type_name
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
+from robosc.semantics.domains import domain
 from robosc.semantics.printing import RobotPrinter
 from robosc.semantics.roles import event_name, plant_of, provide_numbers
 
@@ -172,7 +173,7 @@ class Declarations:
                 return "false"
             case ex.EnumerationType():
                 return self._context.names.enumerator(kind.enumeration.literals[0])
-        values = interval_of(kind)
+        values = domain(kind)
         return number(min(max(0, values.low), values.high))
 
 

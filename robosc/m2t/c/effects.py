@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 from robosc.m2t.c.expressions import CPrinter
 from robosc.m2t.c.guards import Edges, Everywhere, within
 from robosc.m2t.c.nodes import All
-from robosc.m2t.c.types import interval_of, number, signed, type_name
+from robosc.m2t.c.types import number, signed, type_name
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
+from robosc.semantics.domains import domain
 from robosc.semantics.operators import ATOM
 
 if TYPE_CHECKING:
@@ -153,7 +154,7 @@ class Effects:
         kind, value = type_name(update.variable.type), update.value
         values, text = self.ranges(value), printer(value)
         if isinstance(update.variable.type, ex.IntegerType):
-            bounds = interval_of(update.variable.type)
+            bounds = domain(update.variable.type)
             if values.high <= bounds.low or values.low >= bounds.high:
                 return number(bounds.low if values.high <= bounds.low else bounds.high)
             if not bounds.holds(values):

@@ -5,9 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, ClassVar
 
 from robosc.m2t.c.nodes import COMPARISONS, Junction, Not, children_of, is_condition
-from robosc.m2t.c.types import Interval, index_type, number, signed, type_name
+from robosc.m2t.c.types import index_type, number, signed, type_name
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
+from robosc.semantics.domains import Interval
 from robosc.semantics.operators import ATOM, PRECEDENCE
 from robosc.semantics.recursion import deep_recursion
 

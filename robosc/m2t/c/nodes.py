@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
+from robosc.semantics.walks import operands
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -83,13 +84,9 @@ def children_of(node: Node) -> list[Node]:
     match node:
         case All() | Some():
             return list(node.parts)
-        case ex.BinaryExpression():
-            return [node.left, node.right]
-        case ex.UnaryExpression() | Not():
+        case Not():
             return [node.operand]
-        case ex.Conditional():
-            return [node.condition, node.then, node.otherwise]
-    return []
+    return list(operands(node))
 
 
 def is_condition(node: Node) -> bool:

@@ -7,9 +7,10 @@ from math import prod
 from typing import TYPE_CHECKING
 
 from robosc.m2t.c.nodes import Junction, Node, Not, children_of, is_condition, junction
-from robosc.m2t.c.types import Interval, interval_of
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
+from robosc.semantics.domains import Interval, domain, truth
+from robosc.semantics.operators import operator_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Hashable, Mapping, Sequence
@@ -175,7 +176,7 @@ class Ranges:
         values_of_all = prod(domain.high - domain.low + 1 for domain in domains)
         if values_of_all > _TRIED or values_of_all * len(group) > _TRIALS:
             return True
-        for values in product(*(range(domain.low, domain.high + 1) for domain in domains)):
+        for values in product(*(range(values.low, values.high + 1) for values in domains)):
             at = dict(zip(cells, values, strict=True))
 
             def evaluate(node: Node, at: Mapping[Cell, int] = at) -> Interval:
@@ -188,7 +189,7 @@ class Ranges:
 
 
 def _domain(cell: Cell) -> Interval:
-    return Interval(0, len(cell.locations) - 1) if isinstance(cell, sct.Plant) else interval_of(cell.type)
+    return domain(cell if isinstance(cell, sct.Plant) else cell.type)
 
 
 def _cell(node: Node) -> Cell | None:
@@ -206,10 +207,6 @@ def _plant(location: sct.Location) -> sct.Plant:
     plant = location.eContainer()
     assert isinstance(plant, sct.Plant)
     return plant
-
-
-def _truth(can_be_false: bool, can_be_true: bool) -> Interval:
-    return Interval(0 if can_be_false else 1, 1 if can_be_true else 0)
 
 
 def _evaluate(node: Node, at: Mapping[Cell, int], of: Callable[[Node], Interval]) -> Interval:  # noqa: C901
@@ -232,49 +229,22 @@ def _evaluate(node: Node, at: Mapping[Cell, int], of: Callable[[Node], Interval]
         case sct.VariableReference() | sct.InputReference():
             cell = _cell(node)
             assert isinstance(cell, (sct.DiscreteVariable, sct.Input))
-            return Interval(at[cell], at[cell]) if cell in at else interval_of(cell.type)
+            return Interval(at[cell], at[cell]) if cell in at else domain(cell.type)
         case sct.LocationReference():
             plant = _plant(node.location)
             if plant not in at:
-                return _truth(len(plant.locations) > 1, can_be_true=True)
+                return truth(len(plant.locations) > 1, can_be_true=True)
             position = plant.locations.index(node.location)
-            return _truth(at[plant] != position, at[plant] == position)
-        case ex.Negation() | Not():
+            return truth(at[plant] != position, at[plant] == position)
+        case Not():
             value = of(node.operand)
             return Interval(1 - value.high, 1 - value.low)
-        case ex.UnaryMinus():
-            value = of(node.operand)
-            return Interval(-value.high, -value.low)
         case ex.Conditional():
             condition = of(node.condition).single
             if condition is not None:
                 return of(node.then if condition else node.otherwise)
             return of(node.then).union(of(node.otherwise))
-        case ex.BinaryExpression():
-            return _binary(node, of(node.left), of(node.right))
-    raise TypeError(f"an sct model holds no {type(node).__name__}")
-
-
-def _binary(node: ex.BinaryExpression, left: Interval, right: Interval) -> Interval:
-    match node:
-        case ex.Addition():
-            return Interval(left.low + right.low, left.high + right.high)
-        case ex.Subtraction():
-            return Interval(left.low - right.high, left.high - right.low)
-        case ex.Multiplication():
-            corners = [a * b for a in left for b in right]
-            return Interval(min(corners), max(corners))
-    match node:
-        case ex.Equation() | ex.Inequation():
-            differ = left.single is None or left != right
-            agree = left.low <= right.high and right.low <= left.high
-            return _truth(differ, agree) if isinstance(node, ex.Equation) else _truth(agree, differ)
-        case ex.LessThan():
-            return _truth(left.high >= right.low, left.low < right.high)
-        case ex.LessOrEqual():
-            return _truth(left.high > right.low, left.low <= right.high)
-        case ex.GreaterThan():
-            return _truth(left.low <= right.high, left.high > right.low)
-        case ex.GreaterOrEqual():
-            return _truth(left.low < right.high, left.high >= right.low)
-    raise TypeError(f"an sct model holds no {type(node).__name__}")
+    row = operator_of(node) if isinstance(node, ex.Expression) else None
+    if row is None or row.interval is None:
+        raise TypeError(f"an sct model holds no {type(node).__name__}")
+    return row.interval(*[of(child) for child in children_of(node)])

@@ -2,32 +2,8 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 from robosc.metamodel import expression as ex
-
-
-class Interval(NamedTuple):
-    """Values between two bounds, both included. False and true count as 0 and 1, literals as their positions."""
-
-    low: int
-    high: int
-
-    def holds(self, other: Interval) -> bool:
-        """Whether every value of the other interval is in this one."""
-        return self.low <= other.low and other.high <= self.high
-
-    def union(self, other: Interval) -> Interval:
-        """The smallest interval with the values of both."""
-        return Interval(min(self.low, other.low), max(self.high, other.high))
-
-    @property
-    def single(self) -> int | None:
-        """The only value, where there is only one."""
-        return self.low if self.low == self.high else None
-
-
-BOOLEAN = Interval(0, 1)
+from robosc.semantics.domains import Interval, domain
 
 
 def signed(bits: int) -> Interval:
@@ -38,18 +14,6 @@ def signed(bits: int) -> Interval:
 def unsigned(bits: int) -> Interval:
     """What an unsigned integer of so many bits holds."""
     return Interval(0, 2**bits - 1)
-
-
-def interval_of(kind: ex.Type) -> Interval:
-    """The values of a type of an sct model. Raises TypeError where it has no bounds: the preconditions refuse it."""
-    match kind:
-        case ex.BooleanType():
-            return BOOLEAN
-        case ex.EnumerationType():
-            return Interval(0, len(kind.enumeration.literals) - 1)
-        case ex.IntegerType(minimum=int(low), maximum=int(high)):
-            return Interval(low, high)
-    raise TypeError(f"no values of {type(kind).__name__} are known")
 
 
 def storage(values: Interval) -> str:
@@ -69,7 +33,7 @@ def storage(values: Interval) -> str:
 
 def type_name(kind: ex.Type) -> str:
     """The C type that stores a value of a type of an sct model."""
-    return "bool" if isinstance(kind, ex.BooleanType) else storage(interval_of(kind))
+    return "bool" if isinstance(kind, ex.BooleanType) else storage(domain(kind))
 
 
 def index_type(count: int) -> str:

@@ -9,9 +9,10 @@ from hypothesis import strategies as st
 from robosc.engine.expressions import Compiler
 from robosc.m2t.c.nodes import All, Not, Some, children_of
 from robosc.m2t.c.ranges import Ranges
-from robosc.m2t.c.types import Interval, interval_of, number, storage
+from robosc.m2t.c.types import number, storage
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
+from robosc.semantics.domains import Interval, domain
 from robosc.semantics.edges import edges_from
 from tests.random_sct import sct_models
 from tests.sct_models import edge, model, plant
@@ -39,7 +40,7 @@ def test_values_stay_in_their_interval_and_depend_on_their_cells_only(made, rand
     position = {each: at for at, each in enumerate(cells)}
     compiled = Compiler(position, {each: at for at, each in enumerate(inputs)})
     domains = {
-        each: Interval(0, len(each.locations) - 1) if isinstance(each, sct.Plant) else interval_of(each.type)
+        each: Interval(0, len(each.locations) - 1) if isinstance(each, sct.Plant) else domain(each.type)
         for each in (*cells, *inputs)
     }
     ranges = Ranges()
