@@ -14,7 +14,7 @@ from robosc.metamodel import rosgraph
 from robosc.metamodel.reflection import tree
 from robosc.node_tests.messages import Field, Leaf, Path, message, reads, wire_type
 from robosc.ros_types.wire import INTEGER_RANGES
-from robosc.semantics.received import reads_elements
+from robosc.semantics.messages import reads_elements
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence

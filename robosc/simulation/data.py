@@ -3,28 +3,28 @@
 from __future__ import annotations
 
 import json
-from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any, Final, TypeAlias
+from contextlib import suppress
+from typing import TYPE_CHECKING, Any
 
 from robosc.engine.state import Domain
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
 from robosc.metamodel.reflection import tree
 from robosc.runtime.core.event_log import nested
-from robosc.runtime.core.node_data import NodeData
+from robosc.runtime.core.node_data import NodeData, PastEndError
 from robosc.semantics.evaluation import as_double
-from robosc.semantics.received import receptions
+from robosc.semantics.messages import receptions
 from robosc.semantics.roles import Roles, event_name
 from robosc.simulation.unreadable import Unreadable, past_end
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Mapping
 
     from robosc.engine import Engine
     from robosc.engine.state import Value
 
 #: In the place of a value that the JSON text does not give.
-_ABSENT: Final = object()
+_ABSENT: Any = object()
 #: The index of an element has less.
 _DIGITS = 10
 #: What each basic type is called, what JSON has for it, and what ROS leaves where nothing is said.
@@ -34,8 +34,6 @@ _BASIC: Mapping[type[ex.Type], tuple[str, Any, Value | float]] = {
     ex.DoubleType: ("a number", int | float, 0.0),
     ex.StringType: ("a string", str, ""),
 }
-#: The steps to basic data, and its type.
-_Read: TypeAlias = "tuple[Sequence[rosgraph.WireStep], ex.Type | None]"
 
 
 class DataError(Exception):
@@ -52,7 +50,7 @@ class EventData:
 
     def __init__(self, engine: Engine, graph: rosgraph.RosGraph | None) -> None:
         self._events = {event_name(event): event for event in Roles(engine.model).events}
-        self._node = None if graph is None else NodeData(graph, engine)
+        self._node = None if graph is None else _JsonData(graph, engine)
         received = [] if graph is None else receptions(graph)
         self._assignments = {given.input: given for reception in received for given in reception.inputs}
         self._receptions = {event_name(reception.event): reception for reception in received}
@@ -112,51 +110,41 @@ class EventData:
         if isinstance(found, str) and found in {literal.name for literal in conversion.enumeration.literals}:
             return found
         try:
-            return str(self._node.convert(conversion, _argument(found, _reads(conversion), _label(given))).name)
+            return str(self._node.literal(conversion, found, _label(given)))
         except DataError as error:
             literals = ", ".join(literal.name for literal in conversion.enumeration.literals)
             raise DataError(f"expected one of {literals}, or the data to tell it from: {error}") from None
 
 
-class _Array:
-    """An array of which only those elements are there that are read."""
+class _JsonData(NodeData):
+    """Reads JSON in the place of data from ROS: a pair of the JSON and its place in the script's data, for messages."""
 
-    def __init__(self, length: int, elements: Mapping[int, Any]) -> None:
-        self._length = length
-        self._elements = elements
+    def literal(self, conversion: rosgraph.Conversion, data: Any, place: str) -> str:
+        """The name of the literal that a conversion makes of data. Raises DataError, also for what is not looked at."""
+        for _, part in [read for rule in conversion.rules for read in tree(rule.condition)]:
+            if isinstance(part, rosgraph.WireAccess):
+                with suppress(PastEndError):
+                    self._leaf(self._reach(part, (data, place)), part.type)
+        return str(self.convert(conversion, (data, place)).name)
 
-    def __len__(self) -> int:
-        return self._length
+    def _reach(self, access: rosgraph.WireAccess, data: tuple[Any, str]) -> tuple[Any, str]:
+        value, place = data
+        for step in access.steps:
+            if isinstance(step, rosgraph.IndexStep):
+                elements = _elements(value, place)
+                length = max(elements, default=-1) + 1
+                if step.index >= length:
+                    raise PastEndError(step.index, length)
+                value, place = elements.get(step.index, _ABSENT), f"{place}[{step.index}]"
+            else:
+                name = _field(step)
+                if value is not _ABSENT and not isinstance(value, dict):
+                    raise DataError(f"{place} is {json.dumps(value)}, expected an object with {name}")
+                value, place = _ABSENT if value is _ABSENT else value.get(name, _ABSENT), f"{place}.{name}"
+        return value, place
 
-    def __getitem__(self, index: int) -> Any:
-        return self._elements[index]
-
-
-def _argument(data: Any, reads: Sequence[_Read], place: str) -> Any:
-    """JSON in the shape of data from ROS, as far as it is read; what is left out is as ROS leaves it."""
-    inner: dict[Any, list[_Read]] = {}
-    array = False
-    for steps, kind in reads:
-        if not steps:
-            return _basic(data, kind, place)
-        first, *rest = steps
-        array = isinstance(first, rosgraph.IndexStep)
-        key = first.index if isinstance(first, rosgraph.IndexStep) else _field(first)
-        inner.setdefault(key, []).append((rest, kind))
-    if array:
-        elements = _elements(data, place)
-        length = max(elements, default=-1) + 1
-        read = {index: own for index, own in inner.items() if index < length}
-        return _Array(
-            length,
-            {index: _argument(elements.get(index, _ABSENT), own, f"{place}[{index}]") for index, own in read.items()},
-        )
-    fields = {} if data is _ABSENT or not reads else data
-    if not isinstance(fields, dict):
-        raise DataError(f"{place} is {json.dumps(data)}, expected an object with {next(iter(inner))}")
-    return SimpleNamespace(
-        **{name: _argument(fields.get(name, _ABSENT), own, f"{place}.{name}") for name, own in inner.items()}
-    )
+    def _leaf(self, value: tuple[Any, str], kind: ex.Type | None) -> Any:
+        return super()._leaf(_basic(value[0], kind, value[1]), kind)
 
 
 def _elements(data: Any, place: str) -> dict[int, Any]:
@@ -176,11 +164,6 @@ def _basic(data: Any, kind: ex.Type | None, place: str) -> Any:
     if not isinstance(data, plain) or (isinstance(data, bool) and name in {"an integer", "a number"}):
         raise DataError(f"{place} is {json.dumps(data)}, expected {name}")
     return as_double(data) if isinstance(kind, ex.DoubleType) else data
-
-
-def _reads(conversion: rosgraph.Conversion) -> list[_Read]:
-    parts = (part for rule in conversion.rules for _, part in tree(rule.condition))
-    return [(list(part.steps), part.type) for part in parts if isinstance(part, rosgraph.WireAccess)]
 
 
 def _access(assignment: rosgraph.InputAssignment) -> rosgraph.WireAccess:

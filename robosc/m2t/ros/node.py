@@ -12,9 +12,8 @@ from robosc.m2t.ros.expressions import CppPrinter
 from robosc.m2t.ros.names import CppNames, kept_for
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
-from robosc.semantics.headers import parts_with_headers
+from robosc.semantics.messages import parts_with_headers, reads_elements
 from robosc.semantics.operators import PRECEDENCE
-from robosc.semantics.received import reads_elements
 from robosc.semantics.typing import DOUBLE, infer
 from robosc.semantics.walks import parts
 

@@ -9,7 +9,7 @@ from robosc.m2t.c.comments import string_literal
 from robosc.m2t.ros.expressions import CppPrinter
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
-from robosc.semantics.received import reads_elements
+from robosc.semantics.messages import reads_elements
 from robosc.semantics.walks import parts
 
 if TYPE_CHECKING:

@@ -18,7 +18,7 @@ from robosc.runtime.core.event_log import nested
 from robosc.runtime.core.monitors import GraphMonitor, Watchdog
 from robosc.runtime.core.node_data import NotFiniteError, bounded, fill
 from robosc.runtime.core.settings import SafeMessages, watchdog
-from robosc.semantics.headers import parts_with_headers
+from robosc.semantics.messages import parts_with_headers
 from robosc.semantics.roles import event_name, plant_of
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from robosc.engine import ControlLoop, Hooks
 from robosc.runtime.core.event_log import EventLog, ReceivedData
 from robosc.runtime.core.node_data import NodeData, PastEndError
 from robosc.runtime.core.reports import StateReporter, Throttle
-from robosc.semantics.received import receptions
+from robosc.semantics.messages import receptions
 from robosc.semantics.roles import Roles, event_name
 
 if TYPE_CHECKING:

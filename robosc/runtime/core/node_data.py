@@ -122,9 +122,9 @@ class NodeData:
             case rosgraph.NodeVariableReference():
                 return self.variables[reference.variable]
             case rosgraph.WireAccess():
-                return _typed(_walk(reference, data), reference.type)
+                return self._leaf(self._reach(reference, data), reference.type)
             case rosgraph.ConversionCall():
-                return self.convert(reference.conversion, _walk(reference.argument, data))
+                return self.convert(reference.conversion, self._reach(reference.argument, data))
             case ex.EnumerationLiteralReference():
                 return reference.literal
             case sct.LocationReference():
@@ -132,6 +132,30 @@ class NodeData:
             case sct.VariableReference():
                 return self._variable(reference.variable)
         raise TypeError(f"a ROS graph holds no {type(reference).__name__}")
+
+    def _reach(self, access: rosgraph.WireAccess, data: Message) -> Any:
+        """What an access reads of a message. Raises PastEndError."""
+        reached = data
+        for step in access.steps:
+            if isinstance(step, rosgraph.FieldStep):
+                reached = getattr(reached, step.name)
+            else:
+                assert isinstance(step, rosgraph.IndexStep)
+                if step.index >= len(reached):
+                    raise PastEndError(step.index, len(reached))
+                reached = reached[step.index]
+        return reached
+
+    def _leaf(self, value: Any, kind: ex.Type | None) -> Value:
+        """A value of ROS as one of the model: numpy's scalars and ROS 2's `byte` become plain numbers."""
+        match kind:
+            case ex.IntegerType():
+                return fit(value[0] if isinstance(value, bytes) else int(value))
+            case ex.DoubleType():
+                return as_double(float(value))
+            case ex.BooleanType():
+                return bool(value)
+        return value  # type: ignore[no-any-return]
 
     def _variable(self, variable: sct.DiscreteVariable) -> Value:
         value = self._engine.value(variable)
@@ -146,31 +170,6 @@ def bounded(value: Value, kind: ex.Type) -> Value:
         assert isinstance(value, int)
         return saturate(fit(value), kind.minimum, kind.maximum)
     return value
-
-
-def _walk(access: rosgraph.WireAccess, data: Message) -> Any:
-    reached = data
-    for step in access.steps:
-        if isinstance(step, rosgraph.FieldStep):
-            reached = getattr(reached, step.name)
-        else:
-            assert isinstance(step, rosgraph.IndexStep)
-            if step.index >= len(reached):
-                raise PastEndError(step.index, len(reached))
-            reached = reached[step.index]
-    return reached
-
-
-def _typed(value: Any, kind: ex.Type | None) -> Value:
-    """A value of ROS as one of the model: numpy's scalars and ROS 2's `byte` become plain numbers."""
-    match kind:
-        case ex.IntegerType():
-            return fit(value[0] if isinstance(value, bytes) else int(value))
-        case ex.DoubleType():
-            return as_double(float(value))
-        case ex.BooleanType():
-            return bool(value)
-    return value  # type: ignore[no-any-return]
 
 
 class NotFiniteError(Exception):
