@@ -5,7 +5,7 @@ from __future__ import annotations
 from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
-from robosc.language.grammar import is_reserved
+from robosc.language.grammar import first, is_reserved
 from robosc.language.outline import RULES
 from robosc.language.text import Repair
 from robosc.language.tokens import Kind, Token
@@ -66,19 +66,12 @@ _RULES = {
     "SignedInteger": "a whole number",
     "Double": "a number",
 }
-#: What stands for several words that the grammar wants at once: all of them are replaced where the first ones are met.
+#: What stands for several words that the grammar wants at once, all of which are replaced where the first ones are met.
+#: That is the rule for it, and those words that the grammar always wants together where it wants one.
 _GROUPS = (
-    (
-        "an expression",
-        {"value", "UnreservedName", "!"},
-        {"Double", "Integer", "String", "true", "false", "-", "(", "Function"},
-    ),
-    (
-        "an operator",
-        {"and", "or", "=>"},
-        {"=", "!=", "<", "<=", ">", ">=", "+", "-", "*", "/", "=(?!>)", "-(?!>)"},
-    ),
-    ("a type", {"double", "integer", "none"}, {"boolean", "string", "array", "UnreservedName"}),
+    ("an expression", "Expression", {"value", "UnreservedName", "!"}),
+    ("an operator", "BinaryExpression", {"and", "or", "=>"}),
+    ("a type", "DataType", {"double", "integer", "none"}),
 )
 
 
@@ -93,9 +86,9 @@ def found(token: Token) -> str:
 def expected(wanted: Iterable[str], level: Level | None) -> str:
     """What the grammar wants, as an enumeration; its `end` is the next item of the level."""
     words = list(wanted)
-    for name, core, rest in _GROUPS:
+    for name, rule, core in _GROUPS:
         if core <= set(words):
-            words = [name if each in core else each for each in words if each not in rest]
+            words = [name if word in core else word for word in words if word in core or word not in _alike(rule)]
     if len(words) > 1:
         # That a name may go on is true nearly everywhere and never what is missing.
         words = [each for each in words if each not in {".", "["}]
@@ -109,6 +102,11 @@ def did_you_mean(word: str, known: Iterable[str], *, cutoff: float) -> Repair | 
     """The name of those known that is most like a word; None where none is as like as `cutoff` (from 0 to 1)."""
     close = get_close_matches(word, sorted(set(known)), n=1, cutoff=cutoff)
     return Repair(f"did you mean `{written(close[0])}`?", written(close[0])) if close else None
+
+
+def _alike(rule: str) -> set[str]:
+    """What a text by a rule can begin with, also as symbols that nothing keeps apart from longer ones."""
+    return {spelling for word in first(rule) for spelling in (word, word.partition("(?!")[0])}
 
 
 def enumeration(parts: Iterable[str]) -> str:

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cache
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import arpeggio
 import textx
 
 from robosc.files.resources import locate
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
 
 #: A node of a parse tree: `rule_name`, `position`, `position_end`; a list of nodes, or a word with its `value`.
 Node = Any
@@ -33,7 +36,7 @@ def parse(text: str, rule: str) -> Node | Failure:
     """The parse tree of a whole text by a rule of the grammar, or where the text fails."""
     parser = language()._parser_blueprint.clone()  # noqa: SLF001 - what model_from_str does before it links
     parser.parser_model = arpeggio.Sequence(
-        nodes=[language()[rule]._tx_peg_rule, arpeggio.EOF()],  # noqa: SLF001
+        nodes=[_peg(rule), arpeggio.EOF()],
         rule_name="Model",
         root=True,
     )
@@ -43,13 +46,112 @@ def parse(text: str, rule: str) -> Node | Failure:
         failed = fault.__cause__
         assert isinstance(failed, arpeggio.NoMatch)
         return Failure(
-            failed.position, tuple(dict.fromkeys(each for each in map(_wanted, failed.rules) if each != "Comment"))
+            failed.position, tuple(dict.fromkeys(word for word in map(_wanted, failed.rules) if word != "Comment"))
         )
+
+
+def first(rule: str) -> frozenset[str]:
+    """What a text by a rule of the grammar can begin with: words and symbols of the language, or rules for words."""
+    return frozenset(_facts()[id(_peg(rule))].first)
+
+
+def first_words(*rules: str) -> frozenset[str]:
+    """The keywords that a text by one of these rules can begin with, where it does not begin with an expression."""
+    words = frozenset().union(*map(first, rules))
+    return frozenset(word for word in words - first("Expression") if word.isalpha() and word.islower())
+
+
+@cache
+def following() -> Mapping[str, frozenset[str]]:
+    """What can follow a word or symbol within the same item, by the word; the next item of a list is left out."""
+    facts, found = _facts(), dict[str, set[str]]()
+    for node in _nodes().values():
+        in_order = isinstance(node, arpeggio.Sequence) and not isinstance(node, arpeggio.OrderedChoice)
+        if not in_order and not isinstance(node, arpeggio.UnorderedGroup):
+            continue
+        for index, part in enumerate(node.nodes):
+            for other in node.nodes[index + 1 :] if in_order else node.nodes:
+                for word in facts[id(part)].last if other is not part else ():
+                    found.setdefault(word, set()).update(facts[id(other)].first)
+                if in_order and not facts[id(other)].nullable:
+                    break
+    return {word: frozenset(others) for word, others in found.items()}
+
+
+def words_of(rule: str) -> frozenset[str]:
+    """All words and symbols that a text by a rule can have, and the rules for other words."""
+    return frozenset(_wanted(node) for node in _nodes(rule).values() if isinstance(node, arpeggio.Match))
+
+
+@dataclass
+class _Facts:
+    """Of a part of the grammar: whether it may be empty, and what a text by it can begin and end with."""
+
+    nullable: bool = False
+    first: set[str] = field(default_factory=set)
+    last: set[str] = field(default_factory=set)
+
+
+def _peg(rule: str) -> Any:
+    return language()[rule]._tx_peg_rule  # noqa: SLF001
+
+
+@cache
+def _nodes(rule: str = "Base") -> Mapping[int, Any]:
+    """The parts that a rule of the grammar is made of, by their identity."""
+    found: dict[int, Any] = {}
+    pending = [_peg(rule)]
+    while pending:
+        node = pending.pop()
+        if id(node) not in found:
+            found[id(node)] = node
+            pending += node.nodes
+    return found
+
+
+@cache
+def _facts() -> Mapping[int, _Facts]:
+    """The facts of all parts of the grammar: the least fixed point, as rules refer to each other."""
+    facts = {identity: _Facts() for identity in _nodes()}
+    changed = True
+    while changed:
+        changed = False
+        for identity, node in _nodes().items():
+            before = facts[identity]
+            after = _fact(node, facts)
+            changed = changed or before != after
+            facts[identity] = after
+    return facts
+
+
+def _fact(node: Any, facts: Mapping[int, _Facts]) -> _Facts:
+    if isinstance(node, arpeggio.Match):
+        return _Facts(False, {_wanted(node)}, {_wanted(node)})
+    if isinstance(node, arpeggio.SyntaxPredicate):
+        return _Facts(True)
+    parts = [facts[id(part)] for part in node.nodes]
+    nullable = all(part.nullable for part in parts)
+    if isinstance(node, arpeggio.OrderedChoice):
+        nullable = any(part.nullable for part in parts)
+    if isinstance(node, arpeggio.OrderedChoice | arpeggio.UnorderedGroup):
+        return _Facts(
+            nullable, set().union(*(part.first for part in parts)), set().union(*(part.last for part in parts))
+        )
+    found = _Facts(nullable or isinstance(node, arpeggio.Optional | arpeggio.ZeroOrMore))
+    for part in parts:
+        found.first |= part.first
+        if not part.nullable:
+            break
+    for part in reversed(parts):
+        found.last |= part.last
+        if not part.nullable:
+            break
+    return found
 
 
 def is_reserved(word: str) -> bool:
     """Whether a word is a keyword, so that it needs a `^` where it could be one."""
-    return language()["UnreservedName"]._tx_peg_rule.regex.match(word) is None  # noqa: SLF001
+    return _peg("UnreservedName").regex.match(word) is None
 
 
 def attribute(node: Node) -> str | None:

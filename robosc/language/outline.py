@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
-from robosc.language.grammar import is_reserved
+from robosc.language.grammar import first, first_words, following, is_reserved
 from robosc.language.tokens import Kind, Token
 from robosc.language.unread import Declared
 
@@ -42,44 +42,49 @@ class Level:
 
 
 PROPERTIES = Level("ObjectProperty", "property")
-RULES = Level("EnumRule", "rule", frozenset({"default"}))
-TRANSITIONS = Level("Transition", "transition", frozenset({"on", "transition"}))
+RULES = Level("EnumRule", "rule", first_words("EnumRule"))
+TRANSITIONS = Level("Transition", "transition", first_words("Transition"))
 AUTOMATON = Level(
     "AutomatonDefinition",
     "variable, state or transition",
-    frozenset({"variable", "initial", "marked", "state", "on", "transition"}),
-    {"initial": TRANSITIONS, "marked": TRANSITIONS, "state": TRANSITIONS},
+    first_words("AutomatonDefinition"),
+    dict.fromkeys(first_words("State"), TRANSITIONS),
     unknown=TRANSITIONS,
 )
 COMPONENT = Level(
     "ComponentDefinition",
     "message, service, action or behaviour",
-    frozenset({"incoming", "outgoing", "message", "service", "action", "behaviour"}),
-    {"behaviour": AUTOMATON},
+    # Where a message's direction is missing, the next word shows what it is.
+    first_words("ComponentDefinition") | {"message"},
+    dict.fromkeys(first_words("ComponentBehaviour"), AUTOMATON),
     unknown=AUTOMATON,
 )
 _DATA_TYPES = {"object": PROPERTIES, "enum": RULES}
 DEFINITIONS = Level(
     "Definition",
     "definition",
-    frozenset({"interface", "component", "datatype", "requirement", "provide"}),
-    {"component": COMPONENT},
+    first_words("Definition"),
+    dict.fromkeys(first_words("Component"), COMPONENT),
     unknown=COMPONENT,
 )
 #: What an item declares, by the keyword that it begins with.
 DECLARED = {
-    "component": Declared.COMPONENT,
-    "interface": Declared.INTERFACE,
-    "datatype": Declared.DATA_TYPE,
-    **dict.fromkeys(("incoming", "outgoing", "message", "service", "action"), Declared.COMMUNICATION),
-    **dict.fromkeys(("variable", "initial", "marked", "state"), Declared.MEMBER),
+    **dict.fromkeys(first_words("Component"), Declared.COMPONENT),
+    **dict.fromkeys(first_words("Interface"), Declared.INTERFACE),
+    **dict.fromkeys(first_words("ComplexDataType"), Declared.DATA_TYPE),
+    **dict.fromkeys(first_words("CommunicationType") | {"message"}, Declared.COMMUNICATION),
+    **dict.fromkeys(first_words("Variable", "State"), Declared.MEMBER),
 }
-#: Keywords that begin an item together with the one before them.
-_CONTINUED = {"message": ("incoming", "outgoing")} | dict.fromkeys(
-    ("state", "initial", "marked"), ("initial", "marked")
-)
+_STARTERS = frozenset().union(*(level.starters for level in (RULES, AUTOMATON, COMPONENT, DEFINITIONS)))
+#: Keywords that begin an item together with one of those before them.
+_CONTINUED = {word: tuple(before for before in _STARTERS if word in following()[before]) for word in _STARTERS}
 #: Keywords and braces that follow the one that an item begins with.
-_SECOND = {"message", "object", "enum", "initial", "marked", "state", "{"}
+_SECOND = {
+    word
+    for starter in _STARTERS
+    for word in following()[starter] - first("Expression")
+    if word == "{" or (word.isalpha() and word.islower())
+}
 
 
 @dataclass(frozen=True)

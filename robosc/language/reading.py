@@ -16,7 +16,6 @@ from robosc.language.scopes import File
 from robosc.language.text import Documents, Repair, decode
 from robosc.metamodel import robosc as rsc
 from robosc.ros_types import RosTypes
-from robosc.semantics.recursion import deep_recursion
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -45,7 +44,6 @@ class Reading:
         return {path: file.text.content for path, file in self.files.items()}
 
 
-@deep_recursion()
 def read(
     path: Path | str,
     library_paths: Iterable[Path | str] = (),

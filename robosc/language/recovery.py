@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from robosc.language.building import Builder
 from robosc.language.explaining import expected, found, hint
-from robosc.language.grammar import Failure, is_reserved, parse
+from robosc.language.grammar import Failure, first_words, is_reserved, parse
 from robosc.language.outline import DECLARED, DEFINITIONS, PROPERTIES, RULES, Block, Brace, Outline
 from robosc.language.text import Repair
 from robosc.language.tokens import Kind, Token, Tokens, too_complex
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from robosc.metamodel import robosc as rsc
 
 #: Items that begin with these declare nothing that another place could name.
-_DECLARING_NOTHING = ("requirement", "provide", "on", "transition")
+_DECLARING_NOTHING = first_words("Requirement", "ProvideStatement", "Transition")
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,8 @@ from enum import Enum, auto
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
+from robosc.language.grammar import first, first_words, following, words_of
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
@@ -24,10 +26,7 @@ _TOKEN = re.compile(
 )
 
 #: After these only a name can stand, so that what looks like a keyword is one.
-BEFORE_NAMES = frozenset(
-    {"robot", "library", "component", "message", "service", "action", "state", "variable"}
-    | {"interface", "object", "enum", "goto", "->"}
-)
+_BEFORE_NAMES = tuple(word for word, others in following().items() if others == {"Name"})
 
 
 class Kind(Enum):
@@ -96,7 +95,7 @@ def _tokens(text: str) -> Iterator[Token]:
         if found.lastgroup is None:
             continue
         kind, word = _KINDS[found.lastgroup], found.group()
-        is_name = kind is Kind.WORD and (word.startswith("^") or previous.is_keyword(*BEFORE_NAMES))
+        is_name = kind is Kind.WORD and (word.startswith("^") or previous.is_keyword(*_BEFORE_NAMES))
         is_first = "\n" in text[previous.end : found.start()]
         previous = Token(kind, word, found.start(), found.end(), is_name, is_first)
         yield previous
@@ -108,9 +107,10 @@ def _tokens(text: str) -> Iterator[Token]:
 #: follows it by recursion (`robosc.semantics.recursion` says how far that goes).
 DEEPEST = 50
 LONGEST = 5000
-_STARTERS = ("requirement", "provide", "component", "datatype", "state", "on", "transition")
-_BETWEEN_EXPRESSIONS = (*_STARTERS, "{", "}", "->", ":", ":=", ",", "needs", "disables", "if", "do")
-_OPERATORS = ("=>", "or", "and", "=", "!=", "<", "<=", ">", ">=", "+", "-", "*", "/")
+_STARTERS = first_words("Definition", "ComponentDefinition", "AutomatonDefinition")
+_OPERATORS = frozenset(word.partition("(")[0] for word in first("BinaryExpression"))
+#: No expression goes on behind these.
+_BETWEEN_EXPRESSIONS = frozenset(following()) - words_of("Expression") - _OPERATORS
 
 
 def too_complex(tokens: Tokens, first: int = 0, after: int | None = None) -> tuple[int, str] | None:
@@ -128,13 +128,13 @@ def too_complex(tokens: Tokens, first: int = 0, after: int | None = None) -> tup
             signs = 0
             if token.is_keyword(")", "]", "}") and around:
                 around.pop()
-            elif token.is_keyword(*_STARTERS):
+            elif token.text in _STARTERS and token.is_keyword(token.text):
                 around.clear()  # A brace that is missing before makes nothing after it deep.
         if len(around) > DEEPEST or sum(around) + signs > DEEPEST:
             return index, f"this is nested more than {DEEPEST} levels deep"
-        if token.is_keyword(*_BETWEEN_EXPRESSIONS):
+        if token.text in _BETWEEN_EXPRESSIONS and token.is_keyword(token.text):
             operators = 0
-        elif token.is_keyword(*_OPERATORS):
+        elif token.text in _OPERATORS and token.is_keyword(token.text):
             operators += 1
             if operators > LONGEST:
                 return index, f"this expression has more than {LONGEST} operators"

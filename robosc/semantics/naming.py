@@ -6,19 +6,15 @@ import re
 from collections.abc import Set
 from typing import TYPE_CHECKING
 
+from robosc.files.resources import locate
+
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable
 
     from robosc.metamodel import expression as ex
 
 #: The words of RoboSC that a name in an expression has a `^` before.
-ROBOSC_KEYWORDS = frozenset(
-    {"action", "and", "array", "behaviour", "boolean", "cancel", "component", "datatype", "default", "disables", "do"}
-    | {"double", "enum", "error", "false", "feedback", "from", "goto", "identifier", "if", "import", "incoming"}
-    | {"initial", "integer", "interface", "library", "links", "marked", "message", "needs", "none", "object", "on"}
-    | {"or", "outgoing", "provide", "request", "requirement", "response", "robot", "service", "state", "string", "to"}
-    | {"transition", "true", "type", "use", "value", "variable", "with"}
-)
+ROBOSC_KEYWORDS = frozenset(re.findall(r"'([a-z]+)'", locate("grammar/robosc.tx").read_text(encoding="utf-8")))
 _WORD = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
 
 

@@ -7,7 +7,7 @@ import pytest
 
 from robosc.files.resources import locate
 from robosc.language.building import element_class
-from robosc.language.grammar import is_reserved, language
+from robosc.language.grammar import first, first_words, following, is_reserved, language
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
 from robosc.semantics.naming import ROBOSC_KEYWORDS
@@ -111,3 +111,19 @@ def test_every_word_of_the_grammar_is_reserved_and_no_other() -> None:
     assert words == ROBOSC_KEYWORDS
     assert {each for each in words if not is_reserved(each)} == set()
     assert not any(is_reserved(each) for each in ("continue", "states", "valued", "^state", "Robot"))
+
+
+def test_what_a_rule_begins_with() -> None:
+    assert first_words("State", "Variable") == {"initial", "marked", "state", "variable"}
+    assert first_words("Requirement") == {"requirement"}  # not the words of its expression
+    assert first("TopicRemapping") == {"Name"}
+    assert {"array", "UnreservedName"} <= first("DataType")
+    assert "true" in first("Expression")
+
+
+def test_what_follows_a_word() -> None:
+    assert following()["datatype"] == {"enum", "object"}
+    assert following()["initial"] == {"marked", "state"}
+    assert following()["incoming"] == {"message"}
+    assert following()["goto"] == {"Name"}
+    assert "on" not in following()["transition"]  # which would be the next transition
