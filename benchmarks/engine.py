@@ -24,7 +24,7 @@ sys.path.insert(0, str(ROOT))
 import robosc  # noqa: E402
 from benchmarks.engine_costs import measured  # noqa: E402
 from benchmarks.families import FAMILIES  # noqa: E402
-from robosc.m2t.c.behaviour import SMALL  # noqa: E402
+from robosc.m2m.sct_to_engine import POLLED  # noqa: E402
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -78,7 +78,7 @@ def page(results: Results) -> str:
     text = (ROOT / "benchmarks" / "engine_page.md").read_text()
     examples, families = results["examples"], results["families"]
     return text.format(
-        small=SMALL,
+        small=POLLED,
         instructions=_instructions(examples),
         bytes=_bytes(examples),
         families=_instructions(families),

@@ -12,9 +12,9 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from robosc.configuration import ControlLoop
+from robosc.m2m.sct_to_engine.intervals import interval_of
 from robosc.m2t.c import engine
 from robosc.m2t.c.names import CNames
-from robosc.m2t.c.types import interval_of
 from robosc.semantics.roles import Roles
 
 if TYPE_CHECKING:

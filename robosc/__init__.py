@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from robosc.diagnostics import Diagnostic, ModelError
     from robosc.m2m.trace import Trace
     from robosc.m2t.models import Models
+    from robosc.metamodel.engine import EngineModel
     from robosc.metamodel.robosc import Base, Robot
     from robosc.metamodel.rosgraph import RosGraph
     from robosc.metamodel.sct import Supervisor, SupervisoryControlModel
@@ -42,6 +43,7 @@ __all__ = [
     "generate",
     "load",
     "synthesize",
+    "to_engine",
     "to_rosgraph",
     "to_sct",
 ]
@@ -169,6 +171,16 @@ def synthesize(model: SupervisoryControlModel) -> Supervisor:
     supervisor = supervision.synthesis.supervisor
     assert supervisor is not None
     return supervisor
+
+
+def to_engine(model: SupervisoryControlModel) -> EngineModel:
+    """What a controller executes: guards, effects and the order of events of a model with its supervisor.
+
+    Its classes are described in `metamodel/engine.ecore`. Raises ValueError where the model has no supervisor.
+    """
+    from robosc.m2m.sct_to_engine import transform
+
+    return transform(model)
 
 
 def generate(

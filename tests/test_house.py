@@ -39,6 +39,8 @@ ALLOWED = {
     "simulation": {"engine", "runtime"},
     "cli": ROOMS - {"__main__"},
 }
+#: What executes a model, or generates what does, and so begins with making an engine model.
+EXECUTING = {"engine", "m2t"}
 #: Pieces that generators share, each with what it may use of the others.
 SHARED = {
     "models": set(),
@@ -106,6 +108,8 @@ def room(parts: tuple[str, ...]) -> str:
 def may(importer: tuple[str, ...], imported: tuple[str, ...]) -> bool:
     """Whether one module of the house may import another."""
     here, there = room(importer), room(imported)
+    if imported[:2] == ("m2m", "sct_to_engine"):
+        return here in EXECUTING | {"m2m", "", "cli"}
     if here == there == "m2t":
         ours, theirs = ("".join(parts[1:2]) for parts in (importer, imported))
         return ours == theirs or (theirs in SHARED and theirs in SHARED.get(ours, SHARED))

@@ -11,8 +11,8 @@ from robosc.cli import CallError
 from robosc.language import read as read_text
 from robosc.language.libraries import search_folders
 from robosc.m2t.models import Models
+from robosc.metamodel import engine, rosgraph, sct
 from robosc.metamodel import robosc as rsc
-from robosc.metamodel import rosgraph, sct
 from robosc.ros_types import RosTypes
 
 if TYPE_CHECKING:
@@ -35,9 +35,11 @@ def read(path: str, library_paths: Sequence[str], report: Report, interface_path
 
         texts: dict[str, str] = {}
         try:
-            root: Root | None = xmi.load(path, texts, _Sources(path, library_paths, report).locate)
+            root: Root | engine.EngineModel | None = xmi.load(path, texts, _Sources(path, library_paths, report).locate)
         finally:
             report.add((), texts)
+        if isinstance(root, engine.EngineModel):
+            root = root.model  # From which it is made again.
         findings = []
     else:
         reading = read_text(path, library_paths, interfaces)

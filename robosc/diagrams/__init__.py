@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 __all__ = ["behaviour_graph", "diagram", "metamodel_diagram", "plants_graph", "ros_graph"]
 
-METAMODELS = ("robosc", "sct", "rosgraph", "expression")
+METAMODELS = ("robosc", "sct", "rosgraph", "engine", "expression")
 NOTATIONS = ("mermaid", "plantuml", "svg")
 GRAPH_NOTATIONS = {"mermaid": notations.mermaid, "dot": notations.dot, "svg": notations.svg}
 

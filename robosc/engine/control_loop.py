@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from robosc.engine.interpreter import Engine
-from robosc.semantics.roles import event_name, plant_of
+from robosc.metamodel import engine
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Mapping, Sequence
+    from collections.abc import Callable, Collection, Mapping
 
     from robosc.engine.state import State, Value
     from robosc.metamodel import sct
@@ -56,29 +56,36 @@ class ControlLoop:
         self.engine = Engine(model)
         self.settings = settings or Settings()
         self.hooks = hooks or Hooks()
-        roles = self.engine.roles
-        self._cancels = [event_name(each) for each in roles.cancels]
-        self._triggers = [event_name(each) for each in roles.triggers]
-        self._silent = [event_name(each) for each in roles.silent]
-        self._data = [_places(events) for events in roles.data]
-        self._bound = roles.settling_bound
-        self._data_plants = {event_name(event): plant for event, plant in roles.data_plants.items()}
-        self._topics = {
-            event_name(event): number for number, events in enumerate(roles.shared_topics) for event in events
+        executed = self.engine.executed
+        self._cancels = [event.name for event in executed.events if event.role == engine.Role.cancel]
+        self._triggers = [event.name for event in executed.events if event.role == engine.Role.trigger]
+        self._silent = {
+            event.name: position
+            for position, event in enumerate(event for event in executed.events if event.role == engine.Role.silent)
         }
-        self._sources = {
-            event_name(event): number for number, events in enumerate(roles.sources, 1) for event in events
+        self._own = {*self._cancels, *self._triggers, *self._silent}
+        self._choices = [
+            [(alternative.event.name, self._chosen(alternative)) for alternative in choice.alternatives]
+            for choice in executed.choices
+        ]
+        self._bound = executed.settlingBound
+        self._data = {
+            event.name: event.choice.variable
+            for event in executed.events
+            if event.choice is not None and event.choice.variable is not None
         }
-        self._once_per_tick = {event_name(each) for each in roles.once_per_tick}
+        self._groups = {event.name: event.group for event in executed.events if event.group is not None}
+        numbers = {source: number for number, source in enumerate(executed.sources, 1)}
+        self._sources = {event.name: numbers[event.source] for event in executed.events if event.source is not None}
         self._next_silent = 0
         self._rested = False
         self._livelocked = False
         self._ticked = False
-        self._reactions = [0] * (len(roles.sources) + 1)
+        self._reactions = [0] * (len(executed.sources) + 1)
         self._source = 0
         self._owed: set[str] = set()
-        self._sent_to: set[int] = set()
-        self._started: set[str] = set()
+        #: The groups of which an event has run.
+        self._taken: set[engine.Group] = set()
         self._enabled_before: set[str] = set()
         self._data_before: dict[str, int] = {}
         self._state_before = self.engine.state
@@ -106,7 +113,7 @@ class ControlLoop:
         self._settle()
         self._source = 0
         self._state_before = self.engine.state
-        self._enabled_before = {each for each in self._queued() if self.engine.enabled(each)}
+        self._enabled_before = {event for event in self._queued() if self.engine.enabled(event)}
         self._data_before = self._data_locations()
 
     def end(self) -> None:
@@ -119,7 +126,7 @@ class ControlLoop:
             if self._owed and self.engine.state == self._state_before:
                 return
             self._owed.update(self._candidates())
-            self._sent_to.clear()
+            self._taken = {group for group in self._taken if group.span != engine.Span.round}
             left = self._serve(self._owed, self._reactions[self._source])
             self._reactions[self._source] = left
             if left:
@@ -130,8 +137,7 @@ class ControlLoop:
         self._ticked = True
         self._reactions = [self.settings.reactions_per_tick] * len(self._reactions)
         self._owed.clear()
-        self._sent_to.clear()
-        self._started.clear()
+        self._taken.clear()
         self._settle()
         self._serve(self._queued(), self.settings.events_per_tick or len(self._queued()))
 
@@ -147,10 +153,10 @@ class ControlLoop:
         """What is enabled now and was not before the batch, or has other data."""
         data = self._data_locations()
         return [
-            each
-            for each in self._queued()
-            if self.engine.enabled(each)
-            and (each not in self._enabled_before or data.get(each) != self._data_before.get(each))
+            event
+            for event in self._queued()
+            if self.engine.enabled(event)
+            and (event not in self._enabled_before or data.get(event) != self._data_before.get(event))
         ]
 
     def _serve(self, due: Collection[str], most: int) -> int:
@@ -159,21 +165,17 @@ class ControlLoop:
         The model has settled whenever one is asked.
         """
         for queue in (self._cancels, self._triggers):
-            for event in [each for each in queue if each in due]:
+            for event in [event for event in queue if event in due]:
                 if most == 0:
                     break
-                if self._free(event) and self.engine.enabled(event) and self._run(event):
+                if self._groups.get(event) not in self._taken and self.engine.enabled(event) and self._run(event):
                     self._settle()
                     most -= 1
         return most
 
-    def _free(self, event: str) -> bool:
-        return event not in self._started and self._topics.get(event) not in self._sent_to
-
     def _run(self, event: str) -> bool:
         """Lets an enabled event happen, unless the caller withholds it."""
-        own = event in self._cancels or event in self._triggers or event in self._silent
-        if self.hooks.before is not None and not self.hooks.before(event) and own:
+        if self.hooks.before is not None and not self.hooks.before(event) and event in self._own:
             return False
         self.engine.perform(event)
         self._rested = False
@@ -182,10 +184,8 @@ class ControlLoop:
             if event in queue:
                 queue.remove(event)
                 queue.append(event)
-        if event in self._topics:
-            self._sent_to.add(self._topics[event])
-        if event in self._once_per_tick:
-            self._started.add(event)
+        if event in self._groups:
+            self._taken.add(self._groups[event])
         if self.hooks.after is not None:
             self.hooks.after(event)
         return True
@@ -194,7 +194,8 @@ class ControlLoop:
         left = self._bound
         while not self._rested:
             self._provide()
-            ahead = self._silent[self._next_silent :] + self._silent[: self._next_silent]
+            silent = list(self._silent)
+            ahead = silent[self._next_silent :] + silent[: self._next_silent]
             ran = withheld = False
             for event in ahead:
                 if self.engine.enabled(event):
@@ -206,7 +207,7 @@ class ControlLoop:
                     ran = self._run(event)
                     withheld = withheld or not ran
                 if ran:
-                    self._next_silent = (self._silent.index(event) + 1) % len(self._silent)
+                    self._next_silent = (self._silent[event] + 1) % len(self._silent)
                     left -= 1
                     break
             else:
@@ -216,40 +217,14 @@ class ControlLoop:
                 self._rested = True
 
     def _provide(self) -> None:
-        """Moves each data plant to the first of its locations whose condition holds."""
-        for events in self._data:
-            chosen = next(((event, places) for event, places in events if self.engine.enabled(event)), None)
-            if chosen is not None:
-                event, places = chosen
-                location = self.engine.location(places.plant)
-                if places.target(location) != location:
-                    self._run(event)
+        """Chooses the data to send: for each choice the first alternative whose event is enabled."""
+        for alternatives in self._choices:
+            event, chosen = next((one for one in alternatives if self.engine.enabled(one[0])), ("", None))
+            if event and not (chosen is not None and chosen()):
+                self._run(event)
+
+    def _chosen(self, alternative: engine.Alternative) -> Callable[[], bool] | None:
+        return None if alternative.chosen is None else self.engine.condition(alternative.chosen)
 
     def _data_locations(self) -> dict[str, int]:
-        return {event: self.engine.location(plant) for event, plant in self._data_plants.items()}
-
-
-@dataclass(frozen=True)
-class _Places:
-    """Where a data event leads its plant: from everywhere to one location, else by the location that it is in."""
-
-    plant: sct.Plant
-    everywhere: int | None
-    targets: Mapping[int, int]
-
-    def target(self, location: int) -> int | None:
-        """The location after the event in a location."""
-        return self.targets.get(location) if self.everywhere is None else self.everywhere
-
-
-def _places(events: Sequence[sct.Event]) -> list[tuple[str, _Places]]:
-    """The data events of one plant by name."""
-    plant = plant_of(events[0])
-    numbers = {location: number for number, location in enumerate(plant.locations)}
-    everywhere = {edge.event: numbers[edge.target] for edge in plant.edges}
-    targets: dict[sct.Event, dict[int, int]] = {event: {} for event in events}
-    for location, number in numbers.items():
-        for edge in location.edges:
-            if edge.event in targets:
-                targets[edge.event][number] = numbers[edge.target]
-    return [(event_name(event), _Places(plant, everywhere.get(event), targets[event])) for event in events]
+        return {event: self.engine.cell(variable) for event, variable in self._data.items()}

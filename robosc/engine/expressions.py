@@ -1,55 +1,133 @@
-"""Expressions of an sct model as Python functions, made once."""
+"""Expressions of an engine model as Python functions, made once."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 
+from robosc.metamodel import engine
 from robosc.metamodel import expression as ex
-from robosc.metamodel import sct
-from robosc.semantics.evaluation import Program
-from robosc.semantics.operators import operator_of
-from robosc.semantics.walks import parts
+from robosc.semantics.operators import BY_CLASS, FUNCTIONS
+from robosc.semantics.walks import operands
 
 #: The value of an expression, given the cells of a state and the inputs: an integer; false and true are 0 and 1.
 Function = Callable[[Sequence[int], Sequence[int]], int]
 
+#: How many functions may call each other until a value is computed beforehand instead.
+_DEEPEST = 100
+
 
 class Compiler:
-    """Makes functions of expressions over these cells and inputs, each given by its position."""
+    """Makes functions of the expressions of one model, whose variables and inputs are the cells and inputs."""
 
-    def __init__(self, cells: Mapping[sct.Plant | sct.DiscreteVariable, int], inputs: Mapping[sct.Input, int]) -> None:
-        self._cells = cells
-        self._inputs = inputs
+    def __init__(self, model: engine.EngineModel) -> None:
+        self._cells = {variable: position for position, variable in enumerate(model.variables)}
+        self._inputs = {declared: position for position, declared in enumerate(model.inputs)}
+        named: list[Sequence[ex.NamedElement]] = [owner.literals for owner in model.model.enumerations]
+        named += [plant.locations for plant in model.model.plants]
+        self._literals = {value: position for values in named for position, value in enumerate(values)}
 
     def __call__(self, expression: ex.Expression) -> Function:
-        """The function of an expression. Raises ValueError for what no sct model holds: doubles, strings, division."""
-        for part in parts(expression):
-            row = operator_of(part)
-            if isinstance(part, (ex.DoubleLiteral, ex.StringLiteral)) or (row is not None and row.interval is None):
-                raise ValueError(f"an sct model holds no {type(part).__name__}")
-        return Program[int](expression, self._atom)
+        """The function of an expression."""
+        made: list[tuple[Function, int]] = []
+        beforehand: list[Function] = []
+        pending: list[tuple[ex.Expression, int]] = [(expression, -1)]
+        while pending:
+            node, count = pending.pop()
+            if count < 0:
+                inside = operands_of(node)
+                pending.append((node, len(inside)))
+                pending += [(part, -1) for part in reversed(inside)]
+                continue
+            parts = made[len(made) - count :]
+            del made[len(made) - count :]
+            function = self._function(node, [part for part, _ in parts])
+            depth = 1 + max((inner for _, inner in parts), default=0)
+            if depth > _DEEPEST:
+                beforehand.append(function)
+                function, depth = _input(len(self._inputs) + len(beforehand) - 1), 1
+            made.append((function, depth))
+        return _with_values(made[0][0], beforehand) if beforehand else made[0][0]
 
-    def _atom(self, expression: ex.Expression) -> Function:
-        match expression:
-            case ex.EnumerationLiteralReference():
-                return _constant(expression.literal.eContainer().literals.index(expression.literal))
-            case sct.VariableReference():
-                position = self._cells[expression.variable]
+    def _function(self, node: ex.Expression, parts: Sequence[Function]) -> Function:
+        match node:
+            case ex.BinaryExpression():
+                left, right = parts
+                compute = BY_CLASS[type(node)].compute
+                return lambda cells, inputs: compute(left(cells, inputs), right(cells, inputs))
+            case engine.And():
+                return _first(parts, 0)
+            case engine.Or():
+                return _first(parts, 1)
+            case ex.FunctionCall():
+                call = FUNCTIONS[node.function].compute
+                return lambda cells, inputs: call(*[part(cells, inputs) for part in parts])
+            case ex.Negation():
+                return lambda cells, inputs: not parts[0](cells, inputs)
+            case ex.UnaryMinus():
+                return lambda cells, inputs: -parts[0](cells, inputs)
+            case engine.Saturation():
+                low, high = node.minimum, node.maximum
+                return lambda cells, inputs: min(max(parts[0](cells, inputs), low), high)
+            case engine.Conversion() | engine.ConditionReference():
+                return parts[0]
+            case ex.Conditional():
+                condition, then, otherwise = parts
+                return lambda cells, inputs: (then if condition(cells, inputs) else otherwise)(cells, inputs)
+        return self._leaf(node)
+
+    def _leaf(self, node: ex.Expression) -> Function:
+        match node:
+            case engine.VariableReference():
+                position = self._cells[node.variable]
                 return lambda cells, _: cells[position]
-            case sct.InputReference():
-                position = self._inputs[expression.input]
-                return lambda _, inputs: inputs[position]
-            case sct.LocationReference():
-                return self._location(expression.location)
-        raise ValueError(f"an sct model holds no {type(expression).__name__}")
+            case engine.InputReference():
+                return _input(self._inputs[node.input])
+            case ex.EnumerationLiteralReference():
+                return _constant(self._literals[node.literal])
+            case engine.LocationLiteral():
+                return _constant(self._literals[node.location])
+            case ex.BooleanLiteral() | ex.IntegerLiteral():
+                return _constant(int(node.value))
+        raise ValueError(f"an engine model holds no {type(node).__name__}")
 
-    def _location(self, location: sct.Location) -> Function:
-        plant: sct.Plant = location.eContainer()
-        if plant not in self._cells:
-            return _constant(1)  # The only location.
-        position, value = self._cells[plant], plant.locations.index(location)
-        return lambda cells, _: cells[position] == value
+
+def operands_of(node: ex.Expression) -> Sequence[ex.Expression]:
+    """What an expression of an engine model is made of, from left to right; of a shared condition its value."""
+    match node:
+        case engine.And() | engine.Or():
+            return list(node.operands)
+        case engine.ConditionReference():
+            return (node.condition.value,)
+    return operands(node)
+
+
+def _first(parts: Sequence[Function], deciding: int) -> Function:
+    """Whether a part has the deciding value: then that, else the other."""
+
+    def decide(cells: Sequence[int], inputs: Sequence[int]) -> int:
+        for part in parts:
+            if part(cells, inputs) == deciding:
+                return deciding
+        return 1 - deciding
+
+    return decide
+
+
+def _input(position: int) -> Function:
+    return lambda _, inputs: inputs[position]
 
 
 def _constant(value: int) -> Function:
     return lambda _cells, _inputs: value
+
+
+def _with_values(function: Function, beforehand: Sequence[Function]) -> Function:
+    """The function, for which these values, in this order, are computed first and stand behind the inputs."""
+
+    def whole(cells: Sequence[int], inputs: Sequence[int]) -> int:
+        values = list(inputs)
+        for compute in beforehand:
+            values.append(compute(cells, values))
+        return function(cells, values)
+
+    return whole

@@ -1,20 +1,21 @@
-"""Executes single events of an sct model under its supervisor."""
+"""Executes single events of an engine model."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
 from enum import StrEnum
 from typing import TYPE_CHECKING
 
 from robosc.engine.expressions import Compiler, Function
 from robosc.engine.state import Domain, Layout, State, Value
-from robosc.metamodel import sct
+from robosc.m2m.sct_to_engine import transform
+from robosc.metamodel import engine, sct
+from robosc.metamodel import expression as ex
+from robosc.semantics.evaluation import evaluate
 from robosc.semantics.roles import Roles, event_name
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
-
-    from robosc.metamodel import expression as ex
 
 
 class Blocked(StrEnum):
@@ -25,65 +26,38 @@ class Blocked(StrEnum):
     SYNTHESIS = "synthesis"
 
 
-@dataclass(frozen=True)
-class _Update:
-    cell: int
-    value: Function
-    domain: Domain
-
-
-@dataclass(frozen=True)
-class _Edge:
-    guard: Function | None
-    updates: tuple[_Update, ...]
-    target: int
-
-
-@dataclass(frozen=True)
-class _Participation:
-    """How one plant takes part in an event: an edge or nothing for each location; `cell` holds the location.
-
-    One edge alone is that of every location.
-    """
-
-    cell: int | None
-    edges: tuple[_Edge | None, ...]
-
-    def edge(self, cells: tuple[int, ...]) -> _Edge | None:
-        return self.edges[0 if self.cell is None or len(self.edges) == 1 else cells[self.cell]]
-
-
-@dataclass(frozen=True)
-class _Event:
-    plants: tuple[_Participation, ...]
-    requirement: Function | None
-    synthesis: Function | None
-    inputs: Mapping[str, tuple[int, Domain]]
+#: Writes the values after an event into the last list, given cells and inputs before it.
+_Step = Callable[[Sequence[int], Sequence[int], list[int]], None]
 
 
 class Engine:
     """A model in some state, at first its initial one.
 
-    Events are named with their plant (`message_move.c_trigger`). An event happens where every plant that has it on an
-    edge has one from its location with a true guard, and the supervisor's guard holds; all updates are made at once,
-    from the values before, and saturate. Raises ValueError where the model has no supervisor or one without a guard
-    for a controllable event; a KeyError means that there is no event or input of that name.
+    Events are named with their plant (`message_move.c_trigger`). An event happens where its guard holds: every plant
+    that has it on an edge has one from its location with a true guard, and so has the supervisor. All that it changes
+    is changed at once, from the values before. Raises ValueError where the model has no supervisor or one without a
+    guard for a controllable event; a KeyError means that there is no event or input of that name.
     """
 
     def __init__(self, model: sct.SupervisoryControlModel) -> None:
-        if model.supervisor is None:
-            raise ValueError(f"{model.name} has no supervisor: synthesize it first")
         self.model = model
+        self.executed = transform(model)
         self.roles = Roles(model)
-        self.events: tuple[str, ...] = tuple(event_name(each) for each in self.roles.events)
-        self._layout = Layout(model)
-        declared = [each for plant in model.plants for each in plant.inputs]
-        self._input_domains = [Domain(each.type) for each in declared]
-        self._inputs = [each.clamp(0) for each in self._input_domains]
-        self._input_position = {each: position for position, each in enumerate(declared)}
-        self._compile = Compiler(self._layout.cells, self._input_position)
-        self._events = self._compiled()
-        self._cells = self._initial()
+        self.events: tuple[str, ...] = tuple(event_name(event) for event in self.roles.events)
+        self._layout = Layout(self.executed)
+        self._input_domains = [Domain(declared.type) for declared in self.executed.inputs]
+        self._inputs = [declared.initial for declared in self.executed.inputs]
+        self._compile = Compiler(self.executed)
+        positions = {declared: position for position, declared in enumerate(self.executed.inputs)}
+        self._carried = {
+            event.name: {declared.input.name: positions[declared] for declared in event.inputs}
+            for event in self.executed.events
+        }
+        self._guards = {event.name: self._all(event.guard) for event in self.executed.events}
+        self._effects = {event.name: self._steps(event.effect.steps) for event in self.executed.events}
+        self._reasons: dict[str, list[tuple[Blocked, Function]]] = {}
+        self._by_name = {event.name: event for event in self.executed.events}
+        self._cells = tuple(variable.initial for variable in self.executed.variables)
 
     @property
     def state(self) -> State:
@@ -98,29 +72,27 @@ class Engine:
 
     def blocked_by(self, event: str) -> Blocked | None:
         """What keeps the event from happening in this state; None where it is enabled."""
-        compiled, cells = self._events[event], self._cells
-        for plant in compiled.plants:
-            edge = plant.edge(cells)
-            if edge is None or not (edge.guard is None or edge.guard(cells, ())):
-                return Blocked.PLANT
-        if not (compiled.requirement is None or compiled.requirement(cells, ())):
-            return Blocked.REQUIREMENT
-        if not (compiled.synthesis is None or compiled.synthesis(cells, ())):
-            return Blocked.SYNTHESIS
-        return None
+        if self.enabled(event):
+            return None
+        if event not in self._reasons:
+            guard = self._by_name[event].guard
+            parts = zip(Blocked, (guard.plants, guard.requirement, guard.synthesis), strict=True)
+            self._reasons[event] = [(reason, self._compile(part)) for reason, part in parts if part is not None]
+        return next(reason for reason, holds in self._reasons[event] if not holds(self._cells, ()))
 
     def failing(self, event: str) -> list[sct.Requirement]:
         """The requirements on the event that forbid it in this state, whatever else does."""
         return [
-            each
-            for each in self.model.requirements
-            if event_name(each.event) == event
-            and bool(self._compile(each.condition)(self._cells, ())) == (each.kind == sct.RequirementKind.disables)
+            requirement
+            for requirement in self.model.requirements
+            if event_name(requirement.event) == event
+            and bool(evaluate(requirement.condition, self._read)) == (requirement.kind == sct.RequirementKind.disables)
         ]
 
     def enabled(self, event: str) -> bool:
         """Whether the event can happen in this state."""
-        return self.blocked_by(event) is None
+        cells = self._cells
+        return all(holds(cells, ()) for holds in self._guards[event])
 
     def set_inputs(self, event: str, data: Mapping[str, Value]) -> None:
         """Sets inputs of the event (`i_response`) for this and later events; integers saturate at their range.
@@ -128,8 +100,8 @@ class Engine:
         Raises ValueError where a value is of another type.
         """
         for name, value in data.items():
-            position, domain = self._events[event].inputs[name]
-            self._inputs[position] = domain.internal(value)
+            position = self._carried[event][name]
+            self._inputs[position] = self._input_domains[position].internal(value)
 
     def perform(self, event: str, data: Mapping[str, Value] | None = None) -> bool:
         """Lets the event happen with this data if it is enabled, and nothing else; says whether it did."""
@@ -137,14 +109,9 @@ class Engine:
             self.set_inputs(event, data)
         if not self.enabled(event):
             return False
-        before, after = self._cells, list(self._cells)
-        for plant in self._events[event].plants:
-            edge = plant.edge(before)
-            assert edge is not None
-            for update in edge.updates:
-                after[update.cell] = update.domain.clamp(update.value(before, self._inputs))
-            if plant.cell is not None:
-                after[plant.cell] = edge.target
+        after = list(self._cells)
+        for step in self._effects[event]:
+            step(self._cells, self._inputs, after)
         self._cells = tuple(after)
         return True
 
@@ -158,54 +125,56 @@ class Engine:
         cell = self._layout.cells[variable]
         return self._layout.domains[cell].shown(self._cells[cell])
 
-    def _initial(self) -> tuple[int, ...]:
-        cells = [0] * len(self._layout.domains)
-        for cell, position in self._layout.cells.items():
-            if isinstance(cell, sct.Plant):
-                cells[position] = next(number for number, each in enumerate(cell.locations) if each.initial)
-            else:
-                cells[position] = int(self._compile(cell.initial)((), ()))
-        return tuple(cells)
+    def cell(self, variable: engine.StateVariable) -> int:
+        """The value of a part of the state; of a location its position."""
+        return self._cells[self._layout.position[variable.name]]
 
-    def _compiled(self) -> dict[str, _Event]:
-        assert self.model.supervisor is not None
-        guards = {guard.event: guard for guard in self.model.supervisor.guards}
-        participations: dict[sct.Event, list[_Participation]] = {event: [] for event in self.roles.events}
-        for plant in self.model.plants:
-            for event, participation in self._participations(plant).items():
-                participations[event].append(participation)
-        compiled = {}
-        for event in self.roles.events:
-            guard = guards.get(event)
-            if event.controllable and guard is None:
-                raise ValueError(f"the supervisor has no guard for {event_name(event)}")
-            compiled[event_name(event)] = _Event(
-                tuple(participations[event]),
-                self._function(None if guard is None else guard.requirement),
-                self._function(None if guard is None else guard.synthesis),
-                {
-                    each.name: (self._input_position[each], self._input_domains[self._input_position[each]])
-                    for each in event.inputs
-                },
-            )
-        return compiled
+    def condition(self, condition: ex.Expression) -> Callable[[], bool]:
+        """A function that says whether a condition of the engine model holds in the present state."""
+        function = self._compile(condition)
+        return lambda: bool(function(self._cells, ()))
 
-    def _participations(self, plant: sct.Plant) -> dict[sct.Event, _Participation]:
-        numbers = {location: number for number, location in enumerate(plant.locations)}
-        edges: dict[sct.Event, list[_Edge | None]] = {}
-        for location, number in numbers.items():
-            for edge in location.edges:
-                edges.setdefault(edge.event, [None] * len(numbers))[number] = self._edge(edge, numbers)
-        cell = self._layout.cells.get(plant)
-        taken = {event: _Participation(cell, tuple(by_location)) for event, by_location in edges.items()}
-        return taken | {edge.event: _Participation(cell, (self._edge(edge, numbers),)) for edge in plant.edges}
+    def _all(self, guard: engine.Guard) -> list[Function]:
+        return [self._compile(term.condition) for term in guard.terms]
 
-    def _edge(self, edge: sct.Edge, numbers: Mapping[sct.Location, int]) -> _Edge:
-        return _Edge(self._function(edge.guard), tuple(map(self._update, edge.updates)), numbers[edge.target])
+    def _steps(self, steps: Sequence[engine.Step]) -> list[_Step]:
+        return [self._assignment(step) if isinstance(step, engine.Assignment) else self._switch(step) for step in steps]
 
-    def _update(self, update: sct.Update) -> _Update:
-        cell = self._layout.cells[update.variable]
-        return _Update(cell, self._compile(update.value), self._layout.domains[cell])
+    def _assignment(self, assignment: engine.Step) -> _Step:
+        assert isinstance(assignment, engine.Assignment)
+        cell, value = self._layout.position[assignment.variable.name], self._compile(assignment.value)
 
-    def _function(self, expression: ex.Expression | None) -> Function | None:
-        return None if expression is None else self._compile(expression)
+        def assign(cells: Sequence[int], inputs: Sequence[int], after: list[int]) -> None:
+            after[cell] = value(cells, inputs)
+
+        return assign
+
+    def _switch(self, switch: engine.Step) -> _Step:
+        assert isinstance(switch, engine.Switch)
+        cases = [
+            (None if case.condition is None else self._compile(case.condition), self._steps(case.assignments))
+            for case in switch.cases
+        ]
+
+        def choose(cells: Sequence[int], inputs: Sequence[int], after: list[int]) -> None:
+            for condition, assignments in cases:
+                if condition is None or condition(cells, inputs):
+                    for assign in assignments:
+                        assign(cells, inputs, after)
+                    return
+
+        return choose
+
+    def _read(self, reference: ex.Expression) -> object:
+        """What a reference of the sct model stands for in this state."""
+        match reference:
+            case sct.LocationReference(location=location):
+                plant: sct.Plant = location.eContainer()
+                return plant.locations[self.location(plant)] is location
+            case sct.VariableReference(variable=variable):
+                value = self._cells[self._layout.cells[variable]]
+                if isinstance(variable.type, ex.EnumerationType):
+                    return variable.type.enumeration.literals[value]
+                return bool(value) if isinstance(variable.type, ex.BooleanType) else value
+        assert isinstance(reference, ex.EnumerationLiteralReference)
+        return reference.literal

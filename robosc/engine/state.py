@@ -1,31 +1,36 @@
-"""The state of an sct model: a location of each plant that has several, and a value of each variable."""
+"""The state of an engine model: a location of each plant that has several, and a value of each variable."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING
 
+from robosc.m2m.sct_to_engine.intervals import interval_of
+from robosc.metamodel import engine
 from robosc.metamodel import expression as ex
-from robosc.metamodel import sct
-from robosc.semantics.domains import domain
-from robosc.semantics.naming import Names
+
+if TYPE_CHECKING:
+    from robosc.metamodel import sct
 
 #: What a reader sees: a boolean, an integer, or the name of a location or literal.
 Value = bool | int | str
-#: What has a value in a state. Inside the engine values are integers: locations and literals by position.
-Cell = sct.Plant | sct.DiscreteVariable
 
 
 class Domain:
-    """The values of a cell or input, as the engine and as its readers see them."""
+    """The values of a type, as the engine and as its readers see them.
 
-    def __init__(self, declared: sct.Plant | ex.Type) -> None:
-        """The domain of a plant's location or of a type."""
-        self.low, self.high = self._values = domain(declared)
-        self._boolean = isinstance(declared, ex.BooleanType)
+    Inside the engine values are integers: locations and literals by position. Raises ValueError where it has no bounds.
+    """
+
+    def __init__(self, kind: ex.Type) -> None:
+        self.low, self.high = interval_of(kind)
         self._names: list[str] | None = None
-        if not self._boolean and not isinstance(declared, ex.IntegerType):
-            named = declared.locations if isinstance(declared, sct.Plant) else declared.enumeration.literals  # type: ignore[attr-defined]
-            self._names = [element.name for element in named]
+        match kind:
+            case engine.LocationType(plant=plant):
+                self._names = [location.name for location in plant.locations]
+            case ex.EnumerationType(enumeration=enumeration):
+                self._names = [literal.name for literal in enumeration.literals]
+        self._boolean = isinstance(kind, ex.BooleanType)
 
     def shown(self, value: int) -> Value:
         """A value as a reader sees it."""
@@ -44,26 +49,18 @@ class Domain:
 
     def clamp(self, value: int) -> int:
         """The nearest value of the domain."""
-        return self._values.clamp(value)
+        return min(max(value, self.low), self.high)
 
 
 class Layout:
     """Which cell of a state holds what. Names are as in `~/state`: `component_Gauge`, `Gauge.level`."""
 
-    def __init__(self, model: sct.SupervisoryControlModel) -> None:
-        self.cells: dict[Cell, int] = {}
-        self.domains: list[Domain] = []
-        self.position: dict[str, int] = {}
-        names = Names()
-        for plant in model.plants:
-            if len(plant.locations) > 1:
-                self._add(plant, names.fresh(plant.name), Domain(plant))
-            for variable in plant.variables:
-                self._add(variable, names.fresh(f"{plant.origin or plant.name}.{variable.name}"), Domain(variable.type))
-
-    def _add(self, cell: Cell, name: str, domain: Domain) -> None:
-        self.cells[cell] = self.position[name] = len(self.domains)
-        self.domains.append(domain)
+    def __init__(self, model: engine.EngineModel) -> None:
+        self.domains = [Domain(variable.type) for variable in model.variables]
+        self.position = {variable.name: cell for cell, variable in enumerate(model.variables)}
+        self.cells: dict[sct.Plant | sct.DiscreteVariable, int] = {
+            variable.variable or variable.plant: cell for cell, variable in enumerate(model.variables)
+        }
 
 
 class State(Mapping[str, Value]):

@@ -122,5 +122,5 @@ TARGETS = {
 
 def together() -> AbstractContextManager[None]:
     """While it lasts, what several targets have in common is made once; nobody changes the models meanwhile."""
-    shared: Callable[[], AbstractContextManager[None]] = import_module("robosc.m2t.c.engine").shared
-    return shared()
+    remembered: Callable[[], AbstractContextManager[None]] = import_module("robosc.m2m.sct_to_engine").remembered
+    return remembered()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from robosc.m2m.sct_to_engine import transform
 from robosc.metamodel import xmi
 from robosc.semantics.instances import libraries
 from robosc.semantics.naming import Names
@@ -20,12 +21,15 @@ def preconditions(_models: Models, _configuration: Configuration) -> list[Diagno
 
 
 def generate(models: Models, _configuration: Configuration) -> dict[str, str]:
-    """`<robot>.sct.xmi`, and where there are such models `.rosgraph.xmi`, `.robosc.xmi`, `<library>.robosc.xmi`.
+    """`<robot>.sct.xmi`, where it has a supervisor `.engine.xmi`, and of the models that there are the others.
 
-    A library that is called like the robot gets an underscore. Raises ModelError for what XML can't hold.
+    These are `.rosgraph.xmi`, `.robosc.xmi`, `<library>.robosc.xmi`. A library that is called like the
+    robot gets an underscore. Raises ModelError for what XML can't hold.
     """
     name = models.sct.name
     roots: dict[str, Any] = {f"{name}.sct.xmi": models.sct}
+    if models.sct.supervisor is not None:
+        roots[f"{name}.engine.xmi"] = transform(models.sct)
     if models.rosgraph is not None:
         roots[f"{name}.rosgraph.xmi"] = models.rosgraph
     if models.robosc is not None:

@@ -12,7 +12,7 @@ from pyecore.resources import URI, ResourceSet
 from robosc.files.resources import locate
 from robosc.metamodel.places import Place
 
-PACKAGES = ("expression", "robosc", "sct", "rosgraph")
+PACKAGES = ("expression", "robosc", "sct", "rosgraph", "engine")
 
 
 class _Undocumented(URI):  # type: ignore[misc]

@@ -70,7 +70,9 @@ def stub(name: str) -> str:
         if not parents:
             lines += ["    def eContainer(self) -> Any: ...", "    @property", "    def eClass(self) -> Any: ..."]
         features = classifier.eAllStructuralFeatures()
-        parameters = ", ".join(["self", "*", *(_parameter(feature, package) for feature in features)])
+        parameters = ", ".join(
+            ["self", *(["*"] if features else []), *(_parameter(feature, package) for feature in features)]
+        )
         lines += [f"    def __init__({parameters}) -> None: ...", ""]
     return "\n".join(lines)
 

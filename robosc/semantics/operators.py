@@ -201,7 +201,7 @@ OPERATORS = (
 #: The functions, by their names.
 FUNCTIONS: dict[str, Operator] = {}
 
-_BY_CLASS = {row.metaclass: row for row in OPERATORS} | {
+BY_CLASS = {row.metaclass: row for row in OPERATORS} | {
     # Only transformations make it; no text has it.
     ex.DoubleConversion: Operator(ex.DoubleConversion, "", 9, Rule.DOUBLE, as_double, None)
 }
@@ -224,4 +224,4 @@ def operator_of(expression: ex.Expression | None) -> Operator | None:
     """The row of an expression's outermost operator or function; None of literals, references and choices."""
     if isinstance(expression, ex.FunctionCall):
         return FUNCTIONS[expression.function]
-    return _BY_CLASS.get(type(expression))  # type: ignore[arg-type]
+    return BY_CLASS.get(type(expression))  # type: ignore[arg-type]

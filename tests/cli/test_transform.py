@@ -31,6 +31,7 @@ def test_all_targets_have_their_place(run: Run, door: Path) -> None:
         "Door.cif",
         "Door.supervised.cif",
         "Door.robosc.xmi",
+        "Door.engine.xmi",
         "Door.rosgraph.xmi",
         "Door.sct.xmi",
         "ros1/door_controller",
@@ -62,7 +63,7 @@ def test_the_same_from_any_folder(door: Path, tmp_path: Path) -> None:
 def test_only_what_changed_is_written(run: Run, door: Path) -> None:
     run("transform", door, "--to", "xmi,cif", "-o", "out")
     again = run("transform", door, "--to", "cif,xmi", "-o", "out")
-    assert again.stderr == "out: 5 files, 0 written\n"
+    assert again.stderr == "out: 6 files, 0 written\n"
 
 
 @pytest.mark.parametrize("start", ["robosc", "sct", "rosgraph"])
@@ -115,7 +116,7 @@ def test_unknown_targets(run: Run, door: Path, targets: str) -> None:
 def test_targets_one_by_one(run: Run, door: Path) -> None:
     run("transform", door, "--to", "cif, xmi", "-o", "one")
     run("transform", door, "--to", "xmi", "--to", "cif", "-o", "two")
-    assert len(tree(Path("one"))) == 5
+    assert len(tree(Path("one"))) == 6
     assert tree(Path("one")) == tree(Path("two"))
 
 

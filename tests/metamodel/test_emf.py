@@ -19,7 +19,7 @@ JARS = [
     Path("/usr/share/java") / f"{name}.jar"
     for name in ("eclipse-emf-common", "eclipse-emf-ecore", "eclipse-emf-ecore-xmi", "equinox-common")
 ]
-METAMODELS = [locate(f"metamodel/{name}.ecore") for name in ("expression", "robosc", "sct", "rosgraph")]
+METAMODELS = [locate(f"metamodel/{name}.ecore") for name in ("expression", "robosc", "sct", "rosgraph", "engine")]
 
 
 @pytest.fixture(scope="session")
@@ -53,7 +53,7 @@ def emf(java: Any) -> Any:
 
 
 def test_the_metamodels_are_valid(emf: Any) -> None:
-    assert emf() == (0, "4 files, 0 diagnostics\n")
+    assert emf() == (0, "5 files, 0 diagnostics\n")
 
 
 def test_all_saved_models_are_valid(emf: Any, folder: Path, texts: dict[str, str]) -> None:

@@ -225,7 +225,7 @@ def test_foreign_files(write: Any, text: str, message: str) -> None:
     assert shown(write(text)) == [f"1:1: {message}"]
 
 
-@pytest.mark.parametrize("name", ["expression", "robosc", "sct", "rosgraph"])
+@pytest.mark.parametrize("name", ["expression", "robosc", "sct", "rosgraph", "engine"])
 def test_a_metamodel_is_no_model(name: str) -> None:
     assert shown(locate(f"metamodel/{name}.ecore")) == ["2:1: this is a metamodel (Ecore), not a model"]
 

@@ -14,7 +14,7 @@ _WIDTH = 100
 
 def comment_text(text: str) -> str:
     """The text on one line, with nothing in it that could end a comment, start one, or draw a compiler's warning."""
-    plain = "".join(" " if unicodedata.category(each)[0] in "CZ" else each for each in text)
+    plain = "".join(" " if unicodedata.category(character)[0] in "CZ" else character for character in text)
     for risky in ("*/", "/*", "??"):
         while risky in plain:
             plain = plain.replace(risky, f"{risky[0]} {risky[1]}")
@@ -38,7 +38,7 @@ def comment(paragraphs: Iterable[str], indent: int = 0) -> str:
 
 def string_literal(text: str) -> str:
     """A C string literal with the text in UTF-8; everything but letters, digits and plain signs as octal escapes."""
-    return '"' + "".join(_character(each) for each in text.encode()) + '"'
+    return '"' + "".join(_character(byte) for byte in text.encode()) + '"'
 
 
 def _character(byte: int) -> str:

@@ -1,289 +1,168 @@
-"""Expressions of an sct model as C: nothing in them overflows, and none is always true or always false."""
+"""Expressions of an engine model as C: a table of spellings, and what C asks for besides."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING
 
-from robosc.m2t.c.nodes import COMPARISONS, Junction, Not, children_of, is_condition
-from robosc.m2t.c.types import index_type, number, signed, type_name
+from robosc.m2t.c.types import integer_type, number
+from robosc.metamodel import engine
 from robosc.metamodel import expression as ex
-from robosc.metamodel import sct
-from robosc.semantics.domains import Interval
 from robosc.semantics.operators import ATOM, PRECEDENCE
-from robosc.semantics.recursion import deep_recursion
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping
+    from collections.abc import Mapping, Sequence
 
     from robosc.m2t.c.names import CNames
-    from robosc.m2t.c.nodes import Node
-    from robosc.m2t.c.ranges import Ranges
 
-_ARITHMETIC = (ex.Addition, ex.Subtraction, ex.Multiplication, ex.UnaryMinus)
+_SYMBOLS: Mapping[type[ex.Expression], str] = {
+    ex.Equation: "==",
+    ex.Inequation: "!=",
+    ex.LessThan: "<",
+    ex.LessOrEqual: "<=",
+    ex.GreaterThan: ">",
+    ex.GreaterOrEqual: ">=",
+    ex.Addition: "+",
+    ex.Subtraction: "-",
+    ex.Multiplication: "*",
+}
 _CONDITIONAL = 0
+_JUNCTION = PRECEDENCE[ex.Conjunction]
 _UNARY = PRECEDENCE[ex.Negation]
-_EQUATION = PRECEDENCE[ex.Equation]
+_CHAINS = (ex.Addition, ex.Multiplication)
+#: A text, and how tightly its outermost operator binds.
+Written = tuple[str, int]
 
 
-def enumeration_of(node: Node) -> ex.Enumeration | None:
-    """The enumeration that the value is of; None for booleans and integers."""
-    match node:
-        case ex.EnumerationLiteralReference():
-            enumeration = node.literal.eContainer()
-            assert isinstance(enumeration, ex.Enumeration)
-            return enumeration
-        case sct.VariableReference(variable=declaration) | sct.InputReference(input=declaration):
-            return declaration.type.enumeration if isinstance(declaration.type, ex.EnumerationType) else None
-        case ex.Conditional():
-            return enumeration_of(node.then)
-    return None
+class CPrinter:
+    """Prints expressions over `state->…`, `inputs->…` and, for values before the event, `old.…`."""
 
-
-def working_type(node: ex.Expression, ranges: Ranges) -> str:
-    """The type in which an operator on integers computes: `int` where 16 bits do, else `int32_t` or `int64_t`.
-
-    Raises OverflowError where its value or an operand may not even fit into int64_t.
-    """
-    values = Interval(0, 0) if is_condition(node) else ranges(node)
-    for child in children_of(node):
-        if not is_condition(child):
-            values = values.union(ranges(child))
-    for bits, name in ((16, "int"), (32, "int32_t"), (64, "int64_t")):
-        if signed(bits).holds(values):
-            return name
-    raise OverflowError(f"a value between {values.low} and {values.high} does not fit into 64 bits")
-
-
-_CHAINS = (ex.Disjunction, ex.Conjunction, ex.Addition, ex.Multiplication)
-_LOOSE_PAIRS = {(2, 3), (1, 2), (1, 3), (4, 5)}
-
-
-class ExpressionPrinter:
-    """Prints an expression with the parentheses that its tree needs.
-
-    A target sets `symbols` (operator class to text) and overrides what it writes differently. An expression class
-    without a method raises TypeError: a target's preconditions must have refused it before.
-    """
-
-    symbols: ClassVar[Mapping[type[ex.Expression], str]]
+    def __init__(self, names: CNames) -> None:
+        self._names = names
 
     def __call__(self, expression: ex.Expression) -> str:
-        """The text of the expression, without parentheses around it."""
-        with deep_recursion():
-            return self.text(expression)
-
-    def text(self, expression: ex.Expression) -> str:
-        """The same, for who is printing already."""
-        if isinstance(expression, ex.BinaryExpression):
-            return self.binary(expression)
-        if isinstance(expression, (ex.Negation, ex.UnaryMinus)):
-            return self.unary(expression)
-        return self.atom(expression)
-
-    def binary(self, expression: ex.BinaryExpression) -> str:
-        """A binary operator between its operands."""
-        left = self.operand(expression, expression.left, chain=True)
-        right = self.operand(expression, expression.right, chain=isinstance(expression, ex.Implication))
-        return f"{left} {self.symbols[type(expression)]} {right}"
-
-    def unary(self, expression: ex.UnaryExpression) -> str:
-        """An operator before its operand; two in a row are kept apart, so that `--x` is never printed."""
-        text = self.text(expression.operand)
-        bare = self.precedence(expression.operand) == ATOM
-        return f"{self.symbols[type(expression)]}{text if bare else f'({text})'}"
-
-    def operand(self, parent: ex.BinaryExpression, child: ex.Expression, *, chain: bool) -> str:
-        """A child of a binary operator, in parentheses where the tree or a reader needs them."""
-        outer, inner = self.precedence(parent), self.precedence(child)
-        same = (
-            outer == inner
-            and chain
-            and (type(parent) is type(child))
-            and isinstance(parent, (*_CHAINS, ex.Implication))
-        )
-        if same and isinstance(parent, ex.Implication):
-            same = child is parent.right
-        bare = (inner > outer and (outer, inner) not in _LOOSE_PAIRS) or same
-        return self.text(child) if bare else f"({self.text(child)})"
-
-    def precedence(self, expression: ex.Expression) -> int:
-        """How tightly the text of the expression binds; a target that writes an atom with an operator says so here."""
-        return PRECEDENCE.get(type(expression), ATOM)
-
-    def atom(self, expression: ex.Expression) -> str:
-        """Everything that is not an operator: literals, references, conversions."""
-        raise TypeError(f"{type(self).__name__} has no text for {type(expression).__name__}")
-
-
-class CPrinter(ExpressionPrinter):
-    """Prints expressions over `state->…` and `inputs->…`; variables in `old` are read from `old.…` instead."""
-
-    symbols = {  # noqa: RUF012  # ClassVar in the parent
-        ex.Equation: "==",
-        ex.Inequation: "!=",
-        ex.LessThan: "<",
-        ex.LessOrEqual: "<=",
-        ex.GreaterThan: ">",
-        ex.GreaterOrEqual: ">=",
-        ex.Addition: "+",
-        ex.Subtraction: "-",
-        ex.Multiplication: "*",
-    }
-
-    def __init__(self, names: CNames, ranges: Ranges, old: Collection[sct.DiscreteVariable] = ()) -> None:
-        self.names = names
-        self.ranges = ranges
-        self._old = old
-
-    def __call__(self, node: Node) -> str:
         """The text, without parentheses around it."""
-        with deep_recursion():
-            return self.text(node)
+        return self.written(expression)[0]
 
-    def text(self, node: Node) -> str:
-        """The same, for who is printing already."""
-        node = self.ranges.reduced(node)
-        constant = self.constant(node)
-        if constant is not None:
-            return constant
-        if isinstance(node, (Not, ex.Negation)):
-            return self.negation(node.operand)
-        joined = self.ranges.joined(node)
-        if joined is not None:
-            return f" {'&&' if joined.neutral else '||'} ".join(self.terms(joined))
-        assert isinstance(node, ex.Expression)
-        return super().text(node)
+    def written(self, expression: ex.Expression) -> Written:
+        """The text and how tightly it binds. Expressions may be deep: this function does not call itself."""
+        done: list[Written] = []
+        pending: list[tuple[ex.Expression, int]] = [(expression, -1)]
+        while pending:
+            node, count = pending.pop()
+            if count < 0:
+                operands = _operands(node)
+                pending.append((node, len(operands)))
+                pending += [(operand, -1) for operand in reversed(operands)]
+            else:
+                parts = done[len(done) - count :]
+                del done[len(done) - count :]
+                done.append(self._operator(node, parts) if parts else self._leaf(node))
+        return done[0]
 
-    def terms(self, joined: Junction) -> list[str]:
-        """The conditions of a conjunction or disjunction, each once, in the parentheses that they need in it."""
-        bound = PRECEDENCE[ex.Conjunction]
-        texts = [self.text(part) if self.precedence(part) > bound else f"({self.text(part)})" for part in joined.parts]
-        return list(dict.fromkeys(texts))
+    def joined(self, junction: engine.And | engine.Or) -> tuple[str, list[str]]:
+        """The operator of a conjunction or disjunction, and its operands with the parentheses that they need in it."""
+        symbol = "&&" if isinstance(junction, engine.And) else "||"
+        return symbol, [around(self.written(operand), _JUNCTION + 1) for operand in junction.operands]
 
-    def constant(self, node: Node) -> str | None:
-        """The text of an expression that has one value only; None of others."""
-        value = self.ranges(node).single
-        if value is None:
-            return None
-        if is_condition(node):
-            return "true" if value else "false"
-        enumeration = enumeration_of(node)
-        return number(value) if enumeration is None else self.names.enumerator(enumeration.literals[value])
+    def target(self, variable: engine.StateVariable) -> str:
+        """Where a variable is assigned to."""
+        return f"state->{self._names.of(variable)}"
 
-    def precedence(self, expression: Node) -> int:
-        """How tightly the text binds."""
-        node = self.ranges.reduced(expression)
-        if self.ranges(node).single is not None:
-            return _UNARY if not is_condition(node) and self.ranges(node).low < 0 else ATOM
-        joined = self.ranges.joined(node)
-        if joined is not None:
-            return PRECEDENCE[ex.Conjunction if joined.neutral else ex.Disjunction]
+    def constant(self, kind: ex.Type, value: int) -> str:
+        """A value of a type."""
+        match kind:
+            case ex.BooleanType():
+                return "true" if value else "false"
+            case ex.EnumerationType(enumeration=enumeration):
+                return self._names.enumerator(enumeration.literals[value])
+            case engine.LocationType(plant=plant):
+                return self._names.enumerator(plant.locations[value])
+        return number(value)
+
+    def _operator(self, node: ex.Expression, parts: Sequence[Written]) -> Written:
         match node:
-            case sct.LocationReference():
-                return _EQUATION
-            case ex.Negation() | Not():
-                return _EQUATION if isinstance(self.ranges.reduced(node.operand), sct.LocationReference) else _UNARY
+            case engine.And() | engine.Or():
+                symbol = " && " if isinstance(node, engine.And) else " || "
+                return symbol.join(around(part, _JUNCTION + 1) for part in parts), _JUNCTION
+            case ex.Negation():
+                return f"!{around(parts[0], ATOM)}", _UNARY
+            case ex.UnaryMinus(operand=ex.IntegerLiteral(value=value)):
+                return number(-value), _UNARY
+            case ex.UnaryMinus():
+                return f"-{around(parts[0], ATOM)}", _UNARY
+            case engine.Conversion(bits=16, widens=True):
+                return parts[0]  # C computes in `int`, which has 16 bits at least.
+            case engine.Conversion():
+                return f"({integer_type(node.bits, signed=node.signed)}){around(parts[0], ATOM)}", _UNARY
+            case engine.Saturation():
+                return f"{clamp(node)}({parts[0][0]}, {number(node.minimum)}, {number(node.maximum)})", ATOM
             case ex.Conditional():
-                return _CONDITIONAL
-        assert isinstance(node, ex.Expression)
-        return super().precedence(node)
+                condition, then, otherwise = (around(part, _CONDITIONAL + 1) for part in parts)
+                return f"{condition} ? {then} : {otherwise}", _CONDITIONAL
+        assert isinstance(node, ex.BinaryExpression)
+        return self._binary(node, parts)
 
-    def negation(self, operand: Node) -> str:
-        """A condition denied: the other location where there are two, else `!=` for a location."""
-        inner = self.ranges.reduced(operand)
-        if isinstance(inner, sct.LocationReference):
-            others = [each for each in inner.location.eContainer().locations if each is not inner.location]
-            return self.location(others[0], "==") if len(others) == 1 else self.location(inner.location, "!=")
-        return f"!{self.text(inner)}" if self.precedence(inner) == ATOM else f"!({self.text(inner)})"
-
-    def unary(self, expression: ex.UnaryExpression) -> str:
-        """A minus, in a type that holds the result."""
-        return f"-{self.converted(expression, expression.operand)}"
-
-    def operand(self, parent: ex.BinaryExpression, child: ex.Expression, *, chain: bool) -> str:
-        """An operand: integers in the type in which the parent computes, conditions in parentheses."""
-        if isinstance(parent, (*_ARITHMETIC, *COMPARISONS)) and enumeration_of(child) is None:
-            if is_condition(child):
-                text = self.text(child)
-                return text if self.precedence(child) == ATOM else f"({text})"
-            if working_type(parent, self.ranges) != "int":
-                return self.converted(parent, child)
-            if isinstance(parent, COMPARISONS) and self._beside_unsigned(parent, child):
-                return f"{self.text(child)}U"
-        return super().operand(parent, child, chain=chain)
-
-    def _beside_unsigned(self, parent: ex.BinaryExpression, child: ex.Expression) -> bool:
-        """Whether a constant is compared with an unsigned variable, which C would make signed for a signed one."""
-        other = self.ranges.reduced(parent.right if child is parent.left else parent.left)
-        value = self.ranges(child).single
-        return (
-            value is not None
-            and value >= 0
-            and isinstance(other, (sct.VariableReference, sct.InputReference))
-            and self.type(other).startswith("uint")
-        )
-
-    def converted(self, parent: ex.Expression, child: ex.Expression) -> str:
-        """An operand of arithmetic as a unary expression."""
-        wanted = working_type(parent, self.ranges)
-        text = self.text(child)
-        constant = self.ranges(child).single is not None
-        kept = constant or wanted == "int" or self.type(child) == wanted
-        bare = self.precedence(child) == ATOM
-        text = text if bare else f"({text})"
-        return text if kept else f"({wanted}){text}"
-
-    def type(self, node: ex.Expression) -> str:
-        """The C type of the text; `int` for all that C makes one."""
-        node = self.ranges.reduced(node)  # type: ignore[assignment]
-        match node:
-            case _ if self.ranges(node).single is not None or is_condition(node):
-                return "int"
-            case sct.VariableReference(variable=declaration) | sct.InputReference(input=declaration):
-                return type_name(declaration.type)
-            case ex.Conditional() if (enumeration := enumeration_of(node)) is not None:
-                return index_type(len(enumeration.literals) - 1)
-            case ex.Conditional() if working_type(node, self.ranges) == "int":
-                return "int32_t"
-        return working_type(node, self.ranges)
-
-    def atom(self, expression: ex.Expression) -> str:
-        """References, literals and choices."""
-        match expression:
-            case sct.VariableReference():
-                where = "old." if expression.variable in self._old else "state->"
-                return where + self.names.member(expression.variable)
-            case sct.InputReference():
-                return f"inputs->{self.names.member(expression.input)}"
-            case sct.LocationReference():
-                return self.location(expression.location, "==")
-            case ex.Conditional():
-                return self.choice(expression)
-        return super().atom(expression)
-
-    def location(self, location: sct.Location, operator: str) -> str:
-        """Whether a plant is in a location, or is not."""
-        plant = location.eContainer()
-        assert isinstance(plant, sct.Plant)
-        return f"state->{self.names.member(plant)} {operator} {self.names.enumerator(location)}"
-
-    def choice(self, expression: ex.Conditional) -> str:
-        """A conditional expression, both of its values of one type."""
-        condition = self.text(expression.condition)
-        if self.precedence(expression.condition) <= _CONDITIONAL:
-            condition = f"({condition})"
-        branches = (expression.then, expression.otherwise)
-        if is_condition(expression):
-            values = [
-                self.text(each) if self.precedence(each) > _CONDITIONAL else f"({self.text(each)})" for each in branches
-            ]
+    def _binary(self, node: ex.BinaryExpression, parts: Sequence[Written]) -> Written:
+        bound = PRECEDENCE[type(node)]
+        sides = [(node.left, node.right, parts[0]), (node.right, node.left, parts[1])]
+        if bound >= PRECEDENCE[ex.Addition]:
+            chain = isinstance(node, _CHAINS) and type(node) is type(node.left)
+            left, right = around(parts[0], bound if chain else bound + 1), around(parts[1], bound + 1)
         else:
-            values = [self.cast(self.type(expression), each) for each in branches]
-        return f"{condition} ? {values[0]} : {values[1]}"
+            left, right = (self._compared(side, other, written) for side, other, written in sides)
+        return f"{left} {_SYMBOLS[type(node)]} {right}", bound
 
-    def cast(self, kind: str, node: ex.Expression) -> str:
-        """The value converted to a type, unless it is of that type."""
-        text = self.text(node)
-        if self.type(node) == kind:
-            return text if self.precedence(node) > _CONDITIONAL else f"({text})"
-        return f"({kind}){text if self.precedence(node) == ATOM else f'({text})'}"
+    def _compared(self, side: ex.Expression, other: ex.Expression, written: Written) -> str:
+        """A side of a comparison: a number, unsigned if the other side is, or a condition in parentheses."""
+        if isinstance(side, ex.IntegerLiteral) and _is_unsigned(other):
+            return f"{written[0]}U"
+        return around(written, ATOM if isinstance(side, ex.Negation) else PRECEDENCE[ex.Addition])
+
+    def _leaf(self, node: ex.Expression) -> Written:
+        match node:
+            case engine.VariableReference():
+                return f"{'old.' if node.before else 'state->'}{self._names.of(node.variable)}", ATOM
+            case engine.InputReference():
+                return f"inputs->{self._names.of(node.input)}", ATOM
+            case engine.ConditionReference():
+                return f"{node.condition.name}(state)", ATOM
+            case engine.LocationLiteral():
+                return self._names.enumerator(node.location), ATOM
+            case ex.EnumerationLiteralReference():
+                return self._names.enumerator(node.literal), ATOM
+            case ex.BooleanLiteral():
+                return ("true" if node.value else "false"), ATOM
+        assert isinstance(node, ex.IntegerLiteral)
+        return number(node.value), ATOM
+
+
+def clamp(saturation: engine.Saturation) -> str:
+    """The function of the engine that gives the nearest value within bounds."""
+    return "clamp" if saturation.bits == 32 else "clampwide"
+
+
+def around(written: Written, least: int) -> str:
+    """The text, in parentheses where it binds less tightly than `least`."""
+    text, bound = written
+    return text if bound >= least else f"({text})"
+
+
+def _is_unsigned(node: ex.Expression) -> bool:
+    """Whether it is a number that is stored without sign, with which C is to compare a constant without sign."""
+    match node:
+        case engine.VariableReference(variable=declared) | engine.InputReference(input=declared):
+            return isinstance(declared.type, ex.IntegerType) and not declared.signed
+    return False
+
+
+def _operands(node: ex.Expression) -> Sequence[ex.Expression]:
+    match node:
+        case ex.BinaryExpression():
+            return node.left, node.right
+        case ex.UnaryExpression():
+            return (node.operand,)
+        case engine.And() | engine.Or():
+            return list(node.operands)
+        case ex.Conditional():
+            return node.condition, node.then, node.otherwise
+    return ()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+from robosc.metamodel import engine
 from robosc.semantics.naming import Names, snake_case
 
 if TYPE_CHECKING:
@@ -50,10 +51,10 @@ class CNames:
         self._members |= self._named(model, lambda plant: plant.inputs)
 
     def _name_globals(self, model: sct.SupervisoryControlModel) -> None:
-        names = Names(f"{self.prefix}_{each}" for each in _API.split())
+        names = Names(f"{self.prefix}_{name}" for name in _API.split())
         owners: list[tuple[str, ex.NamedElement, Sequence[ex.NamedElement]]] = [
             *(("location_name", plant, [*plant.events, *plant.locations]) for plant in model.plants),
-            *(("literal_name", each, [*each.literals]) for each in model.enumerations),
+            *(("literal_name", enumeration, [*enumeration.literals]) for enumeration in model.enumerations),
         ]
         for _, owner, elements in owners:
             for element in elements:
@@ -79,6 +80,12 @@ class CNames:
     def member(self, element: sct.Plant | sct.DiscreteVariable | sct.Input) -> str:
         """The member of the state (a plant's location, a variable) or of the inputs: `component_LidarSensor`."""
         return self._members[element]
+
+    def of(self, declared: engine.StateVariable | engine.Input) -> str:
+        """The member for what an engine model keeps."""
+        if isinstance(declared, engine.Input):
+            return self.member(declared.input)
+        return self.member(declared.variable or declared.plant)
 
     def lookup(self, owner: sct.Plant | ex.Enumeration) -> str:
         """The function that gives the name of a plant's location or of an enumeration's literal."""

@@ -5,24 +5,27 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.diagnostics import Diagnostic, Severity
-from robosc.m2t.c.expressions import working_type
-from robosc.m2t.c.nodes import Node, children_of, is_condition
-from robosc.m2t.c.ranges import Ranges
+from robosc.m2m.sct_to_engine import lowering
+from robosc.m2m.sct_to_engine.intervals import Width
 from robosc.metamodel import expression as ex
 from robosc.metamodel.places import place
+from robosc.metamodel.reflection import contents
 from robosc.semantics.edges import edges_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from robosc.m2m.sct_to_engine.lower_expressions import Lowering
     from robosc.metamodel import sct
 
 RULE = "c-overflow"
+_LOGICAL = (ex.Conjunction, ex.Disjunction, ex.Implication, ex.Negation)
+_WIDEST = Width(64, signed=True).values
 
 
 def preconditions(model: sct.SupervisoryControlModel) -> list[Diagnostic]:
-    """An error for each computation whose intermediate values may not fit into 64 bits."""
-    ranges = Ranges()
+    """An error for every computation whose intermediate values may not fit into 64 bits."""
+    lower = lowering(model)
     return [
         Diagnostic(
             *place(element),
@@ -32,7 +35,7 @@ def preconditions(model: sct.SupervisoryControlModel) -> list[Diagnostic]:
             "give its variables smaller ranges",
         )
         for element, expression in _expressions(model)
-        for fault in _overflows(expression, ranges)
+        for fault in _overflows(expression, lower)
     ]
 
 
@@ -45,27 +48,29 @@ def _expressions(model: sct.SupervisoryControlModel) -> Iterator[tuple[ex.Locate
             for update in edge.updates:
                 yield update, update.value
     # What the author can change about a guard is a requirement on its event.
-    requirements = {each.event: each for each in reversed(model.requirements)}
+    requirements = {requirement.event: requirement for requirement in reversed(model.requirements)}
     for guard in model.supervisor.guards if model.supervisor else ():
         for part in (guard.requirement, guard.synthesis):
             if part is not None:
                 yield requirements.get(guard.event, guard.event), part
 
 
-def _overflows(expression: ex.Expression, ranges: Ranges) -> Iterator[str]:
-    parts: list[Node] = []
-    pending: list[Node] = [expression]
-    while pending:
-        parts.append(pending.pop())
-        pending += children_of(parts[-1])
+def _overflows(expression: ex.Expression, lower: Lowering) -> Iterator[str]:
+    lower(expression)
+    parts = [expression]
+    for part in parts:
+        parts += [child for _, child in contents(part)]
     # Operands before the operators on them, from left to right.
     for part in reversed(parts):
-        if isinstance(part, ex.UnaryMinus) and isinstance(part.operand, ex.IntegerLiteral):
-            continue  # a number, the least one too
-        computes = isinstance(part, (ex.BinaryExpression, ex.UnaryExpression, ex.Conditional))
-        if computes and not all(is_condition(child) for child in children_of(part)):
-            assert isinstance(part, ex.Expression)
-            try:
-                working_type(part, ranges)
-            except OverflowError as fault:
-                yield str(fault)
+        if isinstance(part, _LOGICAL) or (
+            isinstance(part, ex.UnaryMinus) and isinstance(part.operand, ex.IntegerLiteral)
+        ):
+            continue  # There is nothing to compute, or it is a number, the least one too.
+        numbers = [lower(number) for _, number in [("", part), *contents(part)] if isinstance(number, ex.Expression)]
+        values = [term.values for term in numbers if term.sort is int]
+        if len(numbers) > 1 and values:
+            union = values[0]
+            for interval in values[1:]:
+                union = union.union(interval)
+            if not _WIDEST.holds(union):
+                yield f"a value between {union.low} and {union.high} does not fit into 64 bits"

@@ -17,7 +17,12 @@ from robosc.metamodel.xmi.markup import Element
 from robosc.metamodel.xmi.values import from_text
 
 #: What a file may hold: a class of each metamodel that describes something whole.
-ROOTS = {"robosc": ("Robot", "Library"), "sct": ("SupervisoryControlModel",), "rosgraph": ("RosGraph",)}
+ROOTS = {
+    "robosc": ("Robot", "Library"),
+    "sct": ("SupervisoryControlModel",),
+    "rosgraph": ("RosGraph",),
+    "engine": ("EngineModel",),
+}
 _ECORE = "http://www.eclipse.org/emf/2002/Ecore"
 
 

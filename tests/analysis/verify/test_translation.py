@@ -11,8 +11,8 @@ from hypothesis import HealthCheck, given, settings
 from robosc.analysis.verify import Effort, validate, validate_c, validate_cif
 from robosc.analysis.verify.verdict import Outcome, Verdict
 from robosc.configuration import Configuration
+from robosc.m2m import sct_to_engine
 from robosc.m2t import cif, supervisor
-from robosc.m2t.c import behaviour
 from robosc.m2t.models import Models
 from robosc.metamodel import sct
 from robosc.synthesis import synthesize
@@ -637,7 +637,7 @@ def test_a_changed_control_loop_is_refuted(mutant: str) -> None:
 
 @pytest.mark.parametrize("mutant", LARGE_LOOP_MUTANTS)
 def test_a_changed_control_loop_of_a_large_robot_is_refuted(mutant: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(behaviour, "SMALL", 0)
+    monkeypatch.setattr(sct_to_engine, "POLLED", 0)
     made = dock()
     files = c_of(made)
     source = changed(files["dock_supervisor.c"], *LARGE_LOOP_MUTANTS[mutant])
@@ -647,5 +647,5 @@ def test_a_changed_control_loop_of_a_large_robot_is_refuted(mutant: str, monkeyp
 
 
 def test_the_control_loop_of_a_large_robot_is_the_model_s(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(behaviour, "SMALL", 0)
+    monkeypatch.setattr(sct_to_engine, "POLLED", 0)
     assert validate_c(dock(), c_of(dock()), _LOOP_ALONE).outcome is Outcome.SAMPLED

@@ -6,7 +6,8 @@ from pathlib import Path
 from unittest.mock import patch
 
 from robosc.configuration import ControlLoop
-from robosc.m2t.c import behaviour, engine
+from robosc.m2m import sct_to_engine
+from robosc.m2t.c import engine
 from robosc.m2t.c.names import CNames
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
@@ -122,10 +123,10 @@ def write(
     folder: Path,
     settings: ControlLoop | None = None,
     *,
-    small: int = behaviour.SMALL,
+    small: int = sct_to_engine.POLLED,
 ) -> Path:
     """Writes header and source; returns the source. With `small=0` the control loop is that of a large robot."""
-    with patch.object(behaviour, "SMALL", small):
+    with patch.object(sct_to_engine, "POLLED", small):
         files = engine.generate(model, settings or ControlLoop())
     for name, text in files.items():
         (folder / name).write_text(text)
@@ -137,7 +138,7 @@ def build(
     folder: Path,
     settings: ControlLoop | None = None,
     *,
-    small: int = behaviour.SMALL,
+    small: int = sct_to_engine.POLLED,
 ) -> Path:
     """Compiles engine and program, the engine without a warning."""
     source, main, built = write(model, folder, settings, small=small), folder / "main.c", folder / "main"

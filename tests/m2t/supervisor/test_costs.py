@@ -11,7 +11,7 @@ import pytest
 import robosc
 from benchmarks.engine_costs import Costs, measured, stack
 from benchmarks.families import FAMILIES
-from robosc.m2t.c.behaviour import SMALL
+from robosc.m2m.sct_to_engine import POLLED
 from robosc.metamodel import sct
 
 pytestmark = pytest.mark.build
@@ -55,7 +55,7 @@ def test_the_dispatch_of_an_event_does_not_grow_with_their_number(costs: Costs) 
 
 def test_an_idle_tick_does_not_grow_with_the_number_of_events() -> None:
     medium, large = _counted(_costs(5)), _counted(_costs(20))
-    assert medium.events > SMALL
+    assert medium.events > POLLED
     assert large.events == 4 * medium.events
     assert large.idle <= 1.1 * medium.idle
     assert large.batch.mean <= 1.5 * medium.batch.mean

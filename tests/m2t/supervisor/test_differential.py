@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from robosc import configuration as config
 from robosc.engine import Settings
-from robosc.m2t.c.behaviour import SMALL
+from robosc.m2m.sct_to_engine import POLLED
 from robosc.metamodel import sct
 from robosc.synthesis import synthesize
 from tests.engine.robots import robots
@@ -44,7 +44,7 @@ def _compare(model: sct.SupervisoryControlModel, loop: Settings, seed: int) -> N
         reactions_per_tick=loop.reactions_per_tick,
         react_immediately=loop.react_immediately,
     )
-    for small in (SMALL, 0):
+    for small in (POLLED, 0):
         with tempfile.TemporaryDirectory() as folder:
             said = run(build(model, Path(folder), chosen, small=small), walk.script)
         for number, (theirs, ours) in enumerate(zip(said, walk.said, strict=True)):

@@ -12,8 +12,8 @@ import robosc
 from robosc.configuration import Configuration
 from robosc.configuration import ControlLoop as Chosen
 from robosc.engine import Settings
+from robosc.m2m.sct_to_engine import POLLED
 from robosc.m2t import supervisor
-from robosc.m2t.c.behaviour import SMALL
 from robosc.m2t.models import Models
 from robosc.metamodel import sct
 from robosc.metamodel.places import Place
@@ -57,7 +57,7 @@ def sources(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
     models = [make() for make in corners.ALL] + [dock(), line_follower()]
     return [
         write(each, folder, small=small)
-        for folder, small in ((tmp_path_factory.mktemp("sources"), SMALL), (tmp_path_factory.mktemp("large"), 0))
+        for folder, small in ((tmp_path_factory.mktemp("sources"), POLLED), (tmp_path_factory.mktemp("large"), 0))
         for each in models
     ]
 
@@ -90,7 +90,8 @@ def test_cppcheck_has_nothing_to_say(sources: Sequence[Path]) -> None:
 
 @pytest.mark.parametrize(
     ("make", "small"),
-    [(make, small) for make in (*corners.ALL, dock, line_follower) for small in (SMALL, 0)] + [(corners.large, SMALL)],
+    [(make, small) for make in (*corners.ALL, dock, line_follower) for small in (POLLED, 0)]
+    + [(corners.large, POLLED)],
 )
 def test_it_runs_as_in_python(make: Callable[[], sct.SupervisoryControlModel], small: int, tmp_path: Path) -> None:
     made = make()
@@ -187,7 +188,7 @@ def test_what_guards_have_in_common_is_one_function(tmp_path: Path) -> None:
     shared = re.findall(r"static bool (condition_\d+)\(", source)
     assert shared
     assert all(len(re.findall(rf"\b{each}\(state\)", source)) > 1 for each in shared)
-    assert "condition_1(state) /* partly added by synthesis */" in source
+    assert "condition_2(state) /* partly added by synthesis */" in source
 
 
 def test_what_a_model_says_stays_in_its_comment(tmp_path: Path) -> None:

@@ -27,7 +27,8 @@ static bool guard(const dock_state *state, dock_event event)
     /* approach is cancelled where a requirement on it no longer holds (dock.rscd) */
     case dock_action_approach_c_cancel:
         return state->action_approach == dock_action_approach_executing
-            && !(state->component_Power == dock_component_Power_low || state->component_Operator_wish == dock_Order_dock_now);
+            && state->component_Power == dock_component_Power_enough
+            && state->component_Operator_wish != dock_Order_dock_now;
     /* requirement approach needs Power.low or Operator.wish = dock_now (dock.rscd)
      * requirement Station.docked disables approach (dock.rscd)
      * requirement approach needs Station.failures < 3 (dock.rscd) */
@@ -39,7 +40,7 @@ static bool guard(const dock_state *state, dock_event event)
     /* requirement call_help needs Station.failures >= 3 (dock.rscd) */
     case dock_service_call_help_c_trigger:
         return state->service_call_help == dock_service_call_help_idle
-            && state->component_Station_failures >= 3U;
+            && state->component_Station_failures == 3U;
     /* requirement leave needs Operator.wish = leave and Power.enough (dock.rscd) */
     case dock_message_leave_c_trigger:
         return state->component_Station == dock_component_Station_docked
@@ -64,7 +65,8 @@ static bool guard(const dock_state *state, dock_event event)
             || state->component_Station_failures > 0U;
     case dock_data_light_c_none:
         return state->component_Station == dock_component_Station_away
-            && !(state->component_Power == dock_component_Power_enough || state->component_Station_failures > 0U);
+            && state->component_Power == dock_component_Power_low
+            && state->component_Station_failures == 0U;
     case dock_action_approach_u_feedback:
     case dock_action_approach_u_response:
     case dock_action_approach_u_error:

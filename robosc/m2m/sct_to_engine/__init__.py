@@ -1,0 +1,189 @@
+"""From an sct model with its supervisor to what a controller executes: passes over terms, each in a file of its name.
+
+`intervals` and `terms` are what the passes work on. The order is that of `transform`.
+"""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from contextvars import ContextVar
+from typing import TYPE_CHECKING
+
+from robosc.m2m.sct_to_engine.build_expressions import build_expression, build_value
+from robosc.m2m.sct_to_engine.collect_events import collect_edges, collect_events, collect_groups, collect_sources
+from robosc.m2m.sct_to_engine.combine_guards import combine_guards, within
+from robosc.m2m.sct_to_engine.find_readers import find_readers
+from robosc.m2m.sct_to_engine.lower_expressions import Lowering
+from robosc.m2m.sct_to_engine.merge_effects import EffectTerms, merge_effects
+from robosc.m2m.sct_to_engine.place_state import place_inputs, place_state
+from robosc.m2m.sct_to_engine.share_conditions import Shared, share_conditions
+from robosc.m2m.sct_to_engine.terms import Term, Terms
+from robosc.metamodel import engine, sct
+from robosc.semantics.roles import Roles, event_name, plant_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from robosc.m2m.sct_to_engine.collect_events import EdgeTable
+    from robosc.m2m.sct_to_engine.combine_guards import GuardTerms, Variables
+    from robosc.metamodel import expression as ex
+
+#: A robot of up to so many events is asked for all of them whenever something happened: to keep an eye on who is
+#: concerned costs more. Measured, see docs/engine.md.
+POLLED = 64
+
+#: While `remembered` lasts, what was made of which model.
+_made: ContextVar[dict[object, engine.EngineModel] | None] = ContextVar("made", default=None)
+
+
+@contextmanager
+def remembered() -> Iterator[None]:
+    """While it lasts, each model is transformed once, however many ask for it; nobody changes a model meanwhile."""
+    before = _made.set({})
+    try:
+        yield
+    finally:
+        _made.reset(before)
+
+
+def transform(model: sct.SupervisoryControlModel, polled: int | None = None) -> engine.EngineModel:
+    """What a controller executes of an sct model with its supervisor.
+
+    With up to `polled` events the control loop asks all of them, else those only whose state has changed. Raises
+    ValueError where the model has no supervisor, or one without a guard for a controllable event.
+    """
+    polled = POLLED if polled is None else polled
+    known = _made.get()
+    if known is None:
+        return _transform(model, polled)
+    if (model, polled) not in known:
+        known[model, polled] = _transform(model, polled)
+    return known[model, polled]
+
+
+def lowering(model: sct.SupervisoryControlModel) -> Lowering:
+    """What makes terms of the expressions of a model, which needs no supervisor."""
+    return Lowering(Terms(), place_state(model), place_inputs(model))
+
+
+def _transform(model: sct.SupervisoryControlModel, polled: int) -> engine.EngineModel:
+    _check(model)
+    variables, inputs = place_state(model), place_inputs(model)
+    edges = collect_edges(model)
+    events = collect_events(model, edges, inputs)
+    incremental = len(events) > polled and any(event.role != engine.Role.incoming for event in events.values())
+    lower = Lowering(Terms(), variables, inputs)
+    guards = combine_guards(model, edges, variables, lower)
+    shared = share_conditions(guards, events, incremental=incremental)
+    effects = {event: merge_effects(edges[event], variables, lower) for event in events}
+    made = engine.EngineModel(
+        name=model.name,
+        model=model,
+        variables=list(variables.values()),
+        inputs=list(inputs.values()),
+        sources=collect_sources(model, events),
+        groups=collect_groups(model, events),
+        conditions=list(shared.conditions.values()),
+        events=list(events.values()),
+        choices=_choices(model, events, edges, variables, lower),
+        settlingBound=Roles(model).settling_bound,
+        incremental=incremental,
+    )
+    for term, condition in shared.conditions.items():
+        condition.value = build_expression(term, shared, body=True)
+    for event, element in events.items():
+        element.guard = _guard(guards[event], shared)
+        element.effect = _effect(effects[event])
+    if incremental:
+        find_readers(made, guards, effects, shared)
+    return made
+
+
+def _check(model: sct.SupervisoryControlModel) -> None:
+    if model.supervisor is None:
+        raise ValueError(f"{model.name} has no supervisor: synthesize it first")
+    guarded = {guard.event for guard in model.supervisor.guards}
+    for plant in model.plants:
+        for event in plant.events:
+            if event.controllable and event not in guarded:
+                raise ValueError(f"the supervisor has no guard for {event_name(event)}")
+
+
+def _choices(
+    model: sct.SupervisoryControlModel,
+    events: Mapping[sct.Event, engine.Event],
+    edges: EdgeTable,
+    variables: Variables,
+    lower: Lowering,
+) -> list[engine.Choice]:
+    """The choices of the data to send; tells each trigger whose data is chosen its own."""
+    roles, choices = Roles(model), {}
+    for alternatives in roles.data:
+        plant = plant_of(alternatives[0])
+        variable = variables.get(plant)
+        choices[plant] = engine.Choice(
+            name=plant.name,
+            plant=plant,
+            variable=variable,
+            alternatives=[
+                engine.Alternative(
+                    event=events[event], chosen=_expression(_stays(edges, event, plant, variable, lower))
+                )
+                for event in alternatives
+            ],
+        )
+    for trigger, plant in roles.data_plants.items():
+        events[trigger].choice = choices.get(plant)
+    return list(choices.values())
+
+
+def _stays(
+    edges: EdgeTable, event: sct.Event, plant: sct.Plant, variable: engine.StateVariable | None, lower: Lowering
+) -> Term:
+    """Where an event would leave its plant in its location."""
+    taken = edges[event].get(plant, {})
+    if None in taken:
+        return lower.terms.at(variable, taken[None].target)
+    loops = [location for location, edge in taken.items() if edge.target is location]
+    return within(loops, plant.locations, variable, lower)
+
+
+def _expression(condition: Term) -> ex.Expression | None:
+    """The expression of a condition; None where it holds nowhere."""
+    return None if condition.constant == 0 else build_expression(condition)
+
+
+def _guard(guard: GuardTerms, shared: Shared) -> engine.Guard:
+    plants, requirement, synthesis = (None if part.constant == 1 else build_expression(part) for _, part in guard.parts)
+    return engine.Guard(
+        terms=[
+            engine.Term(condition=build_expression(term, shared), origins=origins)
+            for term, origins in shared.ask_for(guard).items()
+        ],
+        plants=plants,
+        requirement=requirement,
+        synthesis=synthesis,
+    )
+
+
+def _effect(effect: EffectTerms) -> engine.Effect:
+    def assignments(values: Mapping[engine.StateVariable, Term]) -> list[engine.Assignment]:
+        return [
+            engine.Assignment(variable=variable, value=build_value(variable, value, effect.copied))
+            for variable, value in values.items()
+        ]
+
+    steps: list[engine.Step] = []
+    for step in effect.steps:
+        if len(step.cases) == 1 and step.cases[0][0] is None:
+            steps += assignments(step.cases[0][1])
+            continue
+        cases = [
+            engine.Case(
+                condition=None if condition is None else build_expression(condition),
+                assignments=assignments(values),
+            )
+            for condition, values in step.cases
+        ]
+        steps.append(engine.Switch(cases=cases))
+    return engine.Effect(steps=steps, copied=list(effect.copied))

@@ -1,0 +1,129 @@
+"""Pass: terms as expressions of the engine model, with a conversion wherever integers of different storage meet."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from robosc.m2m.sct_to_engine.intervals import Width, working_width
+from robosc.m2m.sct_to_engine.terms import COMPLEMENTS
+from robosc.metamodel import engine, sct
+from robosc.metamodel import expression as ex
+
+if TYPE_CHECKING:
+    from collections.abc import Collection
+
+    from robosc.m2m.sct_to_engine.share_conditions import Shared
+    from robosc.m2m.sct_to_engine.terms import Term
+
+
+def build_expression(
+    root: Term,
+    shared: Shared | None = None,
+    before: Collection[engine.StateVariable] = (),
+    *,
+    body: bool = False,
+) -> ex.Expression:
+    """The expression of a term: `shared` terms in it are references to conditions, but not the term itself as `body`.
+
+    Variables in `before` are read as they were before the event.
+    """
+    built: list[ex.Expression] = []
+    pending = [(root, 0)]
+    while pending:
+        term, ready = pending.pop()
+        if ready:
+            operands = built[len(built) - ready :]
+            del built[len(built) - ready :]
+            built.append(_built(term, operands))
+        elif shared is not None and term in shared.conditions and not (body and term is root):
+            built.append(engine.ConditionReference(condition=shared.conditions[term]))
+        elif term.operands:
+            parts = term.operands if shared is None else shared.operands(term)
+            pending.append((term, len(parts)))
+            pending += [(part, 0) for part in reversed(parts)]
+        else:
+            built.append(_leaf(term, before))
+    return built[0]
+
+
+def build_value(variable: engine.StateVariable, value: Term, before: Collection[engine.StateVariable]) -> ex.Expression:
+    """The expression of a value that a variable is given, converted to its storage."""
+    expression = build_expression(value, None, before)
+    if value.sort is not int or value.constant is not None:
+        return expression
+    stored = Width(variable.bits, variable.signed)
+    computed = isinstance(value.leaf, engine.Declaration) or _width(value) != Width(16, signed=True)
+    return expression if computed and _width(value) == stored else _converted(expression, stored, widens=False)
+
+
+def _leaf(term: Term, before: Collection[engine.StateVariable]) -> ex.Expression:
+    leaf = term.leaf
+    if isinstance(leaf, engine.StateVariable):
+        return engine.VariableReference(variable=leaf, before=leaf in before)
+    if isinstance(leaf, engine.Input):
+        return engine.InputReference(input=leaf)
+    assert isinstance(leaf, int)
+    match term.sort:
+        case None:
+            return ex.BooleanLiteral(value=bool(leaf))
+        case ex.Enumeration():
+            return ex.EnumerationLiteralReference(literal=term.sort.literals[leaf])
+        case sct.Plant():
+            return engine.LocationLiteral(location=term.sort.locations[leaf])
+    literal = ex.IntegerLiteral(value=abs(leaf))
+    return literal if leaf >= 0 else ex.UnaryMinus(operand=literal)
+
+
+def _built(term: Term, operands: list[ex.Expression]) -> Any:
+    """An operator on operands that are converted to what it computes in."""
+    kind: Any = term.operator
+    if kind is engine.Saturation:
+        low, high = term.leaf
+        bits = working_width(term.operands[0].values.union(term.leaf), least=32).bits
+        return engine.Saturation(operand=operands[0], minimum=low, maximum=high, bits=bits)
+    if kind in (engine.And, engine.Or):
+        return kind(operands=operands)
+    numbers = [position for position, operand in enumerate(term.operands) if operand.sort is int]
+    if numbers and not (kind in COMPLEMENTS and any(operand.constant is not None for operand in term.operands)):
+        _convert(term, numbers, operands)
+    if kind is ex.FunctionCall:
+        return ex.FunctionCall(function=term.leaf, arguments=operands)
+    match operands:
+        case [operand]:
+            return kind(operand=operand)
+        case [condition, then, otherwise]:
+            return ex.Conditional(condition=condition, then=then, otherwise=otherwise)
+    return kind(left=operands[0], right=operands[1])
+
+
+def _convert(term: Term, numbers: list[int], operands: list[ex.Expression]) -> None:
+    """Converts the operands that are numbers; those of a choice are both to be of one storage, literals too."""
+    choice = term.operator is ex.Conditional
+    wanted = _working(term)
+    for position in numbers:
+        operand = term.operands[position]
+        if choice if operand.constant is not None else _width(operand) != wanted:
+            operands[position] = _converted(operands[position], wanted, widens=True)
+
+
+def _converted(expression: ex.Expression, width: Width, *, widens: bool) -> engine.Conversion:
+    return engine.Conversion(operand=expression, bits=width.bits, signed=width.signed, widens=widens)
+
+
+def _width(number: Term) -> Width:
+    """What the value of an integer that is no literal is stored or computed in."""
+    if isinstance(number.leaf, engine.Declaration):
+        return Width(number.leaf.bits, number.leaf.signed)
+    if number.operator is engine.Saturation:
+        return working_width(number.operands[0].values.union(number.leaf), least=32)
+    return _working(number)
+
+
+def _working(term: Term) -> Width:
+    """What an operator computes in: a signed integer that holds its operands and its result."""
+    values = [operand.values for operand in term.operands if operand.sort is int]
+    values += [term.values] if term.sort is int else []
+    union = values[0]
+    for interval in values[1:]:
+        union = union.union(interval)
+    return working_width(union, least=32 if term.operator is ex.Conditional else 16)

@@ -1,0 +1,141 @@
+"""Pass: the events in the order of the control loop, with what it and a reader have to know about each."""
+
+from __future__ import annotations
+
+from pathlib import PurePath
+from typing import TYPE_CHECKING
+
+from robosc.metamodel import engine, sct
+from robosc.semantics.printing import RobotPrinter
+from robosc.semantics.roles import Roles, event_name, plant_of, provide_numbers
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+#: The edges of one event in one plant by the location that they start from; by None the one that all locations have.
+Edges = dict[sct.Location | None, sct.Edge]
+#: The edges of each event in each plant that takes part in it, in the order of the plants.
+EdgeTable = dict[sct.Event, dict[sct.Plant, Edges]]
+
+#: What happened, by the kinds of the event and its plant, else by that of the event.
+_OF_KIND = {
+    (sct.EventKind.trigger, sct.PlantKind.message): "{what} is sent{on}.",
+    (sct.EventKind.trigger, sct.PlantKind.service): "{what} is called{on}.",
+    (sct.EventKind.trigger, sct.PlantKind.action): "{what} is started{on}.",
+    (sct.EventKind.response, sct.PlantKind.message): "{what} arrived{on}.",
+}
+_SENTENCES = {
+    sct.EventKind.trigger: "{what}: {name}.",
+    sct.EventKind.cancel: "{what} is cancelled{on}.",
+    sct.EventKind.response: "{what} is done{on}.",
+    sct.EventKind.error: "{what} failed{on}.",
+    sct.EventKind.feedback: "{what} is under way{on}.",
+    sct.EventKind.reset: "{what} is ready to be used again.",
+    sct.EventKind.tau: "{what} changes by itself{steps}.",
+    sct.EventKind.data: "{what} is to be sent {data}.",
+}
+
+
+def collect_edges(model: sct.SupervisoryControlModel) -> EdgeTable:
+    """The edges of each event."""
+    table: EdgeTable = {event: {} for plant in model.plants for event in plant.events}
+    for plant in model.plants:
+        for location in plant.locations:
+            for edge in location.edges:
+                table[edge.event].setdefault(plant, {})[location] = edge
+        for edge in plant.edges:
+            table[edge.event][plant] = {None: edge}
+    return table
+
+
+def collect_events(
+    model: sct.SupervisoryControlModel, edges: EdgeTable, inputs: Mapping[sct.Input, engine.Input]
+) -> dict[sct.Event, engine.Event]:
+    """The events by role: cancels, triggers, silent events, data, and what comes from the robot."""
+    roles = Roles(model)
+    remarks = _remarks(model)
+    numbers = {event: number for events in roles.data for event, number in provide_numbers(plant_of(events[0])).items()}
+    by_role = [
+        (engine.Role.cancel, roles.cancels),
+        (engine.Role.trigger, roles.triggers),
+        (engine.Role.silent, roles.silent),
+        (engine.Role.data, [event for events in roles.data for event in events]),
+        (engine.Role.incoming, roles.incoming),
+    ]
+    return {
+        event: engine.Event(
+            name=event_name(event),
+            event=event,
+            role=role,
+            description=_description(event, edges[event].get(plant_of(event), {}), numbers.get(event)),
+            remarks=remarks.get(event, ()),
+            inputs=[inputs[carried] for carried in event.inputs],
+        )
+        for role, events in by_role
+        for event in events
+    }
+
+
+def collect_sources(
+    model: sct.SupervisoryControlModel, events: Mapping[sct.Event, engine.Event]
+) -> list[engine.Source]:
+    """What incoming events come from; tells each event its own."""
+    roles, sources = Roles(model), []
+    batches = {together[0] for together in roles.batches}
+    for together in roles.sources:
+        plant = plant_of(together[0])
+        topic = plant.topic if plant.kind == sct.PlantKind.message else None
+        sources.append(engine.Source(name=topic or plant.name, batch=together[0] in batches))
+        for event in together:
+            events[event].source = sources[-1]
+    return sources
+
+
+def collect_groups(model: sct.SupervisoryControlModel, events: Mapping[sct.Event, engine.Event]) -> list[engine.Group]:
+    """The triggers that exclude each other in a round, then those that run once in a tick; tells each its group."""
+    roles, groups = Roles(model), []
+    for together in roles.shared_topics:
+        groups.append(engine.Group(name=plant_of(together[0]).topic, span=engine.Span.round))
+        for event in together:
+            events[event].group = groups[-1]
+    for event in roles.once_per_tick:
+        groups.append(engine.Group(name=event_name(event), span=engine.Span.tick))
+        events[event].group = groups[-1]
+    return groups
+
+
+def _remarks(model: sct.SupervisoryControlModel) -> dict[sct.Event, list[str]]:
+    """What the requirements on each event say, each with its file, and why synthesis restricts it.
+
+    Where in the file it stands is left out: what does not change the robot does not change its code.
+    """
+    remarks: dict[sct.Event, list[str]] = {}
+    for requirement in model.requirements:
+        if requirement.text:
+            file = requirement.source.file if requirement.source else None
+            where = f" ({PurePath(file.name).name})" if file else ""
+            remarks.setdefault(requirement.event, []).append(f"{requirement.text}{where}")
+    for guard in model.supervisor.guards if model.supervisor else ():
+        if guard.explanation:
+            remarks.setdefault(guard.event, []).append(f"synthesis prevents this: {guard.explanation}")
+    return remarks
+
+
+def _description(event: sct.Event, edges: Edges, number: int | None) -> str:
+    """What happened in the robot when this event has; `number` is that of the `provide` that it chooses."""
+    plant = plant_of(event)
+    sentence = _OF_KIND.get((event.kind, plant.kind)) or _SENTENCES[event.kind]
+    steps = dict.fromkeys(
+        f"{location.name} to {edge.target.name}"
+        for origin, edge in edges.items()
+        for location in (plant.locations if origin is None else [origin])
+    )
+    guard = next((edge.guard for edge in edges.values()), None)
+    data = f"with the data of `provide` {number}" + (f", if {RobotPrinter()(guard)}" if guard else "")
+    return sentence.format(
+        what=plant.origin or plant.name,
+        name=event.name,
+        on=f" ({plant.topic})" if plant.topic else "",
+        steps=f": {', '.join(steps)}" if steps else "",
+        data=data if number else "without data",
+    )

@@ -1,0 +1,58 @@
+"""Pass: who reads what an event writes, for a control loop that asks nobody else again."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robosc.metamodel import engine, sct
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from robosc.m2m.sct_to_engine.combine_guards import GuardTerms
+    from robosc.m2m.sct_to_engine.merge_effects import EffectTerms
+    from robosc.m2m.sct_to_engine.share_conditions import Shared
+
+_ASKED = (engine.Role.cancel, engine.Role.trigger, engine.Role.silent)
+
+
+def find_readers(
+    model: engine.EngineModel,
+    guards: Mapping[sct.Event, GuardTerms],
+    effects: Mapping[sct.Event, EffectTerms],
+    shared: Shared,
+) -> None:
+    """Tells each event, and each condition that guards refer to by themselves, its readers."""
+    read: dict[object, list[engine.Reader]] = {}
+
+    def note(reader: engine.Reader, cells: Iterable[object]) -> None:
+        for cell in dict.fromkeys(cells):
+            read.setdefault(cell, []).append(reader)
+
+    for event in model.events:
+        if event.role in _ASKED:
+            chosen = event.choice.variable if event.choice else None
+            note(event, [*([] if chosen is None else [chosen]), *_read(guards[event.event], shared)])
+    for choice in model.choices:
+        cells = [cell for one in choice.alternatives for cell in _read(guards[one.event.event], shared)]
+        note(choice, [*([] if choice.variable is None else [choice.variable]), *cells])
+    watched = [(term, condition) for term, condition in shared.conditions.items() if condition in read]
+    for term, condition in watched:
+        note(condition, term.reads())
+    number = {reader: position for position, reader in enumerate((*model.events, *model.choices, *model.conditions))}
+
+    def readers(cells: Iterable[object]) -> list[engine.Reader]:
+        return sorted({reader for cell in cells for reader in read.get(cell, ())}, key=number.__getitem__)
+
+    for event in model.events:
+        event.readers.extend(readers({variable for step in effects[event.event].steps for variable in step.writes()}))
+    for _, condition in watched:
+        condition.readers.extend(readers([condition]))
+
+
+def _read(guard: GuardTerms, shared: Shared) -> list[object]:
+    """What a guard reads: conditions that it shares, and for the rest locations and variables."""
+    cells: list[object] = []
+    for term in shared.ask_for(guard):
+        cells += [shared.conditions[term]] if term in shared.conditions else term.reads()
+    return cells

@@ -1,0 +1,123 @@
+"""Pass: the expressions of an sct model as terms, negations pushed to where they end."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robosc.m2m.sct_to_engine.terms import COMPLEMENTS, Term, Terms
+from robosc.metamodel import engine, sct
+from robosc.metamodel import expression as ex
+from robosc.semantics.walks import operands
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+#: An expression, and whether it is meant as it stands (else its negation).
+_Wanted = tuple[ex.Expression, bool]
+
+
+class Lowering:
+    """Makes terms of expressions; each expression is looked at once, however often it is asked for.
+
+    `variables` and `inputs` say where the model's elements are kept; of a plant with one location nothing is.
+    """
+
+    def __init__(
+        self,
+        terms: Terms,
+        variables: Mapping[sct.Plant | sct.DiscreteVariable, engine.StateVariable],
+        inputs: Mapping[sct.Input, engine.Input],
+    ) -> None:
+        self.terms = terms
+        self._variables = variables
+        self._inputs = inputs
+        self._done: dict[_Wanted, Term] = {}
+
+    def __call__(self, expression: ex.Expression | None) -> Term:
+        """The term of an expression; of None, which means that there is no condition, `true`.
+
+        Raises ValueError for what no sct model holds: doubles, strings, division.
+        """
+        if expression is None:
+            return self.terms.true
+        pending: list[tuple[_Wanted, list[_Wanted] | None]] = [((expression, True), None)]
+        while pending:
+            wanted, parts = pending.pop()
+            if parts is not None:
+                self._done[wanted] = self._made(wanted, [self._done[part] for part in parts])
+            elif wanted not in self._done:
+                parts = _parts(wanted)
+                pending.append((wanted, parts))
+                pending += [(part, None) for part in reversed(parts)]
+        return self._done[expression, True]
+
+    def _made(self, wanted: _Wanted, parts: list[Term]) -> Term:
+        expression, positive = wanted
+        kind = _junction(wanted)
+        if kind is not None:
+            return self.terms.junction(kind, parts)
+        if isinstance(expression, ex.Negation):
+            return parts[0]
+        if isinstance(expression, ex.FunctionCall):
+            return self.terms.operation(ex.FunctionCall, *parts, function=expression.function)
+        if isinstance(expression, (ex.BinaryExpression, ex.UnaryMinus, ex.Conditional)):
+            operator = type(expression)
+            return self.terms.operation(operator if positive else COMPLEMENTS.get(operator, operator), *parts)
+        atom = self._atom(expression)
+        return atom if positive else self.terms.negation(atom)
+
+    def _atom(self, expression: ex.Expression) -> Term:
+        match expression:
+            case ex.BooleanLiteral():
+                return self.terms.constant(None, int(expression.value))
+            case ex.IntegerLiteral():
+                return self.terms.constant(int, expression.value)
+            case ex.EnumerationLiteralReference():
+                owner: ex.Enumeration = expression.literal.eContainer()
+                return self.terms.constant(owner, list(owner.literals).index(expression.literal))
+            case sct.VariableReference():
+                return self.terms.reference(self._variables[expression.variable])
+            case sct.InputReference():
+                return self.terms.reference(self._inputs[expression.input])
+            case sct.LocationReference():
+                return self.terms.at(self._variables.get(expression.location.eContainer()), expression.location)
+        raise ValueError(f"an sct model holds no {type(expression).__name__}")
+
+
+def _junction(wanted: _Wanted) -> type[engine.And | engine.Or] | None:
+    """What a conjunction, disjunction, implication or its negation becomes; None of anything else."""
+    match wanted:
+        case (ex.Conjunction(), positive):
+            return engine.And if positive else engine.Or
+        case (ex.Disjunction() | ex.Implication(), positive):
+            return engine.Or if positive else engine.And
+    return None
+
+
+def _parts(wanted: _Wanted) -> list[_Wanted]:
+    """What is lowered before: of a junction all operands at once, however they are nested."""
+    kind = _junction(wanted)
+    if kind is None:
+        return _children(wanted)
+    found: list[_Wanted] = []
+    pending = [wanted]
+    while pending:
+        part = pending.pop()
+        if _junction(part) is kind or isinstance(part[0], ex.Negation):
+            pending += reversed(_children(part))
+        else:
+            found.append(part)
+    return found
+
+
+def _children(wanted: _Wanted) -> list[_Wanted]:
+    match wanted:
+        case (ex.Implication(left=left, right=right), positive):
+            return [(left, not positive), (right, positive)]
+        case (ex.Conjunction(left=left, right=right) | ex.Disjunction(left=left, right=right), positive):
+            return [(left, positive), (right, positive)]
+        case (ex.Negation(operand=operand), positive):
+            return [(operand, not positive)]
+        case (ex.Conditional(condition=condition, then=then, otherwise=otherwise), positive):
+            return [(condition, True), (then, positive), (otherwise, positive)]
+    return [(operand, True) for operand in operands(wanted[0])]

@@ -1,0 +1,165 @@
+"""Pass: conditions that several guards have in common become elements of their own (common subexpressions)."""
+
+from __future__ import annotations
+
+from collections import Counter
+from itertools import islice
+from typing import TYPE_CHECKING
+
+from robosc.metamodel import engine, sct
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from robosc.m2m.sct_to_engine.combine_guards import GuardTerms
+    from robosc.m2m.sct_to_engine.terms import Term
+    from robosc.metamodel import expression as ex
+
+#: In how many guards a single comparison of a variable is to be for an incremental loop to compute it once for all.
+_MANY = 4
+_JUNCTIONS = (engine.And, engine.Or)
+#: How often conditions are looked for that only one other refers to, since it is put together from longer ones.
+_ROUNDS = 5
+
+#: Who refers to each term: guards and shared terms, no more than `_MANY` of them.
+_Owners = dict["Term", dict[object, None]]
+
+
+class Shared:
+    """Terms that are shared, and how others are put together from them."""
+
+    def __init__(self, terms: Sequence[Term]) -> None:
+        self.conditions = {term: engine.Condition(name=f"condition_{number}") for number, term in enumerate(terms, 1)}
+        parts = Counter(operand for term in terms for operand in term.operands)
+        #: By the operand that the fewest of them have.
+        self._with: dict[Term, list[Term]] = {}
+        for term in terms:
+            if term.operator in _JUNCTIONS:
+                self._with.setdefault(min(term.operands, key=parts.__getitem__), []).append(term)
+
+    def folded(self, kind: type[ex.Expression], operands: Sequence[Term], but: Term | None = None) -> dict[Term, Term]:
+        """For each operand of a junction what stands for it: itself, or a shared junction of several, long ones first.
+
+        A shared term is not put together from itself: `but` is left out.
+        """
+        given = set(operands)
+        found = [
+            term
+            for operand in operands
+            for term in self._with.get(operand, ())
+            if term.operator is kind and term is not but and given.issuperset(term.operands)
+        ]
+        stands: dict[Term, Term] = {}
+        for term in sorted(found, key=lambda term: -len(term.operands)):
+            if not stands.keys() & term.operands:
+                stands |= dict.fromkeys(term.operands, term)
+        return {operand: stands.get(operand, operand) for operand in operands}
+
+    def operands(self, term: Term) -> Sequence[Term]:
+        """The operands of a term, shared ones for those that they stand for."""
+        if term.operator not in _JUNCTIONS:
+            return term.operands
+        return list(dict.fromkeys(self.folded(term.operator, term.operands, term).values()))
+
+    def inside(self, roots: Iterable[Term]) -> dict[Term, None]:
+        """The shared terms among some terms and, outside of other shared ones, below them."""
+        found: dict[Term, None] = {}
+        seen = set()
+        pending = list(roots)
+        while pending:
+            term = pending.pop()
+            if term in self.conditions:
+                found[term] = None
+            elif term not in seen:
+                seen.add(term)
+                pending += self.operands(term)
+        return found
+
+    def ask_for(self, guard: GuardTerms) -> dict[Term, list[engine.Origin]]:
+        """The terms of a guard with those who ask for them: none twice, those together that are shared."""
+        if guard.whole.constant is not None:
+            false = [origin for origin, part in guard.parts if part is guard.whole]
+            either = [origin for origin, part in guard.parts if part.constant is None]
+            return {} if guard.whole.constant else {guard.whole: false or either}
+        stands = self.folded(engine.And, operands_of(guard.whole))
+        asked: dict[Term, list[engine.Origin]] = {}
+        for origin, part in guard.parts:
+            for operand in operands_of(part):
+                origins = asked.setdefault(stands[operand], [])
+                if origin not in origins:
+                    origins.append(origin)
+        return asked
+
+
+def share_conditions(
+    guards: Mapping[sct.Event, GuardTerms], events: Mapping[sct.Event, engine.Event], *, incremental: bool
+) -> Shared:
+    """The terms that are shared; inner ones come before those that they are part of.
+
+    Shared is a junction that several guards or other shared conditions refer to; where the control loop is incremental
+    also a comparison of a variable that many guards ask for by itself.
+    """
+    found = _find(guards.values(), incremental=incremental)
+    for _ in range(_ROUNDS):
+        shared = Shared(found)
+        called = Counter(term for guard in guards.values() for term in shared.inside(shared.ask_for(guard)))
+        called.update(inner for term in found for inner in shared.inside(shared.operands(term)))
+        kept = [term for term in found if called[term] > 1]
+        if len(kept) == len(found):
+            break
+        found = kept
+    shared = Shared(found)
+    for event, guard in guards.items():
+        pending = list(shared.inside(shared.ask_for(guard)))
+        told = set()
+        while pending:
+            term = pending.pop()
+            if term not in told:
+                told.add(term)
+                shared.conditions[term].events.append(events[event])
+                pending += shared.inside(shared.operands(term))
+    return shared
+
+
+def _find(guards: Iterable[GuardTerms], *, incremental: bool) -> list[Term]:
+    """The common subexpressions of the guards: every term is looked at once, outer ones first."""
+    order: dict[Term, None] = {}
+    owners: _Owners = {}
+    asked: _Owners = {}
+    for guard in guards:
+        if guard.whole.constant is None:
+            roots = [*operands_of(guard.plants), guard.requirement, guard.synthesis]
+            _refer(owners, roots, [guard])
+            _refer(asked, roots, [guard])
+            for root in roots:
+                order |= dict.fromkeys(root.below())
+    shared = []
+    for term in reversed(order):
+        own, direct = owners.pop(term, {}), asked.pop(term, {})
+        junction = term.operator in _JUNCTIONS
+        if len(own) > 1 if junction else incremental and len(direct) >= _MANY and _reads_variable(term):
+            shared.append(term)
+            own, direct = {term: None}, {}
+        _refer(owners, term.operands, own)
+        if term.operator is engine.And:
+            _refer(asked, term.operands, direct)
+    return shared[::-1]
+
+
+def operands_of(condition: Term) -> Sequence[Term]:
+    """What is to hold so that a condition does."""
+    if condition.constant is not None:
+        return () if condition.constant else (condition,)
+    return condition.operands if condition.operator is engine.And else (condition,)
+
+
+def _refer(owners: _Owners, terms: Iterable[Term], by: Iterable[object]) -> None:
+    for term in terms:
+        known = owners.setdefault(term, {})
+        known |= dict.fromkeys(islice(by, _MANY))
+
+
+def _reads_variable(term: Term) -> bool:
+    return term.constant is None and any(
+        isinstance(read, engine.StateVariable) and read.variable is not None for read in term.reads()
+    )

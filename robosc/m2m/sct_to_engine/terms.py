@@ -1,0 +1,268 @@
+"""Expressions as terms: normalised, and each made once, so that equal ones are the same object."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+from robosc.m2m.sct_to_engine.intervals import interval_of
+from robosc.metamodel import engine, sct
+from robosc.metamodel import expression as ex
+from robosc.semantics.domains import BOOLEAN, Interval
+from robosc.semantics.operators import BY_CLASS, FUNCTIONS
+
+if TYPE_CHECKING:
+    from collections.abc import Container, Hashable, Iterable, Iterator, Mapping, Sequence
+
+#: Of what a term is a value: None is a truth value, `int` an integer, else the owner of the literals or locations.
+Sort = type[int] | ex.Enumeration | sct.Plant | None
+#: How many values a variable may have for the conditions on it to be decided by trying them all.
+_TRIED = 1024
+
+COMPLEMENTS: Final[Mapping[type[ex.Expression], type[ex.Expression]]] = {
+    ex.Equation: ex.Inequation,
+    ex.Inequation: ex.Equation,
+    ex.LessThan: ex.GreaterOrEqual,
+    ex.GreaterOrEqual: ex.LessThan,
+    ex.GreaterThan: ex.LessOrEqual,
+    ex.LessOrEqual: ex.GreaterThan,
+}
+_REFLEXIVE = (ex.Equation, ex.LessOrEqual, ex.GreaterOrEqual)
+_COMMUTATIVE = (ex.Equation, ex.Inequation, ex.Addition, ex.Multiplication, engine.And, engine.Or)
+
+
+class Term:
+    """An expression: the class of its operator or reference, its operands, and for a leaf what it refers to or is.
+
+    `values` is the interval of its values, `cells` what it depends on, but no more than two of these.
+    """
+
+    __slots__ = ("cells", "leaf", "operands", "operator", "sort", "values")
+    cells: dict[engine.Declaration, None]
+
+    def __init__(
+        self,
+        operator: type[ex.Expression],
+        operands: tuple[Term, ...],
+        leaf: Any,
+        sort: Sort,
+        values: Interval,
+    ) -> None:
+        self.operator = operator
+        self.operands = operands
+        self.leaf = leaf
+        self.sort = sort
+        self.values = values
+        found: dict[engine.Declaration, None] = {}
+        if isinstance(leaf, engine.Declaration):
+            found[leaf] = None
+        for operand in operands:
+            found |= operand.cells
+            if len(found) > 1:
+                break
+        self.cells = found
+
+    @property
+    def constant(self) -> int | None:
+        """Its only value, where it has only one."""
+        return self.values.single
+
+    def below(self, leaves: Container[Term] = ()) -> Iterator[Term]:
+        """The term and all that it is made of, each once and before what it is part of; below `leaves` nothing."""
+        seen: set[Term] = set()
+        pending = [(self, False)]
+        while pending:
+            term, ready = pending.pop()
+            if ready:
+                yield term
+            elif term not in seen:
+                seen.add(term)
+                pending.append((term, True))
+                if term not in leaves:
+                    pending += [(operand, False) for operand in reversed(term.operands)]
+
+    def reads(self) -> dict[engine.Declaration, None]:
+        """All that it depends on, in the order of the text."""
+        return dict.fromkeys(term.leaf for term in self.below() if isinstance(term.leaf, engine.Declaration))
+
+
+class Terms:
+    """Makes terms. What can be decided before the robot runs is decided when a term is made."""
+
+    def __init__(self) -> None:
+        self._made: dict[Hashable, Term] = {}
+        self._tables: dict[Term, int] = {}
+        self._positions: dict[sct.Location, int] = {}
+        self.true = self.constant(None, 1)
+        self.false = self.constant(None, 0)
+
+    def constant(self, sort: Sort, value: int) -> Term:
+        """A value: a truth value, an integer, or the literal or location at a position."""
+        kind: type[ex.Expression] = ex.BooleanLiteral if sort is None else ex.IntegerLiteral
+        if isinstance(sort, (sct.Plant, ex.Enumeration)):
+            kind = engine.LocationLiteral if isinstance(sort, sct.Plant) else ex.EnumerationLiteralReference
+        return self._make(kind, (), value, sort, Interval(value, value))
+
+    def reference(self, declared: engine.Declaration) -> Term:
+        """What a variable or an input holds."""
+        values = interval_of(declared.type)
+        match declared.type:
+            case ex.BooleanType():
+                sort: Sort = None
+            case ex.EnumerationType(enumeration=owner) | engine.LocationType(plant=owner):
+                sort = owner
+            case _:
+                sort = int
+        if values.single is not None:
+            return self.constant(sort, values.low)
+        kind = engine.InputReference if isinstance(declared, engine.Input) else engine.VariableReference
+        return self._make(kind, (), declared, sort, values)
+
+    def at(self, variable: engine.StateVariable | None, location: sct.Location, *, holds: bool = True) -> Term:
+        """That a plant is in a location, or is not; without a variable the plant has no other."""
+        if variable is None:
+            return self.true if holds else self.false
+        place = self.place(variable.plant, location)
+        return self.operation(ex.Equation if holds else ex.Inequation, self.reference(variable), place)
+
+    def place(self, plant: sct.Plant, location: sct.Location) -> Term:
+        """A location of a plant, as a value."""
+        if location not in self._positions:
+            self._positions |= {known: position for position, known in enumerate(plant.locations)}
+        return self.constant(plant, self._positions[location])
+
+    def operation(self, kind: type[ex.Expression], *operands: Term, function: str | None = None) -> Term:
+        """An operator of the expression metamodel on its operands, but for those that `junction` and `negation` make.
+
+        Of a call `function` is the name.
+
+        Raises ValueError for what no sct model holds: doubles, strings, division.
+        """
+        if kind is ex.Conditional:
+            return self._conditional(*operands)
+        if kind in COMPLEMENTS:
+            return self._comparison(kind, *operands)
+        return self._make(kind, operands, function, int, _interval(kind, *operands, function=function))
+
+    def _conditional(self, condition: Term, then: Term, otherwise: Term) -> Term:
+        if condition.constant is not None or then is otherwise:
+            return otherwise if condition.constant == 0 else then
+        operands = (condition, then, otherwise)
+        return self._make(ex.Conditional, operands, None, then.sort, then.values.union(otherwise.values))
+
+    def _comparison(self, kind: type[ex.Expression], left: Term, right: Term) -> Term:
+        if left is right:
+            return self.true if kind in _REFLEXIVE else self.false
+        for side, other in ((left, right), (right, left)):
+            if side.constant is None:
+                continue
+            if other.sort is None:
+                return other if (side is self.true) is (kind is ex.Equation) else self.negation(other)
+            # Not above the least value, not below the greatest: to be it.
+            smaller, greater = (ex.LessOrEqual, ex.GreaterOrEqual)[:: 1 if side is right else -1]
+            if (kind is smaller and side.values.low == other.values.low) or (
+                kind is greater and side.values.low == other.values.high
+            ):
+                kind = ex.Equation
+            # Of two locations or literals: not to be one is to be the other.
+            if kind is ex.Inequation and other.sort is not int and other.values == BOOLEAN:
+                return self._comparison(ex.Equation, other, self.constant(other.sort, 1 - side.values.low))
+        return self._make(kind, (left, right), None, None, _interval(kind, left, right))
+
+    def negation(self, condition: Term) -> Term:
+        """The opposite of a condition: of a comparison the complementary one."""
+        if condition.operator in COMPLEMENTS:
+            return self._comparison(COMPLEMENTS[condition.operator], *condition.operands)
+        if condition.operator is ex.Negation:
+            return condition.operands[0]
+        return self._make(ex.Negation, (condition,), None, None, _interval(ex.Negation, condition))
+
+    def junction(self, kind: type[engine.And | engine.Or], conditions: Iterable[Term]) -> Term:
+        """A conjunction or disjunction, without what is decided, said twice, or inside another of the same class."""
+        neutral, absorbing = (self.true, self.false) if kind is engine.And else (self.false, self.true)
+        parts: dict[Term, None] = {}
+        for condition in conditions:
+            parts |= dict.fromkeys(condition.operands if condition.operator is kind else (condition,))
+        parts.pop(neutral, None)
+        if absorbing in parts or self._contradictory(kind, parts):
+            return absorbing
+        if len(parts) < 2:
+            return next(iter(parts), neutral)
+        return self._make(kind, tuple(parts), None, None, BOOLEAN)
+
+    def _contradictory(self, kind: type[engine.And | engine.Or], parts: Iterable[Term]) -> bool:
+        """Whether some of the parts, all on one variable or location, decide the junction whatever its value is."""
+        groups: dict[engine.Declaration, list[Term]] = {}
+        for part in parts:
+            if len(part.cells) == 1:
+                groups.setdefault(next(iter(part.cells)), []).append(part)
+        for cell, group in groups.items():
+            # No `len`: that of a range ends at 2^63.
+            size = cell.maximum - cell.minimum + 1
+            if len(group) > 1 and size <= _TRIED:
+                everywhere = (1 << size) - 1
+                table = everywhere if kind is engine.And else 0
+                for part in group:
+                    table = table & self._table(part, cell) if kind is engine.And else table | self._table(part, cell)
+                if table == (0 if kind is engine.And else everywhere):
+                    return True
+        return False
+
+    def _table(self, condition: Term, cell: engine.Declaration) -> int:
+        """For which values of the only cell that it depends on a condition holds: a bit for each, the least first."""
+        if condition not in self._tables:
+            order = list(condition.below(self._tables))
+            table = 0
+            for value in range(cell.maximum, cell.minimum - 1, -1):
+                known: dict[Term, int] = {}
+                for term in order:
+                    if term in self._tables:
+                        known[term] = self._tables[term] >> (value - cell.minimum) & 1
+                    elif term.operands:
+                        known[term] = _value(term, [known[operand] for operand in term.operands])
+                    else:
+                        known[term] = value if term.constant is None else term.constant
+                table = table << 1 | bool(known[condition])
+            self._tables[condition] = table
+        return self._tables[condition]
+
+    def saturation(self, value: Term, bounds: Interval) -> Term:
+        """An integer as a variable with these bounds keeps it: the nearest bound where it is outside."""
+        if bounds.holds(value.values):
+            return value
+        low, high = (min(max(bound, bounds.low), bounds.high) for bound in value.values)
+        if low == high:
+            return self.constant(int, low)
+        return self._make(engine.Saturation, (value,), bounds, int, Interval(low, high))
+
+    def shared(self, condition: engine.Condition, value: Term) -> Term:
+        """A reference to a shared condition with this value."""
+        return self._make(engine.ConditionReference, (), condition, None, value.values)
+
+    def _make(
+        self, kind: type[ex.Expression], operands: Sequence[Term], leaf: Hashable, sort: Sort, values: Interval
+    ) -> Term:
+        if values.single is not None and operands:
+            return self.constant(sort, values.low)
+        operands = tuple(operands)
+        key = (kind, frozenset(operands) if kind in _COMMUTATIVE else operands, leaf, sort)
+        if key not in self._made:
+            self._made[key] = Term(kind, operands, leaf, sort, values)
+        return self._made[key]
+
+
+def _interval(kind: type[ex.Expression], *operands: Term, function: str | None = None) -> Interval:
+    row = FUNCTIONS.get(function) if function else BY_CLASS.get(kind)
+    if row is None or row.interval is None:
+        raise ValueError(f"an sct model holds no {kind.__name__}")
+    return row.interval(*[operand.values for operand in operands])
+
+
+def _value(term: Term, operands: Sequence[int]) -> int:
+    """The value of a term with operands of these values."""
+    kind = term.operator
+    if kind is ex.Conditional:
+        return operands[1 if operands[0] else 2]
+    if kind in (engine.And, engine.Or):
+        return all(operands) if kind is engine.And else any(operands)
+    row = FUNCTIONS[term.leaf] if kind is ex.FunctionCall else BY_CLASS[kind]
+    return int(row.compute(*operands))

@@ -1,0 +1,384 @@
+"""What the transformation makes of small models, and that it means what the sct model does."""
+
+import sys
+import threading
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+import robosc
+from robosc.engine import Engine
+from robosc.m2m.sct_to_engine import remembered, transform
+from robosc.metamodel import engine, sct, xmi
+from robosc.metamodel import expression as ex
+from robosc.metamodel.reflection import tree
+from robosc.synthesis import synthesize
+from tests.m2m.sct_to_engine import oracle
+from tests.random_sct import sct_models
+from tests.sct_models import edge, model, plant
+
+_SYMBOLS = {
+    ex.Equation: "==", ex.Inequation: "!=", ex.LessThan: "<", ex.LessOrEqual: "<=", ex.GreaterThan: ">",
+    ex.GreaterOrEqual: ">=", ex.Addition: "+", ex.Subtraction: "-", ex.Multiplication: "*",
+}  # fmt: skip
+
+
+def text(node: ex.Expression | None) -> str:  # noqa: C901, PLR0912 - one case a class
+    """An expression of an engine model, every operand that is not a leaf in parentheses."""
+    match node:
+        case None:
+            return "true"
+        case engine.And() | engine.Or():
+            return f" {'and' if isinstance(node, engine.And) else 'or'} ".join(map(inner, node.operands))
+        case ex.BinaryExpression():
+            return f"{inner(node.left)} {_SYMBOLS[type(node)]} {inner(node.right)}"
+        case ex.Negation():
+            return f"not {inner(node.operand)}"
+        case ex.UnaryMinus():
+            return f"-{inner(node.operand)}"
+        case engine.Saturation():
+            return f"sat{node.bits}({text(node.operand)}, {node.minimum}, {node.maximum})"
+        case engine.Conversion():
+            return f"{'wide' if node.widens else ''}{'i' if node.signed else 'u'}{node.bits}({text(node.operand)})"
+        case ex.Conditional():
+            return f"{inner(node.then)} if {inner(node.condition)} else {inner(node.otherwise)}"
+        case engine.VariableReference():
+            return node.variable.name + ("'" if node.before else "")
+        case engine.InputReference():
+            return node.input.name
+        case engine.ConditionReference():
+            return node.condition.name
+        case engine.LocationLiteral():
+            return node.location.name
+        case ex.EnumerationLiteralReference():
+            return node.literal.name
+    return str(node.value).lower()
+
+
+def inner(node: ex.Expression) -> str:
+    written = text(node)
+    return f"({written})" if " " in written and not written.startswith("(") else written
+
+
+def guard_of(made: engine.EngineModel, name: str) -> list[tuple[str, list[str]]]:
+    event = next(event for event in made.events if event.name == name)
+    return [(text(term.condition), [origin.name for origin in term.origins]) for term in event.guard.terms]
+
+
+def effect_of(made: engine.EngineModel, name: str) -> list[str]:
+    event = next(event for event in made.events if event.name == name)
+    lines = []
+    for step in event.effect.steps:
+        if isinstance(step, engine.Assignment):
+            lines.append(f"{step.variable.name} := {text(step.value)}")
+        else:
+            for case in step.cases:
+                does = "; ".join(f"{one.variable.name} := {text(one.value)}" for one in case.assignments)
+                lines.append(f"{'else' if case.condition is None else text(case.condition)}: {does}")
+    return lines
+
+
+def machine(when: str | None = None, guards: object = (None, None), **do: str) -> sct.SupervisoryControlModel:
+    """One plant with three locations, an event from the first, and variables of every type."""
+    return model(
+        [
+            plant(
+                "p",
+                {"here": [edge("c_tau1", when=when, do=do)], "there": [], "far": []},
+                controllable=["c_tau1"],
+                variables={
+                    "n": "0..9",
+                    "m": "-5..5",
+                    "w": "0..100000",
+                    "v": "0..40000",
+                    "b": "bool",
+                    "c": "bool",
+                    "e": "E",
+                },
+            ),
+            plant("q", {"on": [], "off": []}),
+            plant("r", {"only": []}),
+        ],
+        enumerations={"E": ["x", "y", "z"]},
+        guards={"c_tau1": guards},
+    )
+
+
+PLACE = ("p == here", ["plants"])
+
+
+@pytest.mark.parametrize(
+    ("when", "terms"),
+    [
+        ("n >= 0", []),
+        ("n > 9", None),
+        ("n < 3 and n > 5", None),
+        ("n < 7 or n > 5", []),
+        ("n < 3", ["p.n < 3"]),
+        ("not (n < 3)", ["p.n >= 3"]),
+        ("not (n < 3 and b)", ["(p.n >= 3) or (not p.b)"]),
+        ("implies(b and c, n == 1)", ["(not p.b) or (not p.c) or (p.n == 1)"]),
+        ("b and (c and (b and n == m))", ["p.b", "p.c", "widei16(p.n) == widei16(p.m)"]),
+        ("q.on", ["q == on"]),
+        ("not q.on", ["q == off"]),
+        ("not p.there", ["p != there"]),
+        ("p.there", None),
+        ("r.only", []),
+        ("e != x", ["p.e != x"]),
+        ("not (e == x or e == y)", ["p.e != x", "p.e != y"]),
+        ("e != x and e != y and e != z", None),
+        ("b == true", ["p.b"]),
+        ("b == (c or not c)", ["p.b"]),
+        ("b != (b and true)", None),
+        ("(n if b else n) < n", None),
+        ("n + 1 != 1 + n", None),
+        ("b == (n > 3)", ["p.b == (p.n > 3)"]),
+        ("v < 39999", ["p.v < 39999"]),
+        ("w < v", ["p.w < widei32(p.v)"]),
+        ("n + m > 3", ["(widei16(p.n) + widei16(p.m)) > 3"]),
+    ],
+)
+def test_guards_are_normalised(when: str, terms: list[str] | None) -> None:
+    expected = ["false"] if terms is None else ["p == here", *terms]
+    assert guard_of(transform(machine(when)), "p.c_tau1") == [(term, ["plants"]) for term in expected]
+
+
+def test_each_term_says_who_asks_for_it() -> None:
+    made = transform(machine("b", ("b and c", "n < 3 and c")))
+    assert guard_of(made, "p.c_tau1") == [
+        ("p == here", ["plants"]),
+        ("p.b", ["plants", "requirement"]),
+        ("p.c", ["requirement", "synthesis"]),
+        ("p.n < 3", ["synthesis"]),
+    ]
+    (event,) = made.events
+    parts = (event.guard.plants, event.guard.requirement, event.guard.synthesis)
+    assert list(map(text, parts)) == ["(p == here) and p.b", "p.b and p.c", "(p.n < 3) and p.c"]
+
+
+@pytest.mark.parametrize(
+    ("do", "steps"),
+    [
+        ({"b": "c"}, ["p.b := p.c"]),
+        ({"n": "n"}, []),
+        ({"n": "12"}, ["p.n := 9"]),
+        ({"n": "n + 1"}, ["p.n := u8(sat32(widei16(p.n) + 1, 0, 9))"]),
+        ({"m": "n - 4"}, ["p.m := i8(widei16(p.n) - 4)"]),
+        ({"n": "w"}, ["p.n := u8(sat32(p.w, 0, 9))"]),
+        ({"w": "n"}, ["p.w := i32(p.n)"]),
+        ({"n": "n if b else 3"}, ["p.n := u8(widei32(p.n) if p.b else widei32(3))"]),
+        ({"b": "c", "c": "n < 3"}, ["p.b := p.c", "p.c := p.n < 3"]),
+        ({"c": "n < 3", "b": "c"}, ["p.b := p.c", "p.c := p.n < 3"]),
+        ({"b": "c", "c": "b"}, ["p.b := p.c", "p.c := p.b'"]),
+        ({"e": "y if b else e"}, ["p.e := y if p.b else p.e"]),
+    ],
+)
+def test_effects_are_simultaneous(do: dict[str, str], steps: list[str]) -> None:
+    assert effect_of(transform(machine(**do)), "p.c_tau1") == steps
+
+
+def test_an_effect_that_depends_on_a_location_is_a_switch() -> None:
+    p = plant(
+        "p",
+        {
+            "a": [edge("c_tau1", to="b", do={"n": "1"})],
+            "b": [edge("c_tau1", to="c", do={"n": "2"})],
+            "c": [edge("c_tau1", to="a", do={"n": "2"})],
+            "d": [],
+        },
+        controllable=["c_tau1"],
+        variables={"n": "0..9"},
+    )
+    made = transform(model([p], guards={}))
+    assert guard_of(made, "p.c_tau1") == [("p != d", ["plants"])]
+    assert effect_of(made, "p.c_tau1") == [
+        "p == a: p.n := 1",
+        "else: p.n := 2",
+        "p == a: p := b",
+        "p == b: p := c",
+        "else: p := a",
+    ]
+
+
+def test_what_guards_have_in_common_is_a_condition() -> None:
+    events = ["c_one", "c_two", "c_three"]
+    p = plant(
+        "p", {"here": [edge(event) for event in events]}, controllable=events, variables={"n": "0..9", "b": "bool"}
+    )
+    guards = {
+        "c_one": "n < 3 or b",
+        "c_two": ("n > 5 and (b or n < 3)", "n != 7 and b"),
+        "c_three": (None, "n != 7 and b"),
+    }
+    made = transform(model([p], guards=guards))
+    conditions = {
+        condition.name: (text(condition.value), [e.name for e in condition.events]) for condition in made.conditions
+    }
+    assert sorted(conditions.values()) == [
+        ("(p.n != 7) and p.b", ["p.c_two", "p.c_three"]),
+        ("(p.n < 3) or p.b", ["p.c_one", "p.c_two"]),
+    ]
+    names = {value[0]: name for name, value in conditions.items()}
+    either, both = names["(p.n < 3) or p.b"], names["(p.n != 7) and p.b"]
+    assert guard_of(made, "p.c_one") == [(either, ["requirement"])]
+    assert guard_of(made, "p.c_two") == [("p.n > 5", ["requirement"]), (either, ["requirement"]), (both, ["synthesis"])]
+    assert guard_of(made, "p.c_three") == [(both, ["synthesis"])]
+    assert all(not condition.readers for condition in made.conditions)
+
+
+def test_readers_are_those_of_what_an_event_writes() -> None:
+    p = plant(
+        "p",
+        {"here": [edge("c_tau1", "there", do={"n": "n + 1"})], "there": [edge("c_tau2", "here", when="n < 3")]},
+        controllable=["c_tau1", "c_tau2"],
+        variables={"n": "0..9", "m": "0..9"},
+    )
+    q = plant("q", {"on": [edge("c_tau1", do={"k": "0"})]}, controllable=["c_tau1"], variables={"k": "0..1"})
+    made = transform(model([p, q], guards={}), polled=0)
+    assert made.incremental
+    assert {event.name: [reader.name for reader in event.readers] for event in made.events} == {
+        "p.c_tau1": ["p.c_tau1", "p.c_tau2"],
+        "p.c_tau2": ["p.c_tau1", "p.c_tau2"],
+        "q.c_tau1": [],
+    }
+
+
+def test_the_state_is_stored_as_small_as_it_can_be() -> None:
+    made = transform(machine())
+    assert [(each.name, each.bits, each.signed, each.minimum, each.maximum) for each in made.variables] == [
+        ("p", 8, False, 0, 2),
+        ("p.n", 8, False, 0, 9),
+        ("p.m", 8, True, -5, 5),
+        ("p.w", 32, True, 0, 100000),
+        ("p.v", 16, False, 0, 40000),
+        ("p.b", 8, False, 0, 1),
+        ("p.c", 8, False, 0, 1),
+        ("p.e", 8, False, 0, 2),
+        ("q", 8, False, 0, 1),
+    ]
+
+
+def _supervised(made: sct.SupervisoryControlModel) -> sct.SupervisoryControlModel:
+    made.supervisor = synthesize(made).supervisor
+    if made.supervisor is None:
+        events = [event for plant in made.plants for event in plant.events if event.controllable]
+        made.supervisor = sct.Supervisor(guards=[sct.EventGuard(event=event) for event in events])
+    return made
+
+
+@settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
+@given(sct_models(), st.randoms(use_true_random=False))
+def test_an_engine_model_means_what_its_sct_model_does(made: sct.SupervisoryControlModel, random) -> None:
+    _supervised(made)
+    events = [event for plant in made.plants for event in plant.events]
+    executed, state = Engine(made), oracle.initial(made)
+    for _ in range(30):
+        for name, event in zip(executed.events, events, strict=True):
+            reason = executed.blocked_by(name)
+            assert (None if reason is None else reason.value) == oracle.blocked(made, event, state)
+        possible = [event for event in events if oracle.blocked(made, event, state) is None]
+        if not possible:
+            break
+        event = random.choice(possible)
+        inputs, data = {}, {}
+        for declared in event.inputs:
+            inputs[declared], data[declared.name] = _drawn(declared.type, random)
+        assert executed.perform(f"{event.eContainer().name}.{event.name}", data)
+        state = oracle.after(made, event, state, inputs)
+        for owner in made.plants:
+            assert owner.locations[executed.location(owner)] is state[owner]
+            for variable in owner.variables:
+                expected = state[variable]
+                shown = expected.name if isinstance(expected, ex.EnumerationLiteral) else expected
+                assert executed.value(variable) == shown
+
+
+def _drawn(kind: ex.Type, random) -> tuple[object, object]:
+    """A random value as the oracle takes it, and as the engine does."""
+    match kind:
+        case ex.BooleanType():
+            value = random.random() < 0.5
+        case ex.EnumerationType():
+            literal = random.choice(list(kind.enumeration.literals))
+            return literal, literal.name
+        case _:
+            value = random.randint(kind.minimum, kind.maximum)
+    return value, value
+
+
+@settings(max_examples=25, deadline=None, suppress_health_check=list(HealthCheck))
+@given(sct_models())
+def test_engine_models_can_be_saved_and_are_the_same_each_time(made: sct.SupervisoryControlModel) -> None:
+    _supervised(made)
+    saved = [
+        xmi.to_texts({"r.sct.xmi": made, "r.engine.xmi": transform(made, polled)})["r.engine.xmi"]
+        for polled in (0, 0, 64)
+    ]
+    assert saved[0] == saved[1]
+    assert ('incremental="true"' in saved[2]) is False
+
+
+def test_a_model_is_transformed_once_while_it_is_remembered() -> None:
+    made = machine()
+    with remembered():
+        assert transform(made) is transform(made)
+    assert transform(made) is not transform(made)
+
+
+def test_a_model_needs_its_supervisor() -> None:
+    made = machine()
+    made.supervisor = None
+    with pytest.raises(ValueError, match="synthesize it first"):
+        robosc.to_engine(made)
+
+
+def _long(operators: int, *, nested: bool) -> sct.SupervisoryControlModel:
+    p = plant(
+        "p", {"here": [edge("c_tau1", when="n == 0")]}, controllable=["c_tau1"], variables={"n": "0..9", "b": "bool"}
+    )
+    made = model([p], guards={})
+    (loop,) = made.plants[0].locations[0].edges
+    n = made.plants[0].variables[0]
+    condition: ex.Expression = loop.guard
+    for number in range(operators):
+        more = ex.Inequation(left=sct.VariableReference(variable=n), right=ex.IntegerLiteral(value=number % 10))
+        kind = ex.Implication if nested and number % 2 else ex.Disjunction if nested else ex.Conjunction
+        condition = kind(left=condition, right=more)
+    total: ex.Expression = ex.IntegerLiteral(value=0)
+    for _ in range(operators):
+        total = ex.Addition(left=total, right=sct.VariableReference(variable=n))
+    loop.guard = condition
+    loop.updates.append(sct.Update(variable=n, value=total))
+    return made
+
+
+@pytest.mark.parametrize("nested", [False, True])
+def test_long_expressions_need_no_deep_calls(nested: bool) -> None:
+    """In a thread with half a megabyte, under the limit that Python sets."""
+    made = _long(3000, nested=nested)
+    failed: list[BaseException] = []
+
+    def run() -> None:
+        try:
+            executed = Engine(made)
+            executed.perform("p.c_tau1")
+        except BaseException as error:
+            failed.append(error)
+
+    size = threading.stack_size(512 * 1024)
+    try:
+        thread = threading.Thread(target=run)
+        thread.start()
+        thread.join()
+    finally:
+        threading.stack_size(size)
+    assert failed == []
+    assert sys.getrecursionlimit() <= 3000
+
+
+def test_the_transformation_is_linear() -> None:
+    """Counted, not timed: how many elements come of an expression."""
+    steps = (500, 2000)
+    sizes = [sum(1 for _ in tree(transform(_long(count, nested=True)))) for count in steps]
+    assert sizes[1] <= sizes[0] * (steps[1] / steps[0]) * 1.1
