@@ -1,5 +1,6 @@
-"""The controller as a running node, straight from its models: a core without ROS, and an adapter for each ROS.
+"""The controller, or the supervisory layer, as a running node straight from its models, without generating it.
 
-`Controller` and `Layer` decide what happens; all that they want of the world outside goes through a `Port`, and all
-that happens to them comes one at a time from an `Agenda`. `ros1` and `ros2` implement the port with rospy and rclpy.
+`core` knows no ROS: `Controller` and `Layer` turn messages into events and events into messages, one at a time from an
+`EventLoop`; what they want of the middleware goes through a port, which `ros1` and `ros2` implement with rospy and
+rclpy. `node` starts them.
 """

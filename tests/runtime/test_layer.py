@@ -23,7 +23,7 @@ USHER = Path(__file__).parents[1] / "m2t" / "layer" / "usher.rscd"
 MISSION = Path(__file__).parent / "mission.rscd"
 
 
-class Passage:
+class Bench:
     """A layer, and its robot's graph by names."""
 
     def __init__(self, log: Path, model: Path = USHER) -> None:
@@ -68,57 +68,57 @@ class Passage:
 
 
 @pytest.fixture
-def passage(tmp_path: Path) -> Passage:
-    return Passage(tmp_path / "events.jsonl")
+def bench(tmp_path: Path) -> Bench:
+    return Bench(tmp_path / "events.jsonl")
 
 
-def test_what_is_allowed_passes_and_is_logged(passage: Passage) -> None:
-    assert passage.passes("speed")
-    assert passage.passes("label")
-    assert passage.blocked() == []
-    assert passage.directions() == [("out", "message_speed.c_trigger"), ("out", "message_label.c_trigger")]
+def test_what_is_allowed_passes_and_is_logged(bench: Bench) -> None:
+    assert bench.passes("speed")
+    assert bench.passes("label")
+    assert bench.blocked() == []
+    assert bench.directions() == [("out", "message_speed.c_trigger"), ("out", "message_label.c_trigger")]
 
 
-def test_all_requirements_that_fail_are_told(passage: Passage) -> None:
-    passage.hear("/stop")
-    passage.hear("battery", data=10)
-    assert not passage.passes("speed")
-    (report,) = passage.blocked()
+def test_all_requirements_that_fail_are_told(bench: Bench) -> None:
+    bench.hear("/stop")
+    bench.hear("battery", data=10)
+    assert not bench.passes("speed")
+    (report,) = bench.blocked()
     assert report["reason"] == "requirement"
     assert report["because"] == ["requirement speed needs Guard.clear", "requirement speed needs Guard.charge > 20"]
     assert report["components"]["Guard"] == {"state": "blocked", "variables": {"charge": 10}}
-    assert passage.directions()[-1] == ("blocked", "message_speed.c_trigger")
+    assert bench.directions()[-1] == ("blocked", "message_speed.c_trigger")
     schema = json.loads(locate("schemas/blocked.schema.json").read_text(encoding="utf-8"))
     Draft202012Validator(schema).validate(report)
 
 
-def test_a_state_without_a_transition_is_told(passage: Passage) -> None:
-    assert passage.passes("go_to")
-    assert not passage.passes("go_to")
-    (report,) = passage.blocked()
+def test_a_state_without_a_transition_is_told(bench: Bench) -> None:
+    assert bench.passes("go_to")
+    assert not bench.passes("go_to")
+    (report,) = bench.blocked()
     assert (report["name"], report["reason"]) == ("Navigation.go_to", "state")
     assert report["because"] == ["Navigation.go_to.executing", "Navigation.going"]
 
 
-def test_a_goal_is_cancelled_when_its_requirement_falls(passage: Passage) -> None:
-    assert passage.passes("go_to")
-    passage.layer.feed_back(passage.action, Record(distance_remaining=0.5))
-    passage.hear("/stop")
-    assert passage.cancelled == 1
-    assert passage.directions()[-2:] == [("in", "message_stop.u_response"), ("out", "action_go_to.c_cancel")]
+def test_a_goal_is_cancelled_when_its_requirement_falls(bench: Bench) -> None:
+    assert bench.passes("go_to")
+    bench.layer.feed_back(bench.action, Record(distance_remaining=0.5))
+    bench.hear("/stop")
+    assert bench.cancelled == 1
+    assert bench.directions()[-2:] == [("in", "message_stop.u_response"), ("out", "action_go_to.c_cancel")]
     # What the cancelled goal comes to is no event any more.
-    passage.layer.respond(passage.action, Record())
-    assert passage.directions()[-1] == ("out", "action_go_to.c_cancel")
+    bench.layer.respond(bench.action, Record())
+    assert bench.directions()[-1] == ("out", "action_go_to.c_cancel")
 
 
-def test_answers_and_failures_move_the_supervisor_and_it_settles(passage: Passage) -> None:
-    assert passage.passes("light")
-    passage.layer.respond(passage.service, Record(success=True))
-    assert passage.passes("light"), "the reset has run"
-    passage.layer.fail(passage.service, "no server within 5000 ms")
-    assert passage.passes("light")
-    assert passage.port.said == ["/lamp/light: no server within 5000 ms"]
-    told = [line for line in passage.directions() if line[1].startswith("service")]
+def test_answers_and_failures_move_the_supervisor_and_it_settles(bench: Bench) -> None:
+    assert bench.passes("light")
+    bench.layer.respond(bench.service, Record(success=True))
+    assert bench.passes("light"), "the reset has run"
+    bench.layer.fail(bench.service, "no server within 5000 ms")
+    assert bench.passes("light")
+    assert bench.port.said == ["/lamp/light: no server within 5000 ms"]
+    told = [line for line in bench.directions() if line[1].startswith("service")]
     assert told == [
         ("out", "service_light.c_trigger"),
         ("in", "service_light.u_response"),
@@ -131,31 +131,31 @@ def test_answers_and_failures_move_the_supervisor_and_it_settles(passage: Passag
 
 
 def test_what_can_not_be_read_counts_as_not_received(tmp_path: Path) -> None:
-    passage = Passage(tmp_path / "events.jsonl", MISSION)
-    passage.hear("/route", name="short", poses=[])
-    assert passage.directions() == [("in", "message_length.u_response")]
-    assert passage.port.said == ["/route: there is no element 2 in an array of 0"]
+    bench = Bench(tmp_path / "events.jsonl", MISSION)
+    bench.hear("/route", name="short", poses=[])
+    assert bench.directions() == [("in", "message_length.u_response")]
+    assert bench.port.said == ["/route: there is no element 2 in an array of 0"]
     # An answer is an error to the supervisor.
-    assert passage.passes("plan")
-    passage.layer.respond(passage.service, Record(cost=5.0, stops=[]))
-    assert passage.directions()[-2:] == [("in", "service_plan.u_error"), ("internal", "service_plan.c_reset")]
-    assert passage.port.said[-1] == "/plan: there is no element 0 in an array of 0"
-    assert passage.passes("plan")
-    passage.layer.respond(passage.service, Record(cost=5.0, stops=[1]))
-    assert passage.passes("visit")
-    passage.layer.feed_back(passage.action, Record(stops=[1]))
-    assert passage.directions()[-1] == ("out", "action_visit.c_trigger")
-    passage.layer.respond(passage.action, Record(stops=[1]))
-    assert ("in", "action_visit.u_error") in passage.directions()
+    assert bench.passes("plan")
+    bench.layer.respond(bench.service, Record(cost=5.0, stops=[]))
+    assert bench.directions()[-2:] == [("in", "service_plan.u_error"), ("internal", "service_plan.c_reset")]
+    assert bench.port.said[-1] == "/plan: there is no element 0 in an array of 0"
+    assert bench.passes("plan")
+    bench.layer.respond(bench.service, Record(cost=5.0, stops=[1]))
+    assert bench.passes("visit")
+    bench.layer.feed_back(bench.action, Record(stops=[1]))
+    assert bench.directions()[-1] == ("out", "action_visit.c_trigger")
+    bench.layer.respond(bench.action, Record(stops=[1]))
+    assert ("in", "action_visit.u_error") in bench.directions()
 
 
-def test_who_is_turned_away_is_told_busy(passage: Passage) -> None:
-    passage.layer.reject(passage.sending("light"))
-    (report,) = passage.blocked()
+def test_who_is_turned_away_is_told_busy(bench: Bench) -> None:
+    bench.layer.reject(bench.sending("light"))
+    (report,) = bench.blocked()
     assert (report["reason"], report["because"]) == ("busy", [])
 
 
-def test_provided_data_plays_no_part(passage: Passage) -> None:
-    passage.hear("/stop")
-    passage.hear("/resume")
-    assert not [name for _, name in passage.directions() if name.startswith("data_")]
+def test_provided_data_plays_no_part(bench: Bench) -> None:
+    bench.hear("/stop")
+    bench.hear("/resume")
+    assert not [name for _, name in bench.directions() if name.startswith("data_")]

@@ -1,1 +1,1 @@
-"""The node without any ROS: what becomes of messages, when, and what goes out."""
+"""Controller and layer without any ROS: what becomes of messages, when, and what is sent."""

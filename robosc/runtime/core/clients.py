@@ -36,7 +36,10 @@ class Answers:
 
 
 class ServiceClient:
-    """A client of one service: no server, a failed call, no answer in time are errors; what comes late is dropped."""
+    """A client of one service: no server, a failed call, no answer in time are errors; what comes late is dropped.
+
+    `timeout`, in seconds, bounds the search for a server together with the wait for the answer.
+    """
 
     def __init__(
         self, port: Port, event_loop: EventLoop, client: rosgraph.ServiceClient, timeout: float, answers: Answers
@@ -60,20 +63,25 @@ class ServiceClient:
         self.give_up()
         number = self._number
         self._unanswered = "no server"
-        self._deadline = self._event_loop.call_later(self._timeout, lambda: self._expire(number))
-        self._look(number, request)
+        within = f"within {round(self._timeout * 1000)} ms"
+        self._deadline = self._event_loop.call_later(
+            self._timeout, lambda: self._fail(number, f"{self._unanswered} {within}")
+        )
+        self._poll(number, request)
 
-    def _look(self, number: int, request: Message) -> None:
+    def _poll(self, number: int, request: Message) -> None:
         """Sends the request as soon as there is a server."""
         if number != self._number:
             return
         if not self._port.is_served(self._client):
-            self._event_loop.call_later(POLL, lambda: self._look(number, request))
+            self._event_loop.call_later(POLL, lambda: self._poll(number, request))
             return
         self._unanswered = "no answer"
         handlers = CallHandlers(
             lambda response: self._event_loop.post(lambda: self._succeed(number, response)),
-            lambda why: self._event_loop.post(lambda: self._failed(number, why)),
+            lambda why: self._event_loop.post(
+                lambda: self._fail(number, f"the call failed: {why}" if why else "the call failed")
+            ),
         )
         try:
             self._port.call(self._client, request, handlers)
@@ -81,7 +89,7 @@ class ServiceClient:
             handlers.failed(str(error))
 
     def give_up(self) -> None:
-        """Nothing follows of the call that is under way."""
+        """Abandons the call that is under way: whatever comes of it is dropped."""
         self._number += 1
         if self._deadline is not None:
             self._deadline.cancel()
@@ -97,12 +105,6 @@ class ServiceClient:
             self.give_up()
             self._answers.error(why)
 
-    def _failed(self, number: int, why: str) -> None:
-        self._fail(number, f"the call failed: {why}" if why else "the call failed")
-
-    def _expire(self, number: int) -> None:
-        self._fail(number, f"{self._unanswered} within {round(self._timeout * 1000)} ms")
-
 
 class _Phase(Enum):
     IDLE = 0
@@ -114,7 +116,7 @@ class _Phase(Enum):
 class ActionClient:
     """A client of one action, with one goal at a time.
 
-    The timeout bounds the search for a server together with the wait for its acceptance, never the goal's work.
+    `timeout`, in seconds, bounds the search for a server together with the wait for acceptance, never the goal's work.
     """
 
     def __init__(
@@ -141,7 +143,7 @@ class ActionClient:
 
     @property
     def busy(self) -> bool:
-        """Whether a goal has not ended yet; until then no other may start."""
+        """Whether there is a goal that has not ended yet; until then no other may start."""
         return self._phase is not _Phase.IDLE
 
     @property
@@ -155,8 +157,8 @@ class ActionClient:
         self.give_up()
         self._phase = _Phase.LOOKING
         self._until = self._event_loop.clock() + self._timeout
-        self._wait_for(self._expire)
-        self._look(self._number, goal)
+        self._set_deadline(self._expire)
+        self._poll(self._number, goal)
 
     def cancel(self, *, expected: bool = True) -> None:
         """Cancels the goal, where it was not accepted yet as soon as it is.
@@ -168,39 +170,39 @@ class ActionClient:
         self._asked, self._cancelling = True, expected
         number = self._number
         if self._phase is _Phase.LOOKING:
-            self._event_loop.post(lambda: self._on(number, lambda: self._end(_OWN)))
+            self._event_loop.post(lambda: self._if_current(number, lambda: self._end(_OWN)))
         elif self._phase is _Phase.ACCEPTED:
             self._ask_to_cancel()
 
     def give_up(self) -> None:
-        """Nothing follows of the goal; a server that has it, or may have it, is told to cancel it."""
+        """Abandons the goal: what comes of it is dropped; a server that has it, or may have it, is asked to cancel."""
         unasked = self._phase is _Phase.ACCEPTED and not self._asked
         if (unasked or self._phase is _Phase.SENT) and self._goal is not None:
             self._goal.cancel()
-        self._forget()
+        self._reset()
 
-    def _forget(self) -> None:
+    def _reset(self) -> None:
         if self._phase is _Phase.SENT and self._goal is not None:
             self._lost[self._number] = self._goal  # should it be accepted after all, it is cancelled
         self._number += 1
         self._phase = _Phase.IDLE
         self._goal = None
         self._cancelling = self._asked = False
-        self._wait_for(None)
+        self._set_deadline(None)
 
-    def _wait_for(self, action: Callable[[], None] | None, seconds: float | None = None) -> None:
+    def _set_deadline(self, action: Callable[[], None] | None, seconds: float | None = None) -> None:
         if self._deadline is not None:
             self._deadline.cancel()
             self._deadline = None
         if action is not None:
             self._deadline = self._event_loop.call_later(self._timeout if seconds is None else seconds, action)
 
-    def _mine(self, number: int) -> bool:
+    def _is_current(self, number: int) -> bool:
         return number == self._number and self.busy
 
-    def _look(self, number: int, goal: Message) -> None:
+    def _poll(self, number: int, goal: Message) -> None:
         """Sends the goal as soon as there is a server; then watches that it stays."""
-        if not self._mine(number):
+        if not self._is_current(number):
             return
         served = self._port.is_served(self._client)
         if self._phase is _Phase.LOOKING and served and not self._asked:
@@ -209,15 +211,15 @@ class ActionClient:
                 self._goal = self._port.send_goal(self._client, goal, self._handlers(number))
             except Exception as error:  # whatever the middleware raises is a goal that was not sent
                 why = f"the goal can't be sent: {error}"
-                self._event_loop.post(lambda: self._on(number, lambda: self._end(why)))
+                self._event_loop.post(lambda: self._if_current(number, lambda: self._end(why)))
         elif self._phase is not _Phase.LOOKING and not served:
             self._end("the server is gone")
             return
-        self._event_loop.call_later(POLL, lambda: self._look(number, goal))
+        self._event_loop.call_later(POLL, lambda: self._poll(number, goal))
 
     def _handlers(self, number: int) -> GoalHandlers:
         def later(action: Callable[[], None]) -> None:
-            self._event_loop.post(lambda: self._on(number, action))
+            self._event_loop.post(lambda: self._if_current(number, action))
 
         return GoalHandlers(
             accepted=lambda: self._event_loop.post(lambda: self._accepted(number)),
@@ -227,12 +229,12 @@ class ActionClient:
             refused=lambda: later(self._refused),
         )
 
-    def _on(self, number: int, action: Callable[[], None]) -> None:
-        if self._mine(number):
+    def _if_current(self, number: int, action: Callable[[], None]) -> None:
+        if self._is_current(number):
             action()
 
     def _accepted(self, number: int) -> None:
-        if self._mine(number):
+        if self._is_current(number):
             self._accept()
         elif number in self._lost:
             self._lost.pop(number).cancel()
@@ -240,13 +242,13 @@ class ActionClient:
     def _accept(self) -> None:
         if self._phase is _Phase.SENT:
             self._phase = _Phase.ACCEPTED
-            self._wait_for(None)
+            self._set_deadline(None)
             if self._asked:
                 self._ask_to_cancel()
 
     def _ask_to_cancel(self) -> None:
         assert self._goal is not None
-        self._wait_for(self._refused)
+        self._set_deadline(self._refused)
         self._goal.cancel()
 
     def _feedback(self, feedback: Message) -> None:
@@ -255,7 +257,7 @@ class ActionClient:
             self._answers.feedback(feedback)
 
     def _refused(self) -> None:
-        self._wait_for(None)
+        self._set_deadline(None)
         self._port.warn(f"{self._client.identifier}: {REFUSED}")
 
     def _expire(self) -> None:
@@ -264,7 +266,7 @@ class ActionClient:
             self._end(f"no server {within}")
             return
         # The server might still accept it: then it is cancelled. Until it is over, or lost, no other goal starts.
-        self._wait_for(lambda: self._end("lost"), LOST)
+        self._set_deadline(lambda: self._end("lost"), LOST)
         if not self._cancelling:
             self._asked = self._cancelling = True
             self._answers.error(f"not accepted {within}")
@@ -272,7 +274,7 @@ class ActionClient:
     def _finish(self, outcome: Outcome, result: Message, text: str) -> None:
         said = f": {text}" if text else ""
         if outcome is Outcome.SUCCEEDED and not self._cancelling:
-            self._forget()
+            self._reset()
             self._answers.response(result)
             return
         own = outcome is Outcome.CANCELLED and self._asked
@@ -280,7 +282,7 @@ class ActionClient:
 
     def _end(self, why: str) -> None:
         cancelling = self._cancelling
-        self._forget()
+        self._reset()
         if cancelling:
             self._answers.ended()
         else:

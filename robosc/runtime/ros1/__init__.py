@@ -1,1 +1,1 @@
-"""The node and the layer on ROS 1."""
+"""The node on ROS 1, with rospy and actionlib."""

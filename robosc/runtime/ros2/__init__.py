@@ -1,1 +1,1 @@
-"""The node and the layer on ROS 2."""
+"""The node on ROS 2, with rclpy, and the tool that builds the modules of types without colcon."""
