@@ -83,7 +83,7 @@ def test_a_file_that_is_not_there(run: Run, command: tuple[str, ...]) -> None:
 
 
 def test_a_file_that_goes_while_it_is_read(run: Run, door: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def gone(path: Path) -> bytes:
+    def gone(path: Path, **_: object) -> bytes:
         raise FileNotFoundError(2, "No such file or directory", str(path))
 
     monkeypatch.setattr(files, "read", gone)

@@ -82,15 +82,15 @@ class Peer:
             stop.set()
             thread.join()
 
-    def flood(self, topic, hz, seconds):
-        """Publishes numbers that count from 1; says when it is done how many they were."""
-        threading.Thread(target=self._flood, args=[topic, hz, seconds], daemon=True).start()
+    def flood(self, topic, hz, count):
+        """Publishes the numbers from 1 to a count; says when it is done how many they were."""
+        threading.Thread(target=self._flood, args=[topic, hz, count], daemon=True).start()
 
-    def _flood(self, topic, hz, seconds):
+    def _flood(self, topic, hz, count):
         start = time.monotonic()
         sent = 0
-        while sent < hz * seconds:
-            due = min(hz * seconds, int((time.monotonic() - start) * hz))
+        while sent < count:
+            due = min(count, int((time.monotonic() - start) * hz))
             for number in range(sent + 1, due + 1):
                 self.publish(topic, {"data": number})
             sent = due

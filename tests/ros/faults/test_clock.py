@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 
 MOVE = "message_move.c_trigger"
 START = 1000.0
-#: A busy machine takes its time for thousands of messages.
-PATIENCE = 240.0
+#: Messages sent at a time.
+PORTION = 1000
 
 
 @pytest.fixture
@@ -61,8 +61,8 @@ def test_time_of_the_clock(simulated: Scout) -> None:
     jump(simulated, 2 * START)
     since = simulated.now()
     simulated.until(lambda: ticks(simulated, since) > 10, "it ticks")
-    times = [each["time"] for each in simulated.log(since)]
-    assert all(2 * START < each < 2 * START + 60 for each in times)
+    times = [entry["time"] for entry in simulated.log(since)]
+    assert all(2 * START < time < 2 * START + 60 for time in times)
 
 
 def test_clock_stands_still(simulated: Scout) -> None:
@@ -79,16 +79,23 @@ def test_clock_stands_still(simulated: Scout) -> None:
 def test_events_while_the_clock_stands_still(simulated: Scout) -> None:
     """They are reported when it goes on, the last ones of very many."""
     since = stop(simulated)
-    simulated.world.do("flood", topic="/pulse", hz=2000, seconds=6)
     pulse = "message_pulse.u_response"
-    simulated.until(lambda: len(simulated.events(since, pulse)) > TRANSITIONS_KEPT, "so many arrive", PATIENCE)
+
+    def arrived() -> list[Any]:
+        return [entry["data"]["value"] for entry in simulated.events(since, pulse)]
+
+    # As many as it takes: ROS 1 drops what a busy node has no place for, but not the last one.
+    while len(arrived()) <= TRANSITIONS_KEPT:
+        told = simulated.now()
+        simulated.world.do("flood", topic="/pulse", hz=2000, count=PORTION)
+        simulated.world.wait("sent", told.world)
+        simulated.until(lambda: arrived()[-1:] == [PORTION], "the last one arrives")
     simulated.world.do("clock", seconds=6 * START)
     simulated.until(lambda: simulated.states(since), "the node reports")
-    told = max((each["transitions"] for each in simulated.states(since)), key=len)
-    assert len(told) == TRANSITIONS_KEPT
-    assert told.count(pulse) > TRANSITIONS_KEPT / 2
-    assert MOVE in told, "the last ones are kept"
-    simulated.world.wait("sent", since.world, seconds=PATIENCE)
+    reported = max((report["transitions"] for report in simulated.states(since)), key=len)
+    assert len(reported) == TRANSITIONS_KEPT
+    assert reported.count(pulse) > TRANSITIONS_KEPT / 2
+    assert MOVE in reported, "the last ones are kept"
 
 
 @pytest.mark.parametrize("seconds", [9 * START, 4 * START], ids=["forwards", "backwards"])
@@ -98,7 +105,7 @@ def test_clock_jumps(simulated: Scout, seconds: float) -> None:
     start = simulated.now()
     simulated.until(lambda: ticks(simulated, start) > 20, "it ticks after the jump")
     # Ticks that were missed are not made up for: one in 50 ms, and what was late.
-    times = [each["time"] for each in simulated.events(start, MOVE)]
+    times = [entry["time"] for entry in simulated.events(start, MOVE)]
     assert len(times) <= (times[-1] - times[0]) / 0.05 + 3
     assert "jump" not in simulated.output()
 

@@ -26,7 +26,7 @@ def scout(patient: Scout) -> Scout:
 def test_flood(scout: Scout) -> None:
     server = scout.serve()
     since, number = scout.now(), RATE * SECONDS
-    scout.world.do("flood", topic="/pulse", hz=RATE, seconds=SECONDS)
+    scout.world.do("flood", topic="/pulse", hz=RATE, count=number)
     scout.nothing(2.0)
     memory = scout.memory()
     # What matters comes through in the middle of it: an answer, a result, and each message of the topics beside.
@@ -45,7 +45,7 @@ def test_flood(scout: Scout) -> None:
     assert scout.world.wait("sent", since.world, seconds=PATIENCE)["count"] == number
     scout.until(lambda: scout.variable("Encoder", "last") == number, "the last one arrives", seconds=PATIENCE)
     grown = scout.memory() - memory
-    received = [each["data"]["value"] for each in scout.events(since, "message_pulse.u_response")]
+    received = [entry["data"]["value"] for entry in scout.events(since, "message_pulse.u_response")]
     assert all(earlier < later for earlier, later in pairwise(received))
     assert scout.variable("Encoder", "pulses") == len(received)
     assert scout.variable("Encoder", "total") == sum(received)
