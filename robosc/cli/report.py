@@ -96,9 +96,8 @@ class Report:
             from robosc.diagnostics import as_text
 
             paint = as_text.plain if os.environ.get("NO_COLOR") else _paint
-            texts = {
-                file: text for file in {each.file for each in self.findings} if (text := self._text(file)) is not None
-            }
+            shown = {finding.file for finding in self.findings}
+            texts = {file: text for file in shown if (text := self._text(file)) is not None}
             put(as_text.render(self.findings, texts, paint), nl=False, err=self.aside)
             put(as_text.summary(self.findings), err=True)
 
@@ -115,4 +114,4 @@ def _paint(part: Part, text: str) -> str:
 
 
 def _is_empty(error: ModelError) -> bool:
-    return any(each.rule == "empty-supervisor" for each in error.diagnostics)
+    return any(finding.rule == "empty-supervisor" for finding in error.diagnostics)

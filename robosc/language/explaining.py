@@ -91,8 +91,8 @@ def expected(wanted: Iterable[str], level: Level | None) -> str:
             words = [name if word in core else word for word in words if word in core or word not in _alike(rule)]
     if len(words) > 1:
         # That a name may go on is true nearly everywhere and never what is missing.
-        words = [each for each in words if each not in {".", "["}]
-    named = [_RULES.get(each, each if " " in each else f"`{each}`") for each in words if each != "end"]
+        words = [word for word in words if word not in {".", "["}]
+    named = [_RULES.get(word, word if " " in word else f"`{word}`") for word in words if word != "end"]
     if "end" in words:
         named.append(f"the next {level.noun}" if level else "the end of the file")
     return enumeration(dict.fromkeys(named))
@@ -147,12 +147,12 @@ def _symbols(token: Token, wanted: Sequence[str]) -> list[str]:
     """The symbols that another symbol may have been meant to be."""
     if token.text == "->" and "=>" in wanted:
         return ["=>"]
-    return [each for each in (":", ":=", "=", "->", "{", ",") if each in wanted or (each == "=" and "=(?!>)" in wanted)]
+    return [word for word in (":", ":=", "=", "->", "{", ",") if word in wanted or (word == "=" and "=(?!>)" in wanted)]
 
 
 def _word_hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) -> Repair | str | None:
     token = tokens[index]
-    words = {each for each in wanted if each.isalpha() and each.islower()} - {"end"}
+    words = {word for word in wanted if word.isalpha() and word.islower()} - {"end"}
     if "end" in wanted and block.level:
         words |= block.level.starters
     close = get_close_matches(token.text, sorted(words - {token.text}), n=1, cutoff=0.7)

@@ -53,20 +53,20 @@ def is_made(definition: rsc.ComplexDataType) -> bool:
 
 def ros_property(definition: rsc.ObjectDataType, name: str, interfaces: RosTypes) -> rsc.ObjectProperty | None:
     """The property for a field of such an object; None where there is no such field, or no data type for it."""
-    for each in definition.properties:
-        if each.name == name:
-            return each
+    for known in definition.properties:
+        if known.name == name:
+            return known
     for distribution, fields in _definitions(definition.eContainer(), interfaces):
         if name in fields:
             found = _data_type(fields[name], distribution)
             if found is not None:
                 made = rsc.ObjectProperty(name=name, type=found)
-                for _, each in tree(made):
-                    each.source = definition.source
+                for _, part in tree(made):
+                    part.source = definition.source
                 definition.properties.append(made)
-                for _, each in tree(found):
-                    if isinstance(each, rsc.InterfaceTypeReference):
-                        declare(each, interfaces)
+                for _, part in tree(found):
+                    if isinstance(part, rsc.InterfaceTypeReference):
+                        declare(part, interfaces)
                 return made
     return None
 
@@ -74,9 +74,9 @@ def ros_property(definition: rsc.ObjectDataType, name: str, interfaces: RosTypes
 def ros_properties(definition: rsc.ObjectDataType, interfaces: RosTypes) -> list[str]:
     """The names of all properties that such an object can have, those of ROS 2 first."""
     known = _definitions(definition.eContainer(), interfaces)
-    fields = [(name, each, distribution) for distribution, fields in known for name, each in fields.items()]
+    fields = [(name, wire, distribution) for distribution, fields in known for name, wire in fields.items()]
     return list(
-        dict.fromkeys(name for name, each, distribution in fields if _data_type(each, distribution) is not None)
+        dict.fromkeys(name for name, wire, distribution in fields if _data_type(wire, distribution) is not None)
     )
 
 

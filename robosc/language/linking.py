@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from robosc.language.explaining import BASIC_TYPES, did_you_mean, enumeration
 from robosc.language.interface_types import declare, is_made, link_interface, ros_properties, ros_property
-from robosc.language.scopes import File, Names, Scope
+from robosc.language.scopes import File, Names, Scope, by_name
+from robosc.language.skipped import Declared
 from robosc.language.text import Repair
-from robosc.language.unread import Declared
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
 from robosc.semantics.naming import written
@@ -65,6 +65,7 @@ class _Linker:
         self._scope: Scope
         self._definitions: dict[ex.Located, ex.Located] = {}
         self._types: dict[rsc.Access, list[Type]] = {}
+        self._properties: dict[rsc.ObjectDataType, Names] = {}
         self._is_library = isinstance(file.base, rsc.Library)
 
     def imports(self) -> None:
@@ -80,10 +81,10 @@ class _Linker:
             self._declaration(element, names)
         for component in self._file.declared[rsc.Component].values():
             if isinstance(component.type, rsc.LocalComponent):
-                for each in component.type.definitions:
-                    linked = "interface" in self._file.references.get(each, ())
-                    if isinstance(each, rsc.CommunicationType) and not linked:
-                        link_interface(each)
+                for definition in component.type.definitions:
+                    linked = "interface" in self._file.references.get(definition, ())
+                    if isinstance(definition, rsc.CommunicationType) and not linked:
+                        link_interface(definition)
         for element, names in list(self._file.references.items()):
             self._use(element, names)
 
@@ -141,7 +142,7 @@ class _Linker:
         return found[0][1] if len(found) == 1 else None
 
     def _ambiguous(self, what: str, name: Name, files: Iterable[File]) -> None:
-        libraries = " and ".join(f"`{each.base.name}`" for each in files if each.base)
+        libraries = " and ".join(f"`{file.base.name}`" for file in files if file.base)
         message = f"{what} `{name.text}` is declared by the libraries {libraries}"
         self._report(name, message, f"declare `{name.text}` in this file")
 
@@ -206,7 +207,7 @@ class _Linker:
 
     def _member(self, members: Names, name: Name, component: rsc.Component, declared: Declared) -> Any:
         found = members.get(name.text)
-        if found is None and not self._file.may_hold(self._scope.origin(component), name.text, declared):
+        if found is None and not self._file.may_declare_within(self._scope.origin(component), name.text, declared):
             what = "communication" if declared is Declared.COMMUNICATION else "variable or state"
             values = [] if declared is Declared.COMMUNICATION else self._scope.find(rsc.EnumValue, name.text)
             hint = self._value_of_enum(name, values[0][1]) if values else None
@@ -223,7 +224,7 @@ class _Linker:
         states = self._scope.states(own) if own is not None else {}
         if name.text in states:
             transition.target = states[name.text]
-        elif own is not None and not self._file.may_hold(own, name.text, Declared.MEMBER):
+        elif own is not None and not self._file.may_declare_within(own, name.text, Declared.MEMBER):
             self._missing(name, f"component `{own.name}` has no state", states)
 
     # Expressions
@@ -276,9 +277,9 @@ class _Linker:
     def _elsewhere(self, name: Name) -> str | None:
         """What to write for a bare name that some component has as a variable or a state."""
         having = [
-            f"`{written(each.name)}.{written(name.text)}`"
-            for each in self._scope.components.values()
-            if name.text in (self._scope.members(each) or {})
+            f"`{written(component.name)}.{written(name.text)}`"
+            for component in self._scope.components.values()
+            if name.text in (self._scope.members(component) or {})
         ]
         return f"write {' or '.join(having)}" if having else None
 
@@ -344,12 +345,14 @@ class _Linker:
                     name, f"the ROS type `{of.definition.name}` has no field that a model can use named", known
                 )
             return made
-        for each in of.definition.properties:
-            if each.name == name.text:
-                return each
-        known = [each.name for each in of.definition.properties]
-        if not self._file.may_hold(of.definition, name.text, Declared.PROPERTY):
-            self._missing(name, f"object `{of.definition.name}` has no property", known)
+        if of.definition not in self._properties:
+            self._properties[of.definition] = by_name(of.definition.properties)
+        properties = self._properties[of.definition]
+        if name.text in properties:
+            found: rsc.ObjectProperty = properties[name.text]
+            return found
+        if not self._file.may_declare_within(of.definition, name.text, Declared.PROPERTY):
+            self._missing(name, f"object `{of.definition.name}` has no property", properties)
         return None
 
     def _around(self, element: ex.Located, kind: type[_Element]) -> _Element | None:
@@ -382,5 +385,5 @@ class _Linker:
         self._report(name, f"{message} `{name.text}`", repair)
 
     def _report(self, name: Name, message: str, repair: Repair | str | None = None) -> None:
-        if not self._file.unread.is_doubtful(name.start):
+        if not self._file.regions.is_uncertain(name.start):
             self.findings.append(self._file.text.error(RULE, name.start, name.end, message, repair))

@@ -11,8 +11,8 @@ from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from robosc.language.grammar import first, first_words, following, is_reserved
+from robosc.language.skipped import Declared
 from robosc.language.tokens import Kind, Token
-from robosc.language.unread import Declared
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -187,7 +187,7 @@ class Outline:
             elif body is not None and self._opens(body):
                 items = self._body((*levels, body))
                 break
-            elif any(self._starts(each) for each in levels):
+            elif any(self._starts(around) for around in levels):
                 break
             elif self._is("{"):
                 self._skip(levels)
@@ -242,11 +242,11 @@ class Outline:
             doubled = depth and self._is("{") and self._tokens[self._at - 1].is_keyword("{")
             depth += (self._is("{") and not doubled) - self._is("}")
             self._at += 1
-            if depth == 0 or any(self._starts(each) for each in levels if each.starters):
+            if depth == 0 or any(self._starts(around) for around in levels if around.starters):
                 return
 
     def _outer(self, levels: tuple[Level, ...]) -> bool:
-        return any(self._starts(each) for each in levels[:-1])
+        return any(self._starts(around) for around in levels[:-1])
 
     def _starts(self, level: Level) -> bool:
         """Whether an item of a level begins at the current token."""

@@ -108,7 +108,7 @@ class _Reader:
         self.findings += findings
         parsed = parse_file(text)
         self.findings += parsed.findings
-        file = self.files[shown] = File(text, parsed.base, parsed.references, parsed.declared, parsed.unread)
+        file = self.files[shown] = File(text, parsed.base, parsed.references, parsed.declared, parsed.regions)
         self._files[identity] = file
         self._paths[identity] = path
         references = file.references.items() if file.base is not None else ()

@@ -14,9 +14,9 @@ from robosc.language.building import Builder
 from robosc.language.explaining import expected, found, hint
 from robosc.language.grammar import Failure, first_words, is_reserved, parse
 from robosc.language.outline import DECLARED, DEFINITIONS, PROPERTIES, RULES, Block, Brace, Outline
+from robosc.language.skipped import Declared, SkippedRegions
 from robosc.language.text import Repair
 from robosc.language.tokens import Kind, Token, Tokens, too_complex
-from robosc.language.unread import Declared, Unread
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -35,14 +35,14 @@ class Parsed:
     """The model of a text, its names not linked.
 
     `base` is None where nothing could be read. `references`: the names by element and feature; `declared`: the names
-    of elements; `unread`: what was skipped.
+    of elements; `regions`: what was skipped.
     """
 
     base: rsc.Base | None
     references: dict[Any, dict[str, Name]] = field(default_factory=dict)
     declared: Mapping[Any, Name] = field(default_factory=dict)
     findings: list[Diagnostic] = field(default_factory=list)
-    unread: Unread = field(default_factory=Unread)
+    regions: SkippedRegions = field(default_factory=SkippedRegions)
 
 
 def parse_file(text: Text) -> Parsed:
@@ -68,11 +68,11 @@ class _Recovery:
         self._text = text
         self._tokens = tokens
         # Comments are blanks here, and so is what lies behind the text: room for the braces that are missing there.
-        self._content = [each if each == "\n" else " " for each in text.content + " " * 10]
-        for each in tokens:
-            self._content[each.start : each.end] = each.text
+        self._content = [character if character == "\n" else " " for character in text.content + " " * 10]
+        for token in tokens:
+            self._content[token.start : token.end] = token.text
         self._findings: list[Diagnostic] = []
-        self._unread = Unread()
+        self._regions = SkippedRegions()
         self._is_library = tokens[0].text == "library"
 
     def parse(self) -> Parsed:
@@ -94,8 +94,8 @@ class _Recovery:
             self._check(item)
         builder = Builder(self._text)
         base = self._base(root, builder)
-        findings = sorted([*self._findings, *builder.findings], key=lambda each: each.span)
-        return Parsed(base, builder.references, builder.declared, findings, self._unread)
+        findings = sorted([*self._findings, *builder.findings], key=lambda finding: finding.span)
+        return Parsed(base, builder.references, builder.declared, findings, self._regions)
 
     # Braces
 
@@ -103,23 +103,23 @@ class _Recovery:
         tokens = self._tokens
         at_end = tokens[len(tokens) - 1].kind is Kind.OPEN_COMMENT
         why: str | None
-        for each in braces:
-            self._unread.mended = True
-            token = tokens[each.index]
-            if each.surplus:
-                why = "what follows belongs inside" if each.text == "}" else "one stands before it"
-                self._report(each.index, f"this `{each.text}` is one too many: {why}", Repair("leave it out", ""))
+        for brace in braces:
+            self._regions.mended = True
+            token = tokens[brace.index]
+            if brace.surplus:
+                why = "what follows belongs inside" if brace.text == "}" else "one stands before it"
+                self._report(brace.index, f"this `{brace.text}` is one too many: {why}", Repair("leave it out", ""))
                 self._blank(token.start, token.end)
                 continue
             # Of the braces that are missing at the end, the innermost is reported.
             if token.kind is not Kind.END or not at_end:
-                opened = None if each.opened is None else tokens[each.opened]
+                opened = None if brace.opened is None else tokens[brace.opened]
                 line = self._text.span(opened.start, opened.end).line if opened else None
                 why = f"the `{{` in line {line} is not closed" if line else None
-                self._report(each.index, f"found {found(token)}, expected `{each.text}`", why)
+                self._report(brace.index, f"found {found(token)}, expected `{brace.text}`", why)
             at_end = at_end or token.kind is Kind.END
-            if each.offset is not None:
-                self._content[each.offset] = each.text
+            if brace.offset is not None:
+                self._content[brace.offset] = brace.text
 
     def _remainder(self, root: Block) -> None:
         """What stands behind the closing brace of the robot."""
@@ -164,7 +164,7 @@ class _Recovery:
             self._skip_block(block)
             return
         # The item itself is whole, and something follows that may be an item with a fault, or nothing known.
-        self._unread.doubtful.append((block.start, block.end))
+        self._regions.uncertain.append((block.start, block.end))
         if self._tokens[index].kind is Kind.SYMBOL:
             self._explain(block, index, failure)
             self._skip(index, block.after)
@@ -249,7 +249,7 @@ class _Recovery:
                 self._skip_block(item)
                 at = item.after
         self._blank(block.start, block.end)
-        self._unread.ranges.append((block.start, block.end))
+        self._regions.skipped.append((block.start, block.end))
         self._note_nameless(block)
 
     def _skip(self, first: int, after: int, *, declares: bool = True) -> None:
@@ -258,7 +258,7 @@ class _Recovery:
             token = tokens[index]
             named = token.is_name and not tokens[index - 1].is_keyword("goto") and not token.text.startswith("^")
             if token.kind is Kind.WORD and (declares or named):
-                self._unread.names.add(token.text.removeprefix("^"))
+                self._regions.names.add(token.text.removeprefix("^"))
         if first < after:
             self._blank(tokens[first].start, tokens[after - 1].end)
 
@@ -268,22 +268,22 @@ class _Recovery:
         words = [tokens[index] for index in range(block.first, block.items[0].first if block.items else block.after)]
         starter = block.level.starter(first) if block.level else None
         # A keyword where a name belongs is the one that comes after a name that is missing.
-        named = any(each.is_name and not is_reserved(each.text) for each in words)
+        named = any(word.is_name and not is_reserved(word.text) for word in words)
         if block.level is PROPERTIES:
             unseen = {Declared.PROPERTY} if first.kind is not Kind.WORD else set()
         elif block.level is RULES:
             unseen = {Declared.ENUM_VALUE} if not named or first.is_keyword("->") else set()
         else:
             unseen = {DECLARED[starter]} if starter in DECLARED and not named else set()
-        if (starter == "component" and not block.items) or any(each.is_keyword("import") for each in words):
+        if (starter == "component" and not block.items) or any(word.is_keyword("import") for word in words):
             # What a library would have brought.
             unseen |= {Declared.COMMUNICATION, Declared.MEMBER, Declared.INTERFACE, Declared.DATA_TYPE}
             unseen |= {Declared.ENUM_VALUE, Declared.PROPERTY}
         place = self._text.span(block.start, block.end)
-        self._unread.nameless += ((each, place) for each in unseen)
+        self._regions.nameless += ((kind, place) for kind in unseen)
 
     def _blank(self, start: int, end: int) -> None:
-        self._content[start:end] = [each if each == "\n" else " " for each in self._content[start:end]]
+        self._content[start:end] = [character if character == "\n" else " " for character in self._content[start:end]]
 
     # Findings
 

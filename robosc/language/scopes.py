@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from robosc.language.unread import Declared, Unread
+from robosc.language.skipped import Declared, SkippedRegions
 from robosc.metamodel import robosc as rsc
 from robosc.semantics.instances import Instance, Instances
 
@@ -25,8 +25,8 @@ Names: TypeAlias = "Mapping[str, Any]"
 def by_name(elements: Iterable[Any]) -> dict[str, Any]:
     """The elements by their names."""
     names: dict[str, Any] = {}
-    for each in elements:
-        names.setdefault(each.name, each)
+    for element in elements:
+        names.setdefault(element.name, element)
     return names
 
 
@@ -57,7 +57,7 @@ class File:
     base: rsc.Base | None
     references: dict[Any, dict[str, Name]]
     declared_names: Mapping[Any, Name] = field(default_factory=dict)
-    unread: Unread = field(default_factory=Unread)
+    regions: SkippedRegions = field(default_factory=SkippedRegions)
     #: The files of the libraries that it imports from, by the libraries' names; None: none that can be used.
     libraries: dict[str, File | None] = field(default_factory=dict)
 
@@ -84,17 +84,17 @@ class File:
     @property
     def skipped(self) -> list[tuple[int, int]]:
         """The ranges of the text that no element was made of because of their faults: offsets, in order."""
-        return sorted(self.unread.ranges)
+        return sorted(self.regions.skipped)
 
     @cached_property
     def declared(self) -> Mapping[type[Any], Names]:
         """What other places can name, by its kind."""
         definitions = self.base.definitions if self.base is not None else ()
         kinds = (rsc.Component, rsc.ComplexDataType, rsc.Interface)
-        enums = [each for each in definitions if isinstance(each, rsc.EnumDataType)]
+        enums = [found for found in definitions if isinstance(found, rsc.EnumDataType)]
         return {
-            **{kind: by_name(each for each in definitions if isinstance(each, kind)) for kind in kinds},
-            rsc.EnumValue: by_name(rule.value for each in enums for rule in each.rules if rule.value),
+            **{kind: by_name(found for found in definitions if isinstance(found, kind)) for kind in kinds},
+            rsc.EnumValue: by_name(rule.value for enum in enums for rule in enum.rules if rule.value),
         }
 
     def may_declare(self, name: str, *kinds: Declared, imported: bool = True) -> bool:
@@ -102,29 +102,29 @@ class File:
 
         That is text of this file or, if `imported`, of a library that it imports from.
         """
-        if self.unread.may_declare(name, kinds):
+        if self.regions.may_declare(name, kinds):
             return True
         files = self._files if imported else ()
-        return any(None in each.libraries.values() or each.unread.may_declare(name, kinds) for each in files)
+        return any(None in file.libraries.values() or file.regions.may_declare(name, kinds) for file in files)
 
-    def may_hold(self, definition: rsc.Definition, name: str, kind: Declared) -> bool:
+    def may_declare_within(self, definition: rsc.Definition, name: str, kind: Declared) -> bool:
         """Whether a definition, of this file or of a library, may declare a name in text that could not be read."""
-        unread = self._homes[definition.eContainer()].unread
-        return unread.may_declare(name, (kind,), definition.source.span if definition.source else None)
+        regions = self._file_of[definition.eContainer()].regions
+        return regions.may_declare(name, (kind,), definition.source.span if definition.source else None)
 
     @cached_property
     def _files(self) -> list[File]:
         """The file itself and those of all that it imports, directly or through others."""
         found, pending = {self: None}, [self]
         while pending:
-            imported = [each for each in pending.pop().libraries.values() if each is not None and each not in found]
+            imported = [file for file in pending.pop().libraries.values() if file is not None and file not in found]
             found |= dict.fromkeys(imported)
             pending += imported
         return list(found)
 
     @cached_property
-    def _homes(self) -> dict[rsc.Base | None, File]:
-        return {each.base: each for each in self._files}
+    def _file_of(self) -> dict[rsc.Base | None, File]:
+        return {file.base: file for file in self._files}
 
 
 class Scope:
@@ -133,20 +133,20 @@ class Scope:
     def __init__(self, file: File, base: rsc.Base, resolved: Resolved | None = None) -> None:
         self.components: Names = file.declared[rsc.Component]
         self._file = file
-        self._imports = [each for each in file.libraries.values() if each is not None]
+        self._imports = [library for library in file.libraries.values() if library is not None]
         self._instances = Instances(base, resolved)
         self._members: dict[rsc.Component, Names] = {}
         self._states: dict[rsc.Component, Names] = {}
         self._communications: dict[rsc.Component, Names] = {}
         #: Whether a component is imported of which nothing is known.
-        self.incomplete = any(self.members(each) is None for each in self.components.values())
+        self.incomplete = any(self.members(component) is None for component in self.components.values())
 
     def find(self, kind: type[Any], name: str) -> list[tuple[File, Any]]:
         """The definitions of a kind with a name: the own one, else those of directly imported libraries."""
         own = self._file.declared[kind].get(name)
         if own is not None:
             return [(self._file, own)]
-        return [(each, each.declared[kind][name]) for each in self._imports if name in each.declared[kind]]
+        return [(library, library.declared[kind][name]) for library in self._imports if name in library.declared[kind]]
 
     def usable(self, kind: type[Any]) -> list[str]:
         """The names of all definitions of a kind that can be used, imported ones included."""
@@ -172,7 +172,7 @@ class Scope:
         if component not in self._states:
             instance = self._instances.instance(component, None)
             members = _members(instance) if instance is not None else ()
-            self._states[component] = by_name(each for each in members if isinstance(each, rsc.State))
+            self._states[component] = by_name(member for member in members if isinstance(member, rsc.State))
         return self._states[component]
 
     def communications(self, component: rsc.Component) -> Names | None:
@@ -191,19 +191,19 @@ class Scope:
     @cached_property
     def _communicating(self) -> dict[str, list[tuple[rsc.Component, rsc.CommunicationType]]]:
         found: dict[str, list[tuple[rsc.Component, rsc.CommunicationType]]] = {}
-        for each in self._instances:
-            for name, communication in (self.communications(each.component) or {}).items():
-                found.setdefault(name, []).append((each.component, communication))
+        for instance in self._instances:
+            for name, communication in (self.communications(instance.component) or {}).items():
+                found.setdefault(name, []).append((instance.component, communication))
         return found
 
     def all_communications(self) -> list[str]:
         """The names of the communications of all components."""
-        return [name for each in self._instances for name in self.communications(each.component) or ()]
+        return [name for instance in self._instances for name in self.communications(instance.component) or ()]
 
 
 def _members(instance: Instance) -> Iterable[rsc.Variable | rsc.State]:
     # A component with two behaviours is an error of another rule; its names are still names.
-    behaviours = [each for each in instance.local.definitions if isinstance(each, rsc.ComponentBehaviour)]
-    definitions = [each for behaviour in behaviours for each in behaviour.automaton.definitions]
-    yield from (each for each in definitions if isinstance(each, rsc.Variable))
-    yield from (each for each in definitions if isinstance(each, rsc.State))
+    behaviours = [part for part in instance.local.definitions if isinstance(part, rsc.ComponentBehaviour)]
+    definitions = [definition for behaviour in behaviours for definition in behaviour.automaton.definitions]
+    yield from (definition for definition in definitions if isinstance(definition, rsc.Variable))
+    yield from (definition for definition in definitions if isinstance(definition, rsc.State))

@@ -81,7 +81,7 @@ class Tokens:
 
     @cached_property
     def _starts(self) -> list[int]:
-        return [each.start for each in self._tokens]
+        return [token.start for token in self._tokens]
 
     def index_at(self, offset: int) -> int:
         """The index of the token that an offset lies in, or of the first one after it."""

@@ -31,6 +31,6 @@ def format_text(text: Text) -> tuple[str | None, list[Diagnostic]]:
     if builder.findings:
         return None, builder.findings
     formatted = render(layout(text.content, tree))
-    if [each.text for each in words] != [each.text for each in Tokens(formatted)]:
+    if [word.text for word in words] != [word.text for word in Tokens(formatted)]:
         raise AssertionError(f"{text.file}: the layout changed the words")
     return formatted, []

@@ -26,7 +26,7 @@ class Space:
     def parted(self) -> tuple[Space, Space]:
         """The comments up to the first one beside a line break, and all others with their line breaks."""
         count = len(self.comments)
-        at = next((each for each in range(count) if self.breaks[each] or self.breaks[each + 1]), count)
+        at = next((index for index in range(count) if self.breaks[index] or self.breaks[index + 1]), count)
         return Space(self.comments[:at], [0] * (at + 1)), Space(self.comments[at:], self.breaks[at:])
 
     def joined(self, other: Space) -> Space:
@@ -39,7 +39,7 @@ class Space:
     @property
     def trailing(self) -> int:
         """How many of the comments stand at the end of the line of the word before."""
-        return next((index for index, each in enumerate(self.breaks) if each), 0)
+        return next((index for index, breaks in enumerate(self.breaks) if breaks), 0)
 
 
 def spaces(text: str, words: Iterable[Node]) -> dict[int, Space]:

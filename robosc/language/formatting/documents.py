@@ -101,21 +101,21 @@ def render(document: Document) -> str:
                 flat = flat or (not top.breaks and _fits(WIDTH - lines.column, top.content, todo))
                 todo.append((indentation, flat, top.content))
             case tuple():
-                todo += [(indentation, flat, each) for each in reversed(top)]
+                todo += [(indentation, flat, part) for part in reversed(top)]
     return lines.text()
 
 
 def _fits(room: int, document: Document, following: list[tuple[int, bool, Document]]) -> bool:
     """Whether a document fits into the room of a line, with what follows up to the next place for a line break."""
     todo: list[tuple[bool, Document]] = [(True, document)]
-    rest = ((flat, each) for _, flat, each in reversed(following))
+    rest = ((flat, part) for _, flat, part in reversed(following))
     while room >= 0:
         flat, top = todo.pop() if todo else next(rest, (False, Gap.LINE))
         match top:
             case Indent() | Group():
                 todo.append((flat, top.content))
             case tuple():
-                todo += [(flat, each) for each in reversed(top)]
+                todo += [(flat, part) for part in reversed(top)]
             case Gap() if top in _ALWAYS or (top in _MAYBE and not flat):
                 return True
             case _:

@@ -71,7 +71,7 @@ class _Layout:
         if rule in _CLAUSES:
             return self._clauses(parts, rule)
         if rule == "Expression":
-            return self._chain(parts[0], [(each[0], *_parts(each[0])) for each in parts[1:]])
+            return self._chain(parts[0], [(link[0], *_parts(link[0])) for link in parts[1:]])
         if rule == "Operand" and len(parts) > 1:
             return self._brackets(*parts)
         return self._row(parts, Gap.NONE if rule in _TIGHT else Gap.SPACE)
@@ -109,13 +109,13 @@ class _Layout:
 
     def _chain(self, first: Node, others: Sequence[tuple[Node, Node, Node]]) -> Document:
         """Operands, each but the first with its binary expression and operator: the loosest operators break first."""
-        loosest = min((_precedence(each) for each, _, _ in others), default=0)
+        loosest = min((_precedence(binary) for binary, _, _ in others), default=0)
         links: list[tuple[Node | None, Node, list[tuple[Node, Node, Node]]]] = [(None, first, [])]
-        for each, operator, operand in others:
-            if _precedence(each) == loosest:
+        for binary, operator, operand in others:
+            if _precedence(binary) == loosest:
                 links.append((operator, operand, []))
             else:
-                links[-1][2].append((each, operator, operand))
+                links[-1][2].append((binary, operator, operand))
         if len(links) == 1:
             return self._document(first)
         chain: list[Document] = []
@@ -138,22 +138,22 @@ class _Layout:
         if not items:
             return self._empty(opening, closing)
         row: list[Document] = []
-        for each in parts[1:-1]:
-            row += self._gap(each, Gap.NONE if _is_word(each, {","}) else Gap.BREAK), self._document(each)
+        for part in parts[1:-1]:
+            row += self._gap(part, Gap.NONE if _is_word(part, {","}) else Gap.BREAK), self._document(part)
         return Group((self._document(opening), Indent(tuple(row)), self._closing(closing, Gap.BREAK)))
 
     def _block(self, parts: Sequence[Node]) -> Document:
         """What stands before braces, and items between them, each in a line of its own."""
-        at = next((index for index, each in enumerate(parts) if _is_word(each, {"{"})), len(parts))
+        at = next((index for index, part in enumerate(parts) if _is_word(part, {"{"})), len(parts))
         header = self._row(parts[:at])
-        if any(_is_word(each, {"import"}) for each in parts):
+        if any(_is_word(part, {"import"}) for part in parts):
             header = self._clauses(parts[:at], "Component")
             return (header, self._gap(parts[at], Gap.SPACE), self._list(parts[at:])) if at < len(parts) else header
         opening, *items, closing = parts[at:]
         start = header, self._gap(opening, Gap.SPACE)
         if not items:
             return *start, self._empty(opening, closing)
-        lines = tuple((self._line(each.position, first=each is items[0]), self._document(each)) for each in items)
+        lines = tuple((self._line(item.position, first=item is items[0]), self._document(item)) for item in items)
         return *start, self._document(opening), Indent(lines), self._closing(closing, Gap.LINE)
 
     def _empty(self, opening: Node, closing: Node) -> Document:
@@ -196,7 +196,7 @@ class _Layout:
 
 def _gaps(space: Space, empty_line: Gap = Gap.LINE) -> list[Gap]:
     """The gaps that comments keep."""
-    return [empty_line if each > 1 else Gap.LINE if each else Gap.SPACE for each in space.breaks]
+    return [empty_line if count > 1 else Gap.LINE if count else Gap.SPACE for count in space.breaks]
 
 
 def _words(node: Node) -> Iterator[Node]:
@@ -204,17 +204,17 @@ def _words(node: Node) -> Iterator[Node]:
     if _is_leaf(node):
         yield node
     else:
-        for each in node:
-            yield from _words(each)
+        for part in node:
+            yield from _words(part)
 
 
 def _parts(node: Node) -> Iterator[Node]:
     """What a node consists of, without the levels that the layout takes no notice of."""
-    for each in node:
-        if not _is_leaf(each) and (each.rule_name in _INLINED or attribute(each) is not None):
-            yield from _parts(each)
+    for part in node:
+        if not _is_leaf(part) and (part.rule_name in _INLINED or attribute(part) is not None):
+            yield from _parts(part)
         else:
-            yield each
+            yield part
 
 
 def _is_leaf(node: Node) -> bool:

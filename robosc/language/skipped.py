@@ -23,19 +23,19 @@ class Declared(Enum):
 
 
 @dataclass
-class Unread:
+class SkippedRegions:
     """The names that skipped text seems to declare, and where it stands.
 
     `nameless` are the kinds of which a declaration was skipped whose name can't be seen, and where; `mended` says
-    whether braces had to be added or taken away. `ranges` are the texts that were skipped, `doubtful` also the items
-    that something unknown follows (offsets, the end exclusive).
+    whether braces had to be added or taken away. `skipped` are the ranges of the text that were skipped,
+    `uncertain` those of items that are whole, but that something unknown follows (offsets, the end exclusive).
     """
 
     names: set[str] = field(default_factory=set)
     nameless: list[tuple[Declared, Span]] = field(default_factory=list)
     mended: bool = False
-    ranges: list[tuple[int, int]] = field(default_factory=list)
-    doubtful: list[tuple[int, int]] = field(default_factory=list)
+    skipped: list[tuple[int, int]] = field(default_factory=list)
+    uncertain: list[tuple[int, int]] = field(default_factory=list)
 
     def may_declare(self, name: str, kinds: tuple[Declared, ...], within: Span | None = None) -> bool:
         """Whether a name of one of these kinds that is not found may be declared in skipped text.
@@ -48,6 +48,6 @@ class Unread:
         span = None if self.mended else within
         return any(kind in kinds and (span is None or span.contains(place)) for kind, place in self.nameless)
 
-    def is_doubtful(self, offset: int) -> bool:
+    def is_uncertain(self, offset: int) -> bool:
         """Whether what stands at an offset may not mean what it seems to."""
-        return any(start <= offset < end for start, end in self.doubtful)
+        return any(start <= offset < end for start, end in self.uncertain)
