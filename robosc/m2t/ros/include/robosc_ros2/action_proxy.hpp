@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <deque>
 #include <exception>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -19,39 +18,26 @@
 #include <rclcpp/rclcpp.hpp>
 
 #include "robosc/callback_guard.hpp"
+#include "robosc/goal_proxy.hpp"
 #include "robosc_ros2/clock.hpp"
 
 namespace robosc {
 inline namespace v1 {
 
-/// An action for the controller behind which stands the robot's one: its three services and two topics, one by one, so
-/// that goals keep their identity. One goal runs at a time; another one is rejected until that has ended.
+/// The three services and two topics of an action towards the controller, behind which stand those of the robot.
 template <typename Type>
-class ActionProxy {
+class ActionProxy : public GoalProxy<typename Type::Goal, typename Type::Feedback, typename Type::Result> {
  public:
-  using Goal = typename Type::Goal;
-  using Feedback = typename Type::Feedback;
-  using Result = typename Type::Result;
-
-  /// What the supervisor has to say and to hear. After `cancel` it hears no more of that goal.
-  struct Handlers {
-    std::function<bool(const Goal&)> goal;            ///< Whether a goal goes on.
-    std::function<void()> busy;                       ///< A goal is rejected because another one has not ended.
-    std::function<void(const Feedback&)> feedback;    ///< The goal at hand goes on.
-    std::function<void(const Result&)> response;      ///< It has succeeded.
-    std::function<void(const std::string&)> error;    ///< It has not, and why.
-    std::function<void(const std::string&)> refused;  ///< The robot does not cancel it.
-  };
+  using Base = GoalProxy<typename Type::Goal, typename Type::Feedback, typename Type::Result>;
 
   /// `quality`: of the feedback that the robot sends.
   ActionProxy(rclcpp::Node& node, const CallbackGuard& guard, const std::string& controller_side,
               const std::string& robot_side, const rclcpp::QoS& quality, std::chrono::milliseconds timeout,
-              Handlers handlers)
-      : guard_(guard),
+              typename Base::Handlers handlers)
+      : Base(" within " + std::to_string(timeout.count()) + " ms", std::move(handlers)),
+        guard_(guard),
         clock_(waiting_clock(node)),
-        timeout_(timeout),
-        within_(" within " + std::to_string(timeout.count()) + " ms"),
-        handlers_(std::move(handlers)) {
+        timeout_(timeout) {
     const std::string inside = controller_side + "/_action/", outside = robot_side + "/_action/";
     const rclcpp::QoS lasting = rclcpp::QoS(1).transient_local();
 
@@ -82,15 +68,8 @@ class ActionProxy {
         guard([this](std::shared_ptr<rmw_request_id_t> caller, std::shared_ptr<typename CancelGoal::Request> request) {
           on_cancel(*caller, std::move(request));
         }));
-    timer_ = rclcpp::create_timer(&node, clock_, kLook, guard([this] { look(); }));
+    timer_ = rclcpp::create_timer(&node, clock_, kLook, guard([this] { look_after(); }));
     timer_->cancel();
-  }
-
-  /// Cancels the goal at hand, if there is one; before the robot has accepted it, as soon as it does.
-  void cancel() {
-    if (!goal_ || goal_->cancelled) return;
-    goal_->cancelled = true;
-    if (goal_->accepted) send_cancel(goal_->id);
   }
 
  private:
@@ -101,17 +80,6 @@ class ActionProxy {
   using StatusArray = typename Type::Impl::GoalStatusMessage;
   using Status = action_msgs::msg::GoalStatus;
   using Id = std::array<std::uint8_t, 16>;
-
-  struct Running {
-    Id id;
-    rmw_request_id_t caller;
-    std::shared_ptr<typename SendGoal::Request> request;
-    rclcpp::Time deadline;
-    bool sent = false;
-    bool accepted = false;
-    bool cancelled = false;
-    std::vector<rmw_request_id_t> waiting_for_result = {};
-  };
 
   struct Ended {
     Id id;
@@ -129,24 +97,23 @@ class ActionProxy {
   // From the controller.
 
   void on_goal(const rmw_request_id_t& caller, std::shared_ptr<typename SendGoal::Request> request) {
-    if (goal_) {
-      handlers_.busy();
-      answer_goal(caller, typename SendGoal::Response());
-      return;
-    }
-    goal_ = Running{request->goal_id.uuid, caller, request, clock_->now() + timeout_};
-    if (handlers_.goal(request->goal)) {
+    const bool admitted = this->admit(request->goal, [this, &caller, &request] {
+      id_ = request->goal_id.uuid;
+      caller_ = caller;
+      request_ = request;
+      waiting_for_result_.clear();
+    });
+    if (admitted) {
       timer_->reset();
-      look();
+      this->look();
     } else {
-      goal_.reset();
       answer_goal(caller, typename SendGoal::Response());
     }
   }
 
   void on_result_wanted(const rmw_request_id_t& caller, const Id& id) {
     if (is_running(id)) {
-      goal_->waiting_for_result.push_back(caller);
+      waiting_for_result_.push_back(caller);
     } else if (ended_ && ended_->id == id) {
       answer_result(caller, ended_->result);
     } else {
@@ -162,42 +129,37 @@ class ActionProxy {
   // From the robot.
 
   void on_accepted(const Id& id, const typename SendGoal::Response& response) {
-    if (!is_running(id) || goal_->accepted) {
-      if (response.accepted) send_cancel(id);  // too late: nobody waits for it
+    if (!is_running(id) || this->accepted()) {
+      if (response.accepted) cancel_goal(id);  // too late: nobody waits for it
       return;
     }
-    if (!response.accepted) {
-      fail("rejected");
-      return;
-    }
-    answer_goal(goal_->caller, response);
-    goal_->accepted = true;
-    goal_->deadline = clock_->now() + timeout_;
+    if (!response.accepted) return this->fail("rejected");
+    answer_goal(caller_, response);
     auto request = std::make_shared<typename GetResult::Request>();
     request->goal_id.uuid = id;
     const auto asked =
         ask<GetResult>(*result_client_, request, [this, id](const typename GetResult::Response& response) {
           if (is_running(id)) on_result(response);
         });
-    if (goal_->cancelled || !asked) send_cancel(id);
-    if (!asked) fail("its result can't be asked for");
+    this->accept();
+    if (asked) return;
+    send_cancel();
+    this->fail("its result can't be asked for");
   }
 
   void on_feedback(const FeedbackMessage& message) {
     if (!is_running(message.goal_id.uuid)) return;
-    if (!goal_->cancelled) handlers_.feedback(message.feedback);
+    this->hear(message.feedback);
     feedback_publisher_->publish(message);
   }
 
   void on_result(const typename GetResult::Response& response) {
-    if (!goal_->cancelled) {
-      if (response.status == Status::STATUS_SUCCEEDED) {
-        handlers_.response(response.result);
-      } else {
-        handlers_.error(response.status == Status::STATUS_CANCELED ? "cancelled" : "aborted");
-      }
+    if (response.status == Status::STATUS_SUCCEEDED) {
+      this->succeed(response.result);
+    } else {
+      this->end(response.status == Status::STATUS_CANCELED ? "cancelled" : "aborted");
     }
-    finish(response);
+    conclude(response);
   }
 
   // That a goal has ended is told with its result, not before: the supervisor knows first.
@@ -217,57 +179,53 @@ class ActionProxy {
 
   // Waiting.
 
-  void look() {
-    const rclcpp::Time now = clock_->now();
-    forget_cancels(now);
-    if (!goal_) {
-      if (cancels_.empty()) timer_->cancel();
-      return;
-    }
-    if (goal_->cancelled && !goal_->sent) {
-      fail("cancelled before it was sent");
-      return;
-    }
-    if (!goal_->sent && goal_client_->service_is_ready()) {
-      const Id id = goal_->id;
-      goal_->sent =
-          ask<SendGoal>(*goal_client_, goal_->request, [this, id](const typename SendGoal::Response& response) {
-            on_accepted(id, response);
-          }).has_value();
-      if (goal_->sent) return;
-    }
-    if (goal_->accepted && result_client_->service_is_ready()) goal_->deadline = now + timeout_;
-    if (now < goal_->deadline) return;
-    fail(goal_->accepted ? "the server is gone" : (goal_->sent ? "not accepted" : "no server") + within_);
+  void look_after() {
+    forget_cancels(clock_->now());
+    if (!this->running() && cancels_.empty()) timer_->cancel();
+    this->look();
   }
 
-  void fail(const std::string& why) {
-    if (!goal_->cancelled) handlers_.error(why);
-    if (!goal_->accepted) answer_goal(goal_->caller, typename SendGoal::Response());
+  bool is_served() override {
+    return this->sent() ? result_client_->service_is_ready() : goal_client_->service_is_ready();
+  }
+
+  bool send() override {
+    const auto answered = [this, id = id_](const typename SendGoal::Response& response) { on_accepted(id, response); };
+    return ask<SendGoal>(*goal_client_, request_, answered).has_value();
+  }
+
+  void send_cancel() override { cancel_goal(id_); }
+  void restart() override { deadline_ = clock_->now() + timeout_; }
+  bool is_over() override { return clock_->now() >= deadline_; }
+  void cancel_unanswered() override { restart(); }  // see `forget_cancels`
+
+  void abandon(const std::string&) override {
+    if (!this->accepted()) answer_goal(caller_, typename SendGoal::Response());
     typename GetResult::Response response;
     response.status = Status::STATUS_ABORTED;
-    finish(response);
+    conclude(response);
   }
 
-  void finish(const typename GetResult::Response& response) {
-    const Running goal = *goal_;
-    goal_.reset();
+  void conclude(const typename GetResult::Response& response) {
+    this->finish();
     result_client_->prune_pending_requests();
     // One that is accepted late is cancelled; so long after its time for acceptance is over it is taken for lost.
     const auto patience = timeout_.to_chrono<std::chrono::milliseconds>() + std::chrono::seconds(30);
     goal_client_->prune_requests_older_than(std::chrono::system_clock::now() - patience);
-    ended_ = Ended{goal.id, response};
+    ended_ = Ended{id_, response};
     for (auto& status : statuses_.status_list) {
-      if (caller.goal_info.goal_id.uuid == goal.id) caller.status = response.status;
+      if (status.goal_info.goal_id.uuid == id_) status.status = response.status;
     }
-    if (goal.accepted) status_publisher_->publish(statuses_);
-    for (const rmw_request_id_t& caller : goal.waiting_for_result) answer_result(caller, response);
+    if (this->accepted()) status_publisher_->publish(statuses_);
+    for (const rmw_request_id_t& caller : std::exchange(waiting_for_result_, {})) answer_result(caller, response);
   }
 
-  void send_cancel(const Id& id) {
+  void cancel_goal(const Id& id) {
     auto request = std::make_shared<typename CancelGoal::Request>();
     request->goal_info.goal_id.uuid = id;
-    if (!ask_to_cancel(request, std::nullopt)) handlers_.refused("the request to cancel the goal can't be sent");
+    if (!ask_to_cancel(request, std::nullopt)) {
+      this->handlers().refused("the request to cancel the goal can't be sent");
+    }
   }
 
   bool ask_to_cancel(std::shared_ptr<typename CancelGoal::Request> request, std::optional<rmw_request_id_t> caller) {
@@ -294,7 +252,7 @@ class ActionProxy {
     // A goal that has ended meanwhile needs none.
     const bool none = response.return_code == Answer::ERROR_NONE && response.goals_canceling.empty();
     if (none || response.return_code == Answer::ERROR_REJECTED) {
-      handlers_.refused("the server refuses to cancel the goal");
+      this->handlers().refused("the server refuses to cancel the goal");
     }
   }
 
@@ -307,7 +265,7 @@ class ActionProxy {
       if (late.caller) {
         reject_cancel(*late.caller);
       } else {
-        handlers_.refused("the server does not answer the request to cancel the goal" + within_);
+        this->handlers().refused("the server does not answer the request to cancel the goal" + this->within());
       }
     }
   }
@@ -333,7 +291,7 @@ class ActionProxy {
     }
   }
 
-  bool is_running(const Id& id) const { return goal_ && goal_->id == id; }
+  bool is_running(const Id& id) const { return this->running() && id_ == id; }
 
   void answer_goal(rmw_request_id_t caller, typename SendGoal::Response response) {
     goal_service_->send_response(caller, response);
@@ -348,8 +306,6 @@ class ActionProxy {
   const CallbackGuard& guard_;
   rclcpp::Clock::SharedPtr clock_;
   rclcpp::Duration timeout_;
-  std::string within_;
-  Handlers handlers_;
   std::shared_ptr<rclcpp::Client<SendGoal>> goal_client_;
   std::shared_ptr<rclcpp::Client<GetResult>> result_client_;
   std::shared_ptr<rclcpp::Client<CancelGoal>> cancel_client_;
@@ -361,7 +317,11 @@ class ActionProxy {
   std::shared_ptr<rclcpp::Service<GetResult>> result_service_;
   std::shared_ptr<rclcpp::Service<CancelGoal>> cancel_service_;
   rclcpp::TimerBase::SharedPtr timer_;
-  std::optional<Running> goal_;
+  Id id_ = {};
+  rmw_request_id_t caller_ = {};
+  std::shared_ptr<typename SendGoal::Request> request_;
+  rclcpp::Time deadline_;
+  std::vector<rmw_request_id_t> waiting_for_result_;
   std::optional<Ended> ended_;
   std::deque<Cancelling> cancels_;  ///< The oldest first.
   std::uint64_t cancel_number_ = 0;
