@@ -13,8 +13,8 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
 
     from robosc.configuration import Configuration
-    from robosc.m2t.ros.layer import Inward, LayerNode, Outward
-    from robosc.m2t.ros.node import Node, Subscription
+    from robosc.m2t.ros.layer import Call, Inward, LayerNode, Outward
+    from robosc.m2t.ros.node import Client, Node, Subscription
     from robosc.metamodel import rosgraph
 
 _FOLDERS = {"message": "msg", "service": "srv", "action": "action"}
@@ -58,8 +58,7 @@ class Ros2:
             **_build(libraries, types, started, _TESTED if tests else []),
             "subscription_qos": lambda topic: _quality(_usual(topic), topic.topic, configuration),
             "publisher_qos": lambda topic: _quality(f"rclcpp::QoS({_DEPTH})", topic.topic, configuration),
-            "service_qos": lambda client: _quality("rclcpp::ServicesQoS()", client.name, configuration),
-            "action_qos": lambda client: _quality(f"rclcpp::QoS({_DEPTH})", client.name, configuration),
+            "client_qos": lambda client: _quality(_client(client), client.name, configuration),
         }
 
     def layer(self, layer: LayerNode, configuration: Configuration, types: set[str]) -> dict[str, Any]:
@@ -75,8 +74,7 @@ class Ros2:
             # The durability of what is handed on is that of who publishes.
             "received_qos": lambda topic: _quality(_usual(topic), topic.topic, configuration, with_durability=False),
             "sent_qos": lambda topic: f"rclcpp::QoS({_chosen(topic.topic, configuration).depth or _DEPTH})",
-            "service_qos": lambda call: _quality("rclcpp::ServicesQoS()", call.name, configuration),
-            "action_qos": lambda call: _quality(f"rclcpp::QoS({_DEPTH})", call.name, configuration),
+            "client_qos": lambda call: _quality(_client(call), call.name, configuration),
         }
 
     def _headers(self, node: Node, own: set[str], *, strings: bool) -> list[str]:
@@ -102,6 +100,11 @@ def _build(
 def _usual(topic: Subscription | Inward | Outward) -> str:
     """The quality of service in which messages of a topic are received, where the configuration says nothing."""
     return "rclcpp::SensorDataQoS()" if topic.interface.package == "sensor_msgs" else f"rclcpp::QoS({_DEPTH})"
+
+
+def _client(client: Client | Call) -> str:
+    """The quality of service of calls, or of feedback, where the configuration says nothing."""
+    return f"rclcpp::QoS({_DEPTH})" if client.cancel else "rclcpp::ServicesQoS()"
 
 
 def _chosen(name: str, configuration: Configuration) -> QualityOfService:

@@ -122,7 +122,9 @@ class Layer {
     action_go_to.feedback = [this](const auto& message) { on_action_go_to_feedback(message); };
     action_go_to.response = [this](const auto& message) { on_action_go_to_response(message); };
     action_go_to.error = [this](const std::string& why) { on_action_go_to_error(why); };
-    action_go_to.refused = [](const std::string& why) { ROS_WARN("%s: %s", "/go_to", why.c_str()); };
+    action_go_to.refused = [](const std::string& why) {
+      ROS_WARN("%s: %s", "/go_to", why.c_str());
+    };
     action_go_to_ = std::make_unique<ActionProxy<nav2_msgs::NavigateToPoseAction>>(
         self + "/controller/go_to", "/go_to", action_timeout, action_go_to);
     timer_ =
@@ -400,10 +402,10 @@ class Layer {
   static constexpr std::size_t kTransitionsKept = 5000;
   std::deque<usher_event> transitions_;
   std::size_t listeners_ = 0;
-
-  ros::Publisher blocked_report_;
   ros::Publisher state_report_;
   ros::Publisher definition_report_;
+
+  ros::Publisher blocked_report_;
   std::unique_ptr<MessageRelay<std_msgs::Empty>> message_stop_;
   std::unique_ptr<MessageRelay<std_msgs::Empty>> message_resume_;
   std::unique_ptr<MessageRelay<std_msgs::Int16>> message_battery_;

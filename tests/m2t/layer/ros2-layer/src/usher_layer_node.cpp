@@ -116,17 +116,15 @@ class Layer : public rclcpp::Node {
     message_label_ = std::make_unique<MessageRelay<std_msgs::msg::String>>(
         *this, guard_, "~/controller/label", "label", rclcpp::QoS(10), rclcpp::QoS(10),
         [this](const auto&) { return pass_message_label(); });
-    using service_light_type = std_srvs::srv::SetBool;
-    ServiceProxy<service_light_type>::Handlers service_light;
+    ServiceProxy<std_srvs::srv::SetBool>::Handlers service_light;
     service_light.call = [this](const auto&) { return pass_service_light(); };
     service_light.busy = [this] { block(usher_service_light_c_trigger, "Lamp.light", BlockReasons::busy()); };
     service_light.response = [this](const auto& message) { on_service_light_response(message); };
     service_light.error = [this](const std::string& why) { on_service_light_error(why); };
-    service_light_ = std::make_unique<ServiceProxy<service_light_type>>(
+    service_light_ = std::make_unique<ServiceProxy<std_srvs::srv::SetBool>>(
         *this, guard_, "~/controller/lamp/light", "/lamp/light",
         rclcpp::ServicesQoS().keep_last(20), service_timeout, service_light);
-    using action_go_to_type = nav2_msgs::action::NavigateToPose;
-    ActionProxy<action_go_to_type>::Handlers action_go_to;
+    ActionProxy<nav2_msgs::action::NavigateToPose>::Handlers action_go_to;
     action_go_to.goal = [this](const auto&) { return pass_action_go_to(); };
     action_go_to.busy = [this] { block(usher_action_go_to_c_trigger, "Navigation.go_to", BlockReasons::busy()); };
     action_go_to.feedback = [this](const auto& message) { on_action_go_to_feedback(message); };
@@ -135,7 +133,7 @@ class Layer : public rclcpp::Node {
     action_go_to.refused = [this](const std::string& why) {
       RCLCPP_WARN(get_logger(), "%s: %s", "/go_to", why.c_str());
     };
-    action_go_to_ = std::make_unique<ActionProxy<action_go_to_type>>(
+    action_go_to_ = std::make_unique<ActionProxy<nav2_msgs::action::NavigateToPose>>(
         *this, guard_, "~/controller/go_to", "/go_to",
         rclcpp::QoS(10).keep_last(20).best_effort(), action_timeout, action_go_to);
     timer_ = create_wall_timer(period, guard_([this] { publish_state(); }));
@@ -412,10 +410,10 @@ class Layer : public rclcpp::Node {
   static constexpr std::size_t kTransitionsKept = 5000;
   std::deque<usher_event> transitions_;
   std::size_t listeners_ = 0;
-
-  rclcpp::Publisher<std_msgs::msg::String>::SharedPtr blocked_report_;
   rclcpp::Publisher<std_msgs::msg::String>::SharedPtr state_report_;
   rclcpp::Publisher<std_msgs::msg::String>::SharedPtr definition_report_;
+
+  rclcpp::Publisher<std_msgs::msg::String>::SharedPtr blocked_report_;
   std::unique_ptr<MessageRelay<std_msgs::msg::Empty>> message_stop_;
   std::unique_ptr<MessageRelay<std_msgs::msg::Empty>> message_resume_;
   std::unique_ptr<MessageRelay<std_msgs::msg::Int16>> message_battery_;

@@ -473,14 +473,14 @@ class Controller {
   static constexpr std::size_t kTransitionsKept = 5000;
   std::deque<courier_event> transitions_;
   std::size_t listeners_ = 0;
+  ros::Publisher state_report_;
+  ros::Publisher definition_report_;
 
   ros::Publisher target_publisher_;
   ros::Publisher sum_publisher_;
   ros::Publisher ratio_publisher_;
   ros::Publisher report_publisher_;
   ros::Publisher busy_publisher_;
-  ros::Publisher state_report_;
-  ros::Publisher definition_report_;
   std::optional<Watchdog<Countdown>> scan_watchdog_;
   ros::Subscriber scan_subscription_;
   std::optional<Watchdog<Countdown>> count_watchdog_;

@@ -86,25 +86,22 @@ class Controller {
     porter_init(&supervisor_, &settings, &hooks);
 
     const auto retry = milliseconds("retry_ms", 500);
+    const auto service_timeout = milliseconds("service_timeout_ms", 3000);
+    const auto action_timeout = milliseconds("action_timeout_ms", 2000);
     grip_retry_.emplace(node_, retry, [this] { wake(); });
-    grip_client_.emplace(
-        node_, "/gripper/grip", milliseconds("service_timeout_ms", 3000),
-        ServiceClient<std_srvs::SetBool>::Handlers{
-            [this](const auto& response) { on_grip_response(response); },
-            [this](const std::string& why) { on_grip_error(why); }});
+    grip_client_.emplace(node_, "/gripper/grip", service_timeout, ServiceClient<std_srvs::SetBool>::Handlers{
+        [this](const auto& response) { on_grip_response(response); },
+        [this](const std::string& why) { on_grip_error(why); }});
     release_retry_.emplace(node_, retry, [this] { wake(); });
-    release_client_.emplace(
-        node_, "release", milliseconds("service_timeout_ms", 3000),
-        ServiceClient<std_srvs::Trigger>::Handlers{
-            [this](const auto& response) { on_release_response(response); },
-            [this](const std::string& why) { on_release_error(why); }});
+    release_client_.emplace(node_, "release", service_timeout, ServiceClient<std_srvs::Trigger>::Handlers{
+        [this](const auto& response) { on_release_response(response); },
+        [this](const std::string& why) { on_release_error(why); }});
     travel_retry_.emplace(node_, retry, [this] { wake(); });
-    travel_client_.emplace(
-        node_, "/travel", milliseconds("action_timeout_ms", 2000),
-        ActionClient<nav2_msgs::NavigateToPoseAction>::Handlers{
-            [this](const auto& feedback) { on_travel_feedback(feedback); },
-            [this](const auto& result) { on_travel_response(result); },
-            [this](const std::string& why) { on_travel_error(why); }, [this] { wake(); }});
+    travel_client_.emplace(node_, "/travel", action_timeout, ActionClient<nav2_msgs::NavigateToPoseAction>::Handlers{
+        [this](const auto& feedback) { on_travel_feedback(feedback); },
+        [this](const auto& response) { on_travel_response(response); },
+        [this](const std::string& why) { on_travel_error(why); },
+        [this] { wake(); }});
 
     watchdog_stops_ = parameter<bool>(private_, "watchdog_stops", true);
     const auto hints = ros::TransportHints().tcpNoDelay();
@@ -483,10 +480,10 @@ class Controller {
   static constexpr std::size_t kTransitionsKept = 5000;
   std::deque<porter_event> transitions_;
   std::size_t listeners_ = 0;
-
-  ros::Publisher cmd_vel_publisher_;
   ros::Publisher state_report_;
   ros::Publisher definition_report_;
+
+  ros::Publisher cmd_vel_publisher_;
   std::optional<ServiceClient<std_srvs::SetBool>> grip_client_;
   std::optional<Countdown> grip_retry_;
   std::optional<ServiceClient<std_srvs::Trigger>> release_client_;

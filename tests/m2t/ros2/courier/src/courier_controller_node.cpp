@@ -517,14 +517,14 @@ class Controller : public rclcpp::Node {
   static constexpr std::size_t kTransitionsKept = 5000;
   std::deque<courier_event> transitions_;
   std::size_t listeners_ = 0;
+  rclcpp::Publisher<std_msgs::msg::String>::SharedPtr state_report_;
+  rclcpp::Publisher<std_msgs::msg::String>::SharedPtr definition_report_;
 
   rclcpp::Publisher<geometry_msgs::msg::PoseStamped>::SharedPtr target_publisher_;
   rclcpp::Publisher<std_msgs::msg::UInt8>::SharedPtr sum_publisher_;
   rclcpp::Publisher<std_msgs::msg::Float32>::SharedPtr ratio_publisher_;
   rclcpp::Publisher<std_msgs::msg::String>::SharedPtr report_publisher_;
   rclcpp::Publisher<std_msgs::msg::Bool>::SharedPtr busy_publisher_;
-  rclcpp::Publisher<std_msgs::msg::String>::SharedPtr state_report_;
-  rclcpp::Publisher<std_msgs::msg::String>::SharedPtr definition_report_;
   std::optional<Watchdog<Countdown>> scan_watchdog_;
   rclcpp::Subscription<sensor_msgs::msg::LaserScan>::SharedPtr scan_subscription_;
   std::optional<Watchdog<Countdown>> count_watchdog_;

@@ -495,23 +495,23 @@ class Controller : public rclcpp_lifecycle::LifecycleNode {
     monitor_->command("cmd_vel", "geometry_msgs/msg/Twist", cmd_vel_publisher_->get_actual_qos(),
         cmd_vel_publisher_->get_gid());
 
+    grip_retry_.emplace(*this, guard_, retry, [this] { wake(); });
     grip_client_.emplace(*this, guard_, "/gripper/grip", rclcpp::ServicesQoS(), service_timeout,
         ServiceClient<std_srvs::srv::SetBool>::Handlers{
-        [this](const std_srvs::srv::SetBool::Response& message) { on_grip_response(message); },
+        [this](const auto& response) { on_grip_response(response); },
         [this](const std::string& why) { on_grip_error(why); }});
-    grip_retry_.emplace(*this, guard_, retry, [this] { wake(); });
+    release_retry_.emplace(*this, guard_, retry, [this] { wake(); });
     release_client_.emplace(*this, guard_, "release", rclcpp::ServicesQoS(), service_timeout,
         ServiceClient<std_srvs::srv::Trigger>::Handlers{
-        [this](const std_srvs::srv::Trigger::Response& message) { on_release_response(message); },
+        [this](const auto& response) { on_release_response(response); },
         [this](const std::string& why) { on_release_error(why); }});
-    release_retry_.emplace(*this, guard_, retry, [this] { wake(); });
+    travel_retry_.emplace(*this, guard_, retry, [this] { wake(); });
     travel_client_.emplace(*this, guard_, "/travel", rclcpp::QoS(10), action_timeout,
         ActionClient<nav2_msgs::action::NavigateToPose>::Handlers{
-        [this](const nav2_msgs::action::NavigateToPose::Feedback& message) { on_travel_feedback(message); },
-        [this](const nav2_msgs::action::NavigateToPose::Result& message) { on_travel_response(message); },
+        [this](const auto& feedback) { on_travel_feedback(feedback); },
+        [this](const auto& response) { on_travel_response(response); },
         [this](const std::string& why) { on_travel_error(why); },
         [this] { wake(); }});
-    travel_retry_.emplace(*this, guard_, retry, [this] { wake(); });
 
     rclcpp::PublisherOptions reporting;
     reporting.use_intra_process_comm = rclcpp::IntraProcessSetting::Disable;
@@ -618,10 +618,10 @@ class Controller : public rclcpp_lifecycle::LifecycleNode {
   static constexpr std::size_t kTransitionsKept = 5000;
   std::deque<porter_event> transitions_;
   std::size_t listeners_ = 0;
-
-  rclcpp_lifecycle::LifecyclePublisher<geometry_msgs::msg::Twist>::SharedPtr cmd_vel_publisher_;
   rclcpp::Publisher<std_msgs::msg::String>::SharedPtr state_report_;
   rclcpp::Publisher<std_msgs::msg::String>::SharedPtr definition_report_;
+
+  rclcpp_lifecycle::LifecyclePublisher<geometry_msgs::msg::Twist>::SharedPtr cmd_vel_publisher_;
   std::optional<ServiceClient<std_srvs::srv::SetBool>> grip_client_;
   std::optional<Countdown> grip_retry_;
   std::optional<ServiceClient<std_srvs::srv::Trigger>> release_client_;
