@@ -12,7 +12,6 @@ from robosc.analysis.system import SynthesizedSystem
 from robosc.analysis.wording import blocking, counterexample_in_words, forbid, in_words
 from robosc.diagnostics import Diagnostic, ModelError, Severity, has_errors
 from robosc.metamodel.places import place
-from robosc.semantics.recursion import deep_recursion
 from robosc.synthesis import MEMORY, Phase, Solution, Statistics, Synthesis, solve
 
 if TYPE_CHECKING:
@@ -74,7 +73,6 @@ def diagnose(
     return solve(model, look, memory=memory, statistics=statistics)
 
 
-@deep_recursion()
 def supervise(
     model: sct.SupervisoryControlModel, *, memory: int = MEMORY, statistics: Statistics | None = None
 ) -> Supervision:

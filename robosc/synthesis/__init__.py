@@ -21,7 +21,6 @@ from typing import TYPE_CHECKING, TypeVar
 from robosc.diagnostics import Diagnostic, ModelError, Severity
 from robosc.metamodel import sct
 from robosc.metamodel.places import place
-from robosc.semantics.recursion import deep_recursion
 from robosc.semantics.roles import event_name
 from robosc.synthesis.bdd import Diagrams, with_enough_memory
 from robosc.synthesis.encoding import Encoding, Layout
@@ -102,7 +101,6 @@ def synthesize(
     return solve(model, lambda solution: solution.synthesis, memory=memory, statistics=statistics)
 
 
-@deep_recursion()
 def solve(
     model: sct.SupervisoryControlModel,
     look: Callable[[Solution], T],
@@ -121,7 +119,6 @@ def solve(
     return with_enough_memory(lambda capacity: look(_solved(model, layout, capacity, statistics)), memory)
 
 
-@deep_recursion()
 def encoded(model: sct.SupervisoryControlModel, look: Callable[[Encoding], T], memory: int = MEMORY) -> T:
     """What `look` makes of the decision diagrams of a model; it may run several times, with more room each time.
 

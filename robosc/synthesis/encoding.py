@@ -20,11 +20,12 @@ from robosc.metamodel.places import place
 from robosc.metamodel.reflection import tree
 from robosc.semantics import domains
 from robosc.semantics.edges import edges_of
+from robosc.semantics.walks import fold, operands
 from robosc.synthesis import arithmetic
 from robosc.synthesis.order import variable_order
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
     from robosc.synthesis.arithmetic import Vector
     from robosc.synthesis.bdd import Diagram, Diagrams
@@ -33,7 +34,26 @@ if TYPE_CHECKING:
 Element: TypeAlias = "sct.Plant | sct.DiscreteVariable | sct.Input"
 #: The number of values from which on an integer is wide.
 _WIDE = 1 << 10
-_COMPARISONS = (ex.Equation, ex.Inequation, ex.LessThan, ex.LessOrEqual, ex.GreaterThan, ex.GreaterOrEqual)
+_LOGICAL: Mapping[type[ex.Expression], Callable[..., Diagram]] = {
+    ex.Negation: lambda operand: ~operand,
+    ex.Conjunction: lambda left, right: left & right,
+    ex.Disjunction: lambda left, right: left | right,
+    ex.Implication: lambda left, right: left.imp(right),
+}
+_COMPARISON: Mapping[type[ex.Expression], Callable[[Vector, Vector], Diagram]] = {
+    ex.Equation: arithmetic.equal,
+    ex.Inequation: lambda left, right: ~arithmetic.equal(left, right),
+    ex.LessThan: arithmetic.less,
+    ex.LessOrEqual: lambda left, right: ~arithmetic.less(right, left),
+    ex.GreaterThan: lambda left, right: arithmetic.less(right, left),
+    ex.GreaterOrEqual: lambda left, right: ~arithmetic.less(left, right),
+}
+_ARITHMETIC: Mapping[type[ex.Expression], Callable[..., Vector]] = {
+    ex.UnaryMinus: arithmetic.negate,
+    ex.Addition: arithmetic.add,
+    ex.Subtraction: arithmetic.subtract,
+    ex.Multiplication: arithmetic.multiply,
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,7 +159,7 @@ class Encoding:
         #: Of locations and literals, among those beside them.
         self._places: dict[ex.NamedElement, int] = {}
         self._between: dict[tuple[Element, int, int], Diagram] = {}
-        self._holds: dict[ex.Expression, Diagram] = {}
+        self._vectors: dict[ex.Expression, Vector] = {}
 
     def bits(self, element: Element) -> tuple[Diagram, ...]:
         """The bits of an element's code, least significant first."""
@@ -260,78 +280,52 @@ class Encoding:
         return arithmetic.choose(arithmetic.less(last, code), last, code)
 
     def holds(self, expression: ex.Expression | None) -> Diagram:
-        """Where a boolean expression is true; an absent one is true everywhere.
-
-        Known from the first time that it is asked for: who asks for all parts of an expression looks at each once.
-        """
-        if expression is None:
-            return self.diagrams.true
-        known = self._holds.get(expression)
-        if known is None:
-            known = self._holds[expression] = self._meaning(expression)
-        return known
-
-    def _meaning(self, expression: ex.Expression) -> Diagram:
-        match expression:
-            case ex.BooleanLiteral():
-                return self.diagrams.true if expression.value else self.diagrams.false
-            case sct.LocationReference():
-                return self.location(expression.location)
-            case ex.Negation():
-                return ~self.holds(expression.operand)
-            case ex.Conjunction():
-                return self.holds(expression.left) & self.holds(expression.right)
-            case ex.Disjunction():
-                return self.holds(expression.left) | self.holds(expression.right)
-            case ex.Implication():
-                return self.holds(expression.left).imp(self.holds(expression.right))
-            case ex.BinaryExpression():
-                return self._compared(expression)
-            case sct.VariableReference() | sct.InputReference() | ex.Conditional():
-                return self.vector(expression)[0]
-        raise foreign(expression)
-
-    def _compared(self, expression: ex.BinaryExpression) -> Diagram:
-        left, right = self.vector(expression.left), self.vector(expression.right)
-        match expression:
-            case ex.Equation():
-                return arithmetic.equal(left, right)
-            case ex.Inequation():
-                return ~arithmetic.equal(left, right)
-            case ex.LessThan():
-                return arithmetic.less(left, right)
-            case ex.GreaterOrEqual():
-                return ~arithmetic.less(left, right)
-            case ex.GreaterThan():
-                return arithmetic.less(right, left)
-            case ex.LessOrEqual():
-                return ~arithmetic.less(right, left)
-        raise foreign(expression)
+        """Where a boolean expression is true; an absent one is true everywhere."""
+        return self.diagrams.true if expression is None else self.vector(expression)[0]
 
     def vector(self, expression: ex.Expression) -> Vector:
-        """The value of an expression: an integer's own, else its code; a boolean's is 0 or 1."""
+        """The value of an expression: an integer's own, else its code; a boolean's is 0 or 1.
+
+        Known from the first time that it is asked for, but for sums and products: who asks for all parts of an
+        expression looks at each operator once.
+        """
+        return fold(self._combined, expression, lambda part: () if part in self._vectors else operands(part))
+
+    def _combined(self, expression: ex.Expression, parts: Sequence[Vector]) -> Vector:
+        """The value of an expression from those of its operands."""
+        known = self._vectors.get(expression)
+        if known is not None:
+            return known
+        kind = type(expression)
+        if kind in _ARITHMETIC:
+            return _ARITHMETIC[kind](*parts)
+        if kind in _LOGICAL:
+            vector: Vector = (_LOGICAL[kind](*(part[0] for part in parts)), self.diagrams.false)
+        elif kind in _COMPARISON:
+            vector = (_COMPARISON[kind](*parts), self.diagrams.false)
+        elif isinstance(expression, ex.Conditional):
+            condition, then, otherwise = parts
+            vector = arithmetic.choose(condition[0], then, otherwise)
+        else:
+            vector = self._atom(expression)
+        self._vectors[expression] = vector
+        return vector
+
+    def _atom(self, expression: ex.Expression) -> Vector:
         match expression:
+            case ex.BooleanLiteral():
+                return arithmetic.constant(self.diagrams, int(expression.value))
             case ex.IntegerLiteral():
                 return arithmetic.constant(self.diagrams, expression.value)
             case ex.EnumerationLiteralReference():
                 return arithmetic.constant(self.diagrams, self._code_of(expression.literal))
+            case sct.LocationReference():
+                return (self.location(expression.location), self.diagrams.false)
             case sct.VariableReference():
                 return self._read(expression.variable)
             case sct.InputReference():
                 return self._read(expression.input)
-            case ex.UnaryMinus():
-                return arithmetic.negate(self.vector(expression.operand))
-            case ex.Addition():
-                return arithmetic.add(self.vector(expression.left), self.vector(expression.right))
-            case ex.Subtraction():
-                return arithmetic.subtract(self.vector(expression.left), self.vector(expression.right))
-            case ex.Multiplication():
-                return arithmetic.multiply(self.vector(expression.left), self.vector(expression.right))
-            case ex.Conditional():
-                return arithmetic.choose(
-                    self.holds(expression.condition), self.vector(expression.then), self.vector(expression.otherwise)
-                )
-        return (self.holds(expression), self.diagrams.false)
+        raise foreign(expression)
 
     def _read(self, element: sct.DiscreteVariable | sct.Input) -> Vector:
         code = (*self.bits(element), self.diagrams.false)
@@ -389,5 +383,5 @@ def _computations(model: sct.SupervisoryControlModel) -> Iterator[list[Element]]
             yield [node.variable, *referenced(node.value)]
         elif isinstance(node, sct.Edge):
             yield [update.variable for update in node.updates if update.variable in referenced(update.value)]
-        elif isinstance(node, _COMPARISONS):
+        elif type(node) in _COMPARISON:
             yield list(referenced(node))

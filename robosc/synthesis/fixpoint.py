@@ -16,15 +16,19 @@ from dataclasses import dataclass
 from itertools import count, groupby
 from typing import TYPE_CHECKING
 
-from robosc.semantics.recursion import deep_recursion
+from robosc.semantics.walks import walk
 from robosc.synthesis.acceleration import Acceleration
 from robosc.synthesis.bdd import Diagram, Diagrams, split
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Generator, Sequence
 
     from robosc.synthesis.encoding import Encoding
     from robosc.synthesis.relation import Move, Step
+
+    #: States, the bound that they stay within, and the number of the first group of steps that they are closed under.
+    Part = tuple[Diagram, Diagram, int]
+    Closing = Generator[Part, Diagram, Diagram]
 
 
 @dataclass(frozen=True)
@@ -50,36 +54,35 @@ class _Saturation:
         self._acceleration = Acceleration(steps, forwards=forwards)
         by_level = sorted(steps, key=lambda step: step.level)
         self._groups = [(level, list(group)) for level, group in groupby(by_level, key=lambda step: step.level)]
-        self._known: dict[tuple[Diagram, Diagram, int], Diagram] = {}
+        self._known: dict[Part, Diagram] = {}
 
     def closure(self, states: Diagram, within: Diagram) -> Diagram:
         """The least set that holds `states` and whatever the steps add within the bound."""
-        with deep_recursion(2 * (self._diagrams.levels + len(self._groups)) + 1000):
-            return self._close(states, within, 0)
+        part = states, within, 0
+        return states if self._is_closed(part) else walk(self._close, part, self._known)
 
-    def _close(self, states: Diagram, within: Diagram, group: int) -> Diagram:
-        if group == len(self._groups) or states == within or not states.satisfiable():
-            return states
-        key = (states, within, group)
-        known = self._known.get(key)
-        if known is not None:
-            return known
+    def _is_closed(self, part: Part) -> bool:
+        """Whether the steps add nothing, at a glance."""
+        states, within, group = part
+        return group == len(self._groups) or states == within or not states.satisfiable()
+
+    def _close(self, part: Part) -> Closing:
+        """The closure of some states, within a bound, under the steps from a group on."""
+        states, within, group = part
         level = min(_level(states), _level(within))
-        if level < self._groups[group][0]:
-            high, low = split(states, level)
-            high_within, low_within = split(within, level)
-            result = self._diagrams.node(
-                level, self._close(high, high_within, group), self._close(low, low_within, group)
-            )
-        else:
-            result = self._fire_all(states, within, group)
-        self._known[key] = result
-        return result
+        if level >= self._groups[group][0]:
+            return (yield from self._fire_all(states, within, group))
+        halves = []
+        for half, half_within in zip(split(states, level), split(within, level), strict=True):
+            inner = half, half_within, group
+            halves.append(half if self._is_closed(inner) else (yield inner))
+        return self._diagrams.node(level, *halves)
 
-    def _fire_all(self, states: Diagram, within: Diagram, group: int) -> Diagram:
+    def _fire_all(self, states: Diagram, within: Diagram, group: int) -> Closing:
         here = self._groups[group][1]
         for turn in count(1):
-            closed = states = self._close(states, within, group + 1)
+            inner = states, within, group + 1
+            closed = states = states if self._is_closed(inner) else (yield inner)
             for step in here:
                 states |= self._fire(step, states) & within
             if states == closed:

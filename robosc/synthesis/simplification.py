@@ -5,11 +5,16 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.metamodel import expression as ex
-from robosc.semantics.walks import copied
+from robosc.semantics.walks import copied, walk
 
 if TYPE_CHECKING:
+    from collections.abc import Generator
+
     from robosc.synthesis.bdd import Diagram
     from robosc.synthesis.encoding import Encoding
+
+    #: A part of the expression with the states in which it matters.
+    Part = tuple[ex.Expression, Diagram]
 
 
 def simplified(expression: ex.Expression, states: Diagram, encoding: Encoding) -> ex.Expression:
@@ -18,52 +23,40 @@ def simplified(expression: ex.Expression, states: Diagram, encoding: Encoding) -
     Each operand is simplified in the states in which it matters beside the other: of two that say the same the first
     stays. Where nothing can be left out the copy is the expression as it stands.
     """
-    meaning = encoding.holds(expression)
-    if not (states & ~meaning).satisfiable():
-        return ex.BooleanLiteral(value=True)
-    if not (states & meaning).satisfiable():
-        return ex.BooleanLiteral(value=False)
-    match expression:
-        case ex.Conjunction():
-            return _binary(expression, states & encoding.holds(expression.left), states, encoding)
-        case ex.Disjunction():
-            return _binary(expression, states & ~encoding.holds(expression.left), states, encoding)
-        case ex.Implication():
-            return _binary(expression, states & encoding.holds(expression.left), states, encoding)
-        case ex.Negation():
-            return _negated(simplified(expression.operand, states, encoding))
-        case ex.Conditional():
-            return _conditional(expression, states, encoding)
-    return copied(expression)
 
+    def step(part: Part) -> Generator[Part, ex.Expression, ex.Expression]:
+        whole, where = part
+        meaning = encoding.holds(whole)
+        if not (where & ~meaning).satisfiable():
+            return ex.BooleanLiteral(value=True)
+        if not (where & meaning).satisfiable():
+            return ex.BooleanLiteral(value=False)
+        match whole:
+            case ex.Negation():
+                return _negated((yield whole.operand, where))
+            case ex.Conjunction() | ex.Disjunction() | ex.Implication():
+                # In these states the left operand does not decide, and then the right one does not.
+                decides = encoding.holds(whole.left)
+                right = yield whole.right, where & (~decides if isinstance(whole, ex.Disjunction) else decides)
+                decides = encoding.holds(right)
+                left = yield whole.left, where & (decides if isinstance(whole, ex.Conjunction) else ~decides)
+                # The whole is neither true nor false everywhere: at most one operand is constant, and it never decides.
+                if isinstance(left, ex.BooleanLiteral):
+                    return right
+                if isinstance(right, ex.BooleanLiteral):
+                    return _negated(left) if isinstance(whole, ex.Implication) else left
+                return type(whole)(left=left, right=right, source=whole.source)
+            case ex.Conditional():
+                condition = yield whole.condition, where
+                if isinstance(condition, ex.BooleanLiteral):
+                    return (yield whole.then if condition.value else whole.otherwise, where)
+                chosen = encoding.holds(condition)
+                then = yield whole.then, where & chosen
+                otherwise = yield whole.otherwise, where & ~chosen
+                return ex.Conditional(condition=condition, then=then, otherwise=otherwise, source=whole.source)
+        return copied(whole)
 
-def _binary(
-    expression: ex.BinaryExpression, states_for_right: Diagram, states: Diagram, encoding: Encoding
-) -> ex.Expression:
-    right = simplified(expression.right, states_for_right, encoding)
-    decides = encoding.holds(right)
-    left = simplified(
-        expression.left, states & (decides if isinstance(expression, ex.Conjunction) else ~decides), encoding
-    )
-    # The whole is neither true nor false everywhere: at most one operand is constant, and it never decides.
-    if isinstance(left, ex.BooleanLiteral):
-        return right
-    if isinstance(right, ex.BooleanLiteral):
-        return _negated(left) if isinstance(expression, ex.Implication) else left
-    return type(expression)(left=left, right=right, source=expression.source)
-
-
-def _conditional(expression: ex.Conditional, states: Diagram, encoding: Encoding) -> ex.Expression:
-    condition = simplified(expression.condition, states, encoding)
-    if isinstance(condition, ex.BooleanLiteral):
-        return simplified(expression.then if condition.value else expression.otherwise, states, encoding)
-    chosen = encoding.holds(condition)
-    return ex.Conditional(
-        condition=condition,
-        then=simplified(expression.then, states & chosen, encoding),
-        otherwise=simplified(expression.otherwise, states & ~chosen, encoding),
-        source=expression.source,
-    )
+    return walk(step, (expression, states))
 
 
 def _negated(expression: ex.Expression) -> ex.Expression:

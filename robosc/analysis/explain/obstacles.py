@@ -129,18 +129,20 @@ class Obstacles:
 
     def _failing(self, condition: ex.Expression | None, *, wanted: bool) -> list[tuple[ex.Expression, bool]]:
         """The smallest parts of a condition that would all have to change, each with the value that it should have."""
-        if condition is None or self._system.holds(condition, self._codes) == wanted:
-            return []
-        match condition:
-            case ex.Negation():
-                return self._failing(condition.operand, wanted=not wanted)
-            case ex.Conjunction() if wanted:
-                sides = (condition.left, condition.right)
-                return [part for side in sides for part in self._failing(side, wanted=True)]
-            case ex.Disjunction() if not wanted:
-                sides = (condition.left, condition.right)
-                return [part for side in sides for part in self._failing(side, wanted=False)]
-        return [(condition, wanted)]
+        failing = []
+        pending = [] if condition is None else [(condition, wanted)]
+        while pending:
+            part, value_wanted = pending.pop()
+            if self._system.holds(part, self._codes) == value_wanted:
+                continue
+            match part:
+                case ex.Negation():
+                    pending.append((part.operand, not value_wanted))
+                case ex.Conjunction() | ex.Disjunction() if isinstance(part, ex.Conjunction) == value_wanted:
+                    pending += [(part.right, value_wanted), (part.left, value_wanted)]
+                case _:
+                    failing.append((part, value_wanted))
+        return failing
 
     def _said(self, part: tuple[ex.Expression, bool]) -> str:
         condition, wanted = part

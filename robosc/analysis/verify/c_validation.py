@@ -22,7 +22,6 @@ from robosc.files.resources import locate
 from robosc.files.writing import temporary_folder
 from robosc.m2t.c.comments import string_literal
 from robosc.m2t.c.names import CNames
-from robosc.semantics.recursion import deep_recursion
 from robosc.semantics.roles import event_name
 from robosc.synthesis import MEMORY
 from robosc.synthesis.bdd import Diagrams, with_enough_memory
@@ -61,7 +60,6 @@ class Effort:
     operations: int = 5_000
 
 
-@deep_recursion()
 def validate_c(model: sct.SupervisoryControlModel, files: Mapping[str, str], effort: Effort | None = None) -> Verdict:
     """Whether the C in these files (relative path to text), compiled, does what the model says with its supervisor.
 

@@ -20,7 +20,6 @@ from robosc.analysis.verify.verdict import Outcome, Verdict
 from robosc.diagnostics import ModelError
 from robosc.metamodel import sct
 from robosc.semantics.edges import edges_by_event
-from robosc.semantics.recursion import deep_recursion
 from robosc.synthesis import MEMORY, arithmetic
 from robosc.synthesis.bdd import Diagrams, with_enough_memory
 from robosc.synthesis.decoding import pick
@@ -40,7 +39,6 @@ TEXT = "the generated CIF"
 UNSUPERVISED = f"{TEXT} without supervisor"
 
 
-@deep_recursion()
 def validate_cif(model: sct.SupervisoryControlModel, files: Mapping[str, str]) -> Verdict:
     """Whether `<robot>.cif` means the model's plants and requirements, and `<robot>.supervised.cif` its supervisor.
 

@@ -7,15 +7,15 @@ the only place where synthesis takes a `-`. An expression that needs none of thi
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from robosc.m2t.cif.linear import LARGEST, Linear, Unsupported, bounds, shift
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
-from robosc.semantics.walks import copied
+from robosc.semantics.walks import copied, operands, walk, with_operands
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Generator, Iterable
 
 #: Cases that one expression may be split into.
 MOST_CASES = 1024
@@ -39,26 +39,39 @@ _NUMERIC = (ex.IntegerLiteral, ex.Addition, ex.Subtraction, ex.Multiplication, e
 _Comparison = type[ex.BinaryExpression]
 #: Alternatives, of which the first counts whose condition holds; the last has none.
 _Pieces = list[tuple[ex.Expression | None, Linear]]
+#: An expression, and whether it is asked for as a number.
+_Part = tuple[ex.Expression, bool]
 
 
 def condition(expression: ex.Expression) -> ex.Expression:
     """A boolean or enumeration-valued expression, in a tree of its own. Raises Unsupported."""
-    match expression:
-        case ex.Conditional():
-            return ex.Conditional(
-                condition=condition(expression.condition),
-                then=condition(expression.then),
-                otherwise=condition(expression.otherwise),
-            )
-        case ex.Negation():
-            return ex.Negation(operand=condition(expression.operand))
-        case ex.BinaryExpression():
-            if isinstance(expression, _COMPARISONS) and _is_number(expression.left):
-                return _comparison(expression)
-            return type(expression)(left=condition(expression.left), right=condition(expression.right))
+    made: ex.Expression = walk(_lowered, (expression, False))
+    return made
+
+
+def _lowered(part: _Part) -> Generator[_Part, Any, Any]:
+    """Of an expression the same for CIF; of one that is asked for as a number its pieces."""
+    expression, number = part
+    return (yield from _number_lowered(expression) if number else _condition_lowered(expression))
+
+
+def _condition_lowered(expression: ex.Expression) -> Generator[_Part, Any, ex.Expression]:
+    if isinstance(expression, _COMPARISONS) and _is_number(expression.left):
+        if _is_plain(expression.left) and _is_plain(expression.right):
+            return copied(expression)
+        left, right = (yield expression.left, True), (yield expression.right, True)
+        pieces = _sum(expression, left, _scaled(right, -1))
+        return _first((guard, _against_zero(type(expression), piece, expression)) for guard, piece in pieces)
     if isinstance(expression, _ATOMS):
         return copied(expression)
-    raise Unsupported(expression, f"CIF has no {type(expression).__name__}")
+    if not isinstance(expression, (ex.Conditional, ex.Negation, ex.BinaryExpression)):
+        raise Unsupported(expression, f"CIF has no {type(expression).__name__}")
+    made = []
+    for operand in operands(expression):
+        made.append((yield operand, False))  # noqa: PERF401 - no comprehension yields
+    if isinstance(expression, ex.Conditional):
+        return ex.Conditional(condition=made[0], then=made[1], otherwise=made[2])
+    return with_operands(type(expression), made)
 
 
 def assigned(variable: sct.DiscreteVariable, value: ex.Expression) -> ex.Expression:
@@ -93,35 +106,32 @@ def held(variable: sct.DiscreteVariable) -> ex.Expression:
 
 
 def _is_number(expression: ex.Expression) -> bool:
+    while isinstance(expression, ex.Conditional):
+        expression = expression.then
     match expression:
         case sct.VariableReference():
             return isinstance(expression.variable.type, ex.IntegerType)
         case sct.InputReference():
             return isinstance(expression.input.type, ex.IntegerType)
-        case ex.Conditional():
-            return _is_number(expression.then)
     return isinstance(expression, _NUMERIC)
 
 
 def _is_plain(expression: ex.Expression) -> bool:
-    """Whether CIF takes a number as it is."""
-    match expression:
-        case ex.IntegerLiteral():
-            return 0 <= expression.value <= LARGEST
-        case sct.VariableReference():
-            return shift(expression.variable) == 0
-        case sct.InputReference():
-            return shift(expression.input) == 0
-        case ex.Addition():
-            return _is_plain(expression.left) and _is_plain(expression.right)
-    return False
-
-
-def _comparison(expression: ex.BinaryExpression) -> ex.Expression:
-    if _is_plain(expression.left) and _is_plain(expression.right):
-        return copied(expression)
-    pieces = _sum(expression, _linear(expression.left), _scaled(_linear(expression.right), -1))
-    return _first((guard, _against_zero(type(expression), piece, expression)) for guard, piece in pieces)
+    """Whether CIF takes a number as it is: a sum of numbers that are never negative."""
+    pending = [expression]
+    while pending:
+        match part := pending.pop():
+            case ex.IntegerLiteral() if 0 <= part.value <= LARGEST:
+                continue
+            case sct.VariableReference() if shift(part.variable) == 0:
+                continue
+            case sct.InputReference() if shift(part.input) == 0:
+                continue
+            case ex.Addition():
+                pending += [part.left, part.right]
+            case _:
+                return False
+    return True
 
 
 def _against_zero(operator: _Comparison, value: Linear, origin: ex.Expression) -> ex.Expression:
@@ -178,6 +188,11 @@ def _first(alternatives: Iterable[tuple[ex.Expression | None, ex.Expression]]) -
 
 
 def _linear(expression: ex.Expression) -> _Pieces:
+    pieces: _Pieces = walk(_lowered, (expression, True))
+    return pieces
+
+
+def _number_lowered(expression: ex.Expression) -> Generator[_Part, Any, _Pieces]:
     match expression:
         case ex.IntegerLiteral():
             return [(None, Linear(expression.value))]
@@ -186,16 +201,20 @@ def _linear(expression: ex.Expression) -> _Pieces:
         case sct.InputReference():
             return [(None, Linear.of(expression.input))]
         case ex.UnaryMinus():
-            return _scaled(_linear(expression.operand), -1)
-        case ex.Addition():
-            return _sum(expression, _linear(expression.left), _linear(expression.right))
-        case ex.Subtraction():
-            return _sum(expression, _linear(expression.left), _scaled(_linear(expression.right), -1))
+            return _scaled((yield expression.operand, True), -1)
+        case ex.Addition() | ex.Subtraction():
+            left, right = (yield expression.left, True), (yield expression.right, True)
+            return _sum(expression, left, right if isinstance(expression, ex.Addition) else _scaled(right, -1))
         case ex.Multiplication():
-            return _product(expression)
+            left, right = (yield expression.left, True), (yield expression.right, True)
+            return _product(expression, left, right)
         case ex.Conditional():
-            then = [(_both(condition(expression.condition), guard), piece) for guard, piece in _linear(expression.then)]
-            return _limited(expression, [*then, *_linear(expression.otherwise)])
+            chosen = yield expression.condition, False
+            then = yield expression.then, True
+            otherwise = yield expression.otherwise, True
+            pieces = [*((_both(chosen, guard), piece) for guard, piece in then), *otherwise]
+            _limit(expression, len(pieces))
+            return pieces
     raise Unsupported(expression, f"CIF has no {type(expression).__name__}")
 
 
@@ -208,9 +227,9 @@ def _sum(origin: ex.Expression, left: _Pieces, right: _Pieces) -> _Pieces:
     return [(_both(one, other), first + second) for one, first in left for other, second in right]
 
 
-def _product(expression: ex.Multiplication) -> _Pieces:
+def _product(expression: ex.Multiplication, left: _Pieces, right: _Pieces) -> _Pieces:
     """Split by the values of the factor that has fewer."""
-    factors = [(factor, _linear(factor)) for factor in (expression.left, expression.right)]
+    factors = [(expression.left, left), (expression.right, right)]
     factors.sort(key=lambda factor: _values(factor[1]))
     (split, pieces), (_, others) = factors
     _limit(expression, _values(pieces) * len(others))
@@ -240,11 +259,6 @@ def _both(one: ex.Expression | None, other: ex.Expression | None) -> ex.Expressi
     """The conjunction of two conditions, either of which may be missing, in a tree of its own."""
     parts = [copied(part) for part in (one, other) if part is not None]
     return ex.Conjunction(left=parts[0], right=parts[1]) if len(parts) == 2 else next(iter(parts), None)
-
-
-def _limited(origin: ex.Expression, pieces: _Pieces) -> _Pieces:
-    _limit(origin, len(pieces))
-    return pieces
 
 
 def _limit(origin: ex.Expression, cases: int) -> None:

@@ -9,7 +9,7 @@ import pytest
 
 from robosc.analysis.verify.cif_reading import CifError, Specification, read
 from robosc.files.resources import locate
-from robosc.m2t.cif.keywords import KEYWORDS
+from robosc.m2t.cif.names import KEYWORDS
 from robosc.metamodel import expression as ex
 
 

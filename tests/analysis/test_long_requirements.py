@@ -1,0 +1,67 @@
+"""Requirements of thousands of operators are analysed in a thread with a small stack, whichever way they are nested."""
+
+import threading
+
+import pytest
+
+from robosc.analysis.explain import explain, explored, possibility
+from robosc.analysis.supervise import diagnose
+from robosc.analysis.verify import Outcome, verify_system
+from robosc.m2t.cif.arithmetic import condition
+from robosc.metamodel import expression as ex
+from robosc.metamodel import sct
+from tests.sct_models import edge, model, needs, plant
+
+STACK = 512 << 10
+OPERATORS = 3000
+
+
+def counter(kind: type[ex.BinaryExpression], *, left: bool) -> sct.SupervisoryControlModel:
+    """A counter whose step is restricted by a chain of operators, nested to the left or to the right."""
+    made = model(
+        [
+            plant(
+                "C",
+                {"on": [edge("c_up", do={"n": "n + 1"}), edge("c_back", do={"n": "0"})]},
+                controllable=["c_up", "c_back"],
+                variables={"n": "0..7 = 0"},
+            )
+        ],
+        [needs("c_up", "n < 6")],
+    )
+    [variable] = made.plants[0].variables
+    whole: ex.Expression = made.requirements[0].condition
+    for number in range(OPERATORS // 2):
+        reference = sct.VariableReference(variable=variable)
+        bound = ex.LessThan(left=reference, right=ex.IntegerLiteral(value=7 if kind is ex.Conjunction else number % 5))
+        whole = kind(left=whole, right=bound) if left else kind(left=bound, right=whole)
+    made.requirements[0].condition = whole
+    return made
+
+
+@pytest.mark.parametrize("left", [True, False], ids=["left", "right"])
+@pytest.mark.parametrize("kind", [ex.Conjunction, ex.Disjunction])
+def test_long_requirements_take_no_stack(kind: type[ex.BinaryExpression], left: bool) -> None:
+    made = counter(kind, left=left)
+    up = made.plants[0].events[0]
+    said: list[object] = []
+
+    def look() -> None:
+        made.supervisor = diagnose(made).supervisor
+        said.append(made.supervisor.controlledStates)
+        told = explored(made, lambda system: explain(system, up, {made.plants[0].variables[0]: 6}))
+        said.append([note.details for note in told.requirements])
+        said.append(explored(made, lambda system: possibility(system, up)).possible)
+        said.append({verdict.outcome for verdict in verify_system(made)})
+        condition(made.requirements[0].condition)
+
+    before = threading.stack_size(STACK)
+    try:
+        thread = threading.Thread(target=look)
+        thread.start()
+    finally:
+        threading.stack_size(before)
+    thread.join()
+    states, details, possible, outcomes = said
+    assert (states, possible, outcomes) == (7, True, {Outcome.PROVED})
+    assert details[0][:1] == ("`C.n < 6` does not hold: `C.n` is 6",)
