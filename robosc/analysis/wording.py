@@ -39,7 +39,7 @@ def name(plant: sct.Plant) -> str:
 def words(event: sct.Event) -> str:
     """An event, such as `request to Platform.move`.
 
-    Of silent transitions and of statements that provide data also the line, and what tells them apart.
+    Of internal transitions and of statements that provide data also the line, and what tells them apart.
     """
     owner = f"`{name(plant_of(event))}`"
     if event.kind == sct.EventKind.data:
@@ -69,7 +69,7 @@ def _where(event: sct.Event) -> str:
 
 
 def change(event: sct.Event) -> str:
-    """What a silent event does: `Lidar changes by itself: blocked to free`; where several do that, the line, too."""
+    """What an internal event does: `Lidar changes by itself: blocked to free`; where several do that, the line, too."""
     plant = plant_of(event)
     if event.kind == sct.EventKind.reset:
         return f"{name(plant)} is ready to be used again"

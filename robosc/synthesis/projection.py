@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from robosc.synthesis.bdd import Diagram
     from robosc.synthesis.encoding import Domain, Element, Encoding
 
-#: Up to how many different rests of the diagram are looked at below one level: with more, little is left out.
+#: Up to how many different subdiagrams are looked at below one level: with more, little is left out.
 _WIDEST = 64
 
 
@@ -36,9 +36,12 @@ class Projection:
         self._levels = sorted(level for domain in self._domains for level in domain.levels)
 
     def onto(self, elements: Iterable[Element]) -> Diagram:
-        """A superset of the states that has the same values of the given elements, and of those between them."""
+        """A superset of the states: all elements whose levels lie between those of the given ones have the same values.
+
+        The levels above the first of them are quantified, and those below the last.
+        """
         first, last = self._range(elements)
-        return self._rests[first].exists(self._cubes[last]) if first < len(self._rests) else self.states
+        return self._below[first].exists(self._cubes[last]) if first < len(self._below) else self.states
 
     def factor(self, elements: Iterable[Element]) -> tuple[Diagram, Sequence[Domain]]:
         """Some domains that hold the elements, and the states as far as these are concerned.
@@ -46,11 +49,11 @@ class Projection:
         All states are the combinations of these with what the other domains may have. As few domains as are found.
         """
         first, last = self._range(elements)
-        first = self._waists[bisect_right(self._waists, first) - 1]
-        below = bisect_left(self._waists, last)
-        last = self._waists[below] if below < len(self._waists) else len(self._levels)
+        first = self._cut_levels[bisect_right(self._cut_levels, first) - 1]
+        below = bisect_left(self._cut_levels, last)
+        last = self._cut_levels[below] if below < len(self._cut_levels) else len(self._levels)
         domains = self._domains[bisect_left(self._starts, first) : bisect_left(self._starts, last)]
-        return self._rests[first].exists(self._cubes[last]), domains
+        return self._below[first].exists(self._cubes[last]), domains
 
     def _range(self, elements: Iterable[Element]) -> tuple[int, int]:
         """The first level of the elements and the one after their last."""
@@ -76,7 +79,7 @@ class Projection:
 
     @cached_property
     def _frontiers(self) -> list[tuple[Diagram, ...]]:
-        """For each level what the diagram goes on with from there; not for those below which it is wide."""
+        """The subdiagrams of the states that begin at each level or below, down to a level where they are too many."""
         frontiers = []
         frontier: tuple[Diagram, ...] = (self.states,)
         for level in self._levels:
@@ -88,19 +91,19 @@ class Projection:
         return frontiers
 
     @cached_property
-    def _rests(self) -> list[Diagram]:
-        """For each of these levels the states without what is above it."""
-        rests = []
+    def _below(self) -> list[Diagram]:
+        """For each of these levels the states with all levels above it quantified."""
+        below = []
         for frontier in self._frontiers:
             rest = frontier[0]
             for diagram in frontier[1:]:
                 rest |= diagram
-            rests.append(rest)
-        return rests or [self.states]
+            below.append(rest)
+        return below or [self.states]
 
     @cached_property
-    def _waists(self) -> list[int]:
-        """The levels above which nothing matters for what is below, and where no domain has bits on both sides."""
+    def _cut_levels(self) -> list[int]:
+        """The levels at which the states are a product of a set above and one below, no domain having bits in both."""
         torn = {level for first, last in self._ranges.values() for level in range(first + 1, last)}
         alone = (level for level, frontier in enumerate(self._frontiers) if len(frontier) == 1)
         return [level for level in alone if level not in torn] or [0]

@@ -24,7 +24,7 @@ class Replay:
     def __init__(self, given_model: sct.SupervisoryControlModel, trace: Sequence[TraceStep]) -> None:
         self.oracle = Oracle(given_model)
         self.trace = trace
-        self.events = {event_name(each): each for each in self.oracle.events}
+        self.events = {event_name(event): event for event in self.oracle.events}
 
     def after(self, steps: int, *, requirements: bool) -> State:
         """The state after the first steps of the trace; each is possible, whatever the inputs that it does not name."""
@@ -41,8 +41,12 @@ class Replay:
 
     def completions(self, event, named):
         choices = [
-            [value for value in values_of(each.type) if each.name not in named or python(value) == named[each.name]]
-            for each in event.inputs
+            [
+                value
+                for value in values_of(parameter.type)
+                if parameter.name not in named or python(value) == named[parameter.name]
+            ]
+            for parameter in event.inputs
         ]
         assert all(choices)
         return [dict(zip(event.inputs, values, strict=True)) for values in product(*choices)]
@@ -126,7 +130,7 @@ def check_uncontrollable_at_fault(replay: Replay, reason: Reason) -> None:
     assert not is_blocked(oracle, before)
     assert is_blocked(oracle, after)
     assert reason.state == replay.names(after)
-    never = {each for each in oracle.model.plants if is_never_marked(oracle, each, after)}
+    never = {plant for plant in oracle.model.plants if is_never_marked(oracle, plant, after)}
     assert set(reason.unmarked) == never
 
 
@@ -156,7 +160,7 @@ def test_an_uncontrollable_event_is_named_with_the_inputs_that_matter():
         "Tank.burst can't be prevented, and after it no marked state can be reached; never in a marked location: Tank"
         " (in burst)"
     )
-    assert [str(each) for each in reason.trace] == ["Tank.measured(x = 3)", "Tank.burst"]
+    assert [str(step) for step in reason.trace] == ["Tank.measured(x = 3)", "Tank.burst"]
     assert reason.state == {"Tank": "burst", "Tank.level": 3}
 
 
@@ -169,7 +173,7 @@ def test_inputs_that_do_not_matter_are_not_named():
         inputs={"x": "bool", "y": "bool", "z": "bool"},
     )
     reason = diagnose(model([sensor])).reason
-    assert [str(each) for each in reason.trace] == ["S.u(x = false)"]
+    assert [str(step) for step in reason.trace] == ["S.u(x = false)"]
 
 
 def test_a_requirement_that_keeps_everything_from_being_marked_is_named():
@@ -184,7 +188,7 @@ def test_a_requirement_that_keeps_everything_from_being_marked_is_named():
         "no marked state can be reached: the shortest way to one needs A.c_cancel where its requirement forbids it;"
         " never in a marked location: A (in busy)"
     )
-    assert [each.event for each in reason.trace] == ["A.c_trigger", "A.c_cancel"]
+    assert [step.event for step in reason.trace] == ["A.c_trigger", "A.c_cancel"]
 
 
 @pytest.mark.parametrize(
@@ -216,5 +220,5 @@ def test_a_fault_that_shows_only_after_a_round():
         marked=["goal"],
     )
     reason = diagnose(model([steps], [needs("reach", "P.risky")])).reason
-    assert [each.event for each in reason.trace] == ["P.slip", "P.enter", "P.fall"]
+    assert [step.event for step in reason.trace] == ["P.slip", "P.enter", "P.fall"]
     assert reason.event.name == "fall"

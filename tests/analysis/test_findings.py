@@ -13,7 +13,7 @@ from robosc.language import read
 from robosc.m2m import robosc_to_sct
 
 MODELS = Path(__file__).parent / "models"
-ROBOTS = sorted(each for each in MODELS.glob("*.rscd") if each.name != "parts.rscd")
+ROBOTS = sorted(path for path in MODELS.glob("*.rscd") if path.name != "parts.rscd")
 LISTINGS = Path(__file__).parents[4] / "shared" / "thesis" / "models"
 
 
@@ -21,19 +21,19 @@ def findings(model: Path) -> tuple[list[Diagnostic], dict[str, str]]:
     """What synthesis finds, with the paths that the command line shows."""
     reading = read(model)
     errors = [*reading.findings, *check(reading.base, reading.findings)]
-    assert [each for each in errors if each.severity is Severity.ERROR] == []
+    assert [error for error in errors if error.severity is Severity.ERROR] == []
     report = Report()
     report.add(supervise(robosc_to_sct.transform(reading.base)[0]).findings, reading.texts)
     return in_order(report.findings), reading.texts
 
 
-@pytest.mark.parametrize("model", ROBOTS, ids=lambda each: each.stem)
+@pytest.mark.parametrize("model", ROBOTS, ids=lambda path: path.stem)
 def test_a_model_draws_what_it_says(model: Path) -> None:
     expected = re.match(r"// expect:(?: (.+))?\n", model.read_text())
     assert expected
     found = [
-        f"{each.rule} {'' if each.file == str(model) else Path(each.file).name + ':'}{each.span.line}"
-        for each in findings(model)[0]
+        f"{finding.rule} {'' if finding.file == str(model) else Path(finding.file).name + ':'}{finding.span.line}"
+        for finding in findings(model)[0]
     ]
     assert sorted(found) == sorted((expected[1] or "").replace(", ", "\n").splitlines())
 
@@ -58,4 +58,4 @@ def test_wording(golden) -> None:
     ],
 )
 def test_the_printed_listings(name: str, expected: list[str]) -> None:
-    assert [each.rule for each in findings(LISTINGS / f"{name}.rscd")[0]] == expected
+    assert [finding.rule for finding in findings(LISTINGS / f"{name}.rscd")[0]] == expected

@@ -32,20 +32,20 @@ def communicating_models(draw: st.DrawFn) -> sct.SupervisoryControlModel:
     they have not started.
     """
     made = draw(sct_models())
-    triggers = [each for p in made.plants for each in p.events if each.kind == sct.EventKind.trigger]
+    triggers = [event for p in made.plants for event in p.events if event.kind == sct.EventKind.trigger]
     for trigger in triggers:
         plant_of(trigger).kind = getattr(sct.PlantKind, draw(st.sampled_from(("message", "service", "action"))))
         plant_of(trigger).topic = draw(st.sampled_from(("shared", "/shared")))
         if plant_of(trigger).kind == sct.PlantKind.action and draw(st.booleans()):
-            initial = next(each for each in plant_of(trigger).locations if each.initial)
+            initial = next(location for location in plant_of(trigger).locations if location.initial)
             made.requirements.append(
                 sct.Requirement(
                     event=trigger, kind=sct.RequirementKind.needs, condition=sct.LocationReference(location=initial)
                 )
             )
-    for each in made.plants:
-        if each.kind == sct.PlantKind.data and triggers:
-            each.origin = "C.c"
+    for member in made.plants:
+        if member.kind == sct.PlantKind.data and triggers:
+            member.origin = "C.c"
             plant_of(draw(st.sampled_from(triggers))).origin = "C.c"
     return made
 
@@ -55,53 +55,53 @@ class Definitions:
 
     def __init__(self, oracle: Oracle) -> None:
         self.oracle = oracle
-        self.controllable = [each for each in oracle.events if each.controllable]
-        self.triggers = [each for each in self.controllable if each.kind == sct.EventKind.trigger]
+        self.controllable = [event for event in oracle.events if event.controllable]
+        self.triggers = [event for event in self.controllable if event.kind == sct.EventKind.trigger]
 
     def unreachable_states(self) -> list[sct.Location]:
         return [
             location
-            for each in self.oracle.model.plants
-            if each.kind == sct.PlantKind.behaviour
-            for location in each.locations
-            if not any(state[self.oracle.places[each]] is location for state in self.oracle.controlled)
+            for plant in self.oracle.model.plants
+            if plant.kind == sct.PlantKind.behaviour
+            for location in plant.locations
+            if not any(state[self.oracle.places[plant]] is location for state in self.oracle.controlled)
         ]
 
-    def allowed(self, each: sct.Event) -> set[State]:
-        return {state for state in self.oracle.controlled if self.oracle.allows(each, state)}
+    def allowed(self, event: sct.Event) -> set[State]:
+        return {state for state in self.oracle.controlled if self.oracle.allows(event, state)}
 
     def never_enabled(self) -> list[sct.Event]:
         kinds = (sct.EventKind.trigger, sct.EventKind.tau)
-        return [each for each in self.controllable if each.kind in kinds and not self.allowed(each)]
+        return [event for event in self.controllable if event.kind in kinds and not self.allowed(event)]
 
-    def held_back(self, each: sct.Event) -> set[State]:
+    def held_back(self, event: sct.Event) -> set[State]:
         """The controlled states in which only synthesis forbids the event."""
         return {
             state
             for state in self.oracle.controlled
-            if self.oracle.edges(each, state) is not None and self.oracle.required(each, state)
-        } - self.allowed(each)
+            if self.oracle.edges(event, state) is not None and self.oracle.required(event, state)
+        } - self.allowed(event)
 
     def silent_restricted(self) -> list[sct.Event]:
         kinds = (*SILENT, sct.EventKind.cancel)
-        return [each for each in self.controllable if each.kind in kinds and self.held_back(each)]
+        return [event for event in self.controllable if event.kind in kinds and self.held_back(event)]
 
-    def after(self, each: sct.Event) -> set[State]:
-        return {after for state in self.allowed(each) for after in self.oracle.successors(each, state)}
+    def after(self, event: sct.Event) -> set[State]:
+        return {after for state in self.allowed(event) for after in self.oracle.successors(event, state)}
 
     def self_cancelling(self) -> list[sct.Event]:
         return [
-            each
-            for each in self.triggers
-            if plant_of(each).kind == sct.PlantKind.action
-            and self.allowed(each)
-            and not any(self.oracle.required(each, state) for state in self.after(each))
+            trigger
+            for trigger in self.triggers
+            if plant_of(trigger).kind == sct.PlantKind.action
+            and self.allowed(trigger)
+            and not any(self.oracle.required(trigger, state) for state in self.after(trigger))
         ]
 
-    def gap(self, each: sct.Event, data: sct.Plant) -> set[State]:
+    def gap(self, event: sct.Event, data: sct.Plant) -> set[State]:
         return {
             state
-            for state in self.allowed(each)
+            for state in self.allowed(event)
             if not any(
                 self.oracle.value(edge.guard, state, {})
                 for edge in edges_from(state[self.oracle.places[data]])
@@ -111,15 +111,15 @@ class Definitions:
 
     def provide_gaps(self) -> list[tuple[sct.Event, sct.Plant]]:
         return [
-            (each, data)
-            for each in self.triggers
+            (trigger, data)
+            for trigger in self.triggers
             for data in self.oracle.model.plants
-            if data.kind == sct.PlantKind.data and data.origin and data.origin == plant_of(each).origin
-            if self.gap(each, data)
+            if data.kind == sct.PlantKind.data and data.origin and data.origin == plant_of(trigger).origin
+            if self.gap(trigger, data)
         ]
 
     def shared_topic_conflicts(self) -> list[tuple[sct.Event, sct.Event]]:
-        messages = [each for each in self.triggers if plant_of(each).kind == sct.PlantKind.message]
+        messages = [trigger for trigger in self.triggers if plant_of(trigger).kind == sct.PlantKind.message]
         return [
             (one, other)
             for one, other in combinations(messages, 2)
@@ -129,15 +129,15 @@ class Definitions:
 
     def unrestricted_calls(self) -> list[sct.Event]:
         return [
-            each
-            for each in self.triggers
-            if plant_of(each).kind in (sct.PlantKind.service, sct.PlantKind.action)
-            and self.allowed(each)
-            and not any(requirement.event is each for requirement in self.oracle.model.requirements)
+            trigger
+            for trigger in self.triggers
+            if plant_of(trigger).kind in (sct.PlantKind.service, sct.PlantKind.action)
+            and self.allowed(trigger)
+            and not any(requirement.event is trigger for requirement in self.oracle.model.requirements)
             and not any(
-                edge.event is each
+                edge.event is trigger
                 for p in self.oracle.model.plants
-                if p is not plant_of(each)
+                if p is not plant_of(trigger)
                 for location in p.locations
                 for edge in edges_from(location)
             )
@@ -153,15 +153,15 @@ def test_random_models(random_model):
     assert (observed is None) == (not oracle.controlled)
     assume(observed is not None)
     definitions = Definitions(oracle)
-    assert [each.event for each in observed.never_enabled] == definitions.never_enabled()
-    assert [each.event for each in observed.silent_restricted] == definitions.silent_restricted()
-    assert [each.event for each in observed.self_cancelling] == definitions.self_cancelling()
-    assert [(each.event, each.data) for each in observed.provide_gaps] == definitions.provide_gaps()
+    assert [observation.event for observation in observed.never_enabled] == definitions.never_enabled()
+    assert [observation.event for observation in observed.silent_restricted] == definitions.silent_restricted()
+    assert [observation.event for observation in observed.self_cancelling] == definitions.self_cancelling()
+    assert [(gap.event, gap.data) for gap in observed.provide_gaps] == definitions.provide_gaps()
     conflicts = definitions.shared_topic_conflicts()
-    assert {(each.first, each.second) for each in observed.shared_topic_conflicts} == set(conflicts)
+    assert {(conflict.first, conflict.second) for conflict in observed.shared_topic_conflicts} == set(conflicts)
     assert len(observed.shared_topic_conflicts) == len(conflicts)
     assert list(observed.unrestricted_calls) == definitions.unrestricted_calls()
-    assert [each.location for each in observed.unreachable_states] == definitions.unreachable_states()
+    assert [state.location for state in observed.unreachable_states] == definitions.unreachable_states()
     for name in vars(observed):
         event(name if getattr(observed, name) else f"no {name}")
     check_details(definitions, observed)
@@ -170,49 +170,51 @@ def test_random_models(random_model):
 def check_details(definitions: Definitions, observed: Observations) -> None:
     """What is said beside the event is true, too."""
     oracle = definitions.oracle
-    for each in observed.never_enabled:
-        enabled = [state for state in oracle.controlled if oracle.edges(each.event, state) is not None]
-        required = [state for state in enabled if oracle.required(each.event, state)]
-        beyond = [state for state in oracle.uncontrolled if oracle.edges(each.event, state) is not None]
+    for never in observed.never_enabled:
+        enabled = [state for state in oracle.controlled if oracle.edges(never.event, state) is not None]
+        required = [state for state in enabled if oracle.required(never.event, state)]
+        beyond = [state for state in oracle.uncontrolled if oracle.edges(never.event, state) is not None]
         states = enabled or beyond
-        asked = any(oracle.required(each.event, state) for state in states)
+        asked = any(oracle.required(never.event, state) for state in states)
         by_requirements = states and not asked
-        assert each.forbidden is (
+        assert never.forbidden is (
             Forbidden.BY_SYNTHESIS
             if required
             else Forbidden.BY_REQUIREMENTS
             if by_requirements
             else Forbidden.BY_PLANTS
         )
-        assert each.kept_away == (not enabled and asked)
-        if each.forbidden is Forbidden.BY_REQUIREMENTS:
-            check_forbidding(oracle, each.event, each.requirements, states)
-        assert (each.counterexample is not None) == bool(required)
-        if each.counterexample is not None:
-            check_counterexample(definitions, each.event, each.counterexample)
-    for each in observed.silent_restricted:
-        check_counterexample(definitions, each.event, each.counterexample)
-    assert list(observed.counterexamples) == [each for each in definitions.controllable if definitions.held_back(each)]
-    for each, counterexample in observed.counterexamples.items():
-        check_counterexample(definitions, each, counterexample)
-    for each in observed.self_cancelling:
-        check_forbidding(oracle, each.event, each.requirements, definitions.after(each.event))
-    for each in observed.unreachable_states:
-        check_hindrances(definitions, each)
-    for each in observed.provide_gaps:
-        check_example(definitions, each.example, definitions.gap(each.event, each.data))
-    for each in observed.shared_topic_conflicts:
-        both = definitions.allowed(each.first) & definitions.allowed(each.second)
-        check_example(definitions, each.example, both)
+        assert never.kept_away == (not enabled and asked)
+        if never.forbidden is Forbidden.BY_REQUIREMENTS:
+            check_forbidding(oracle, never.event, never.requirements, states)
+        assert (never.counterexample is not None) == bool(required)
+        if never.counterexample is not None:
+            check_counterexample(definitions, never.event, never.counterexample)
+    for restricted in observed.silent_restricted:
+        check_counterexample(definitions, restricted.event, restricted.counterexample)
+    assert list(observed.counterexamples) == [
+        event for event in definitions.controllable if definitions.held_back(event)
+    ]
+    for held_event, counterexample in observed.counterexamples.items():
+        check_counterexample(definitions, held_event, counterexample)
+    for cancelling in observed.self_cancelling:
+        check_forbidding(oracle, cancelling.event, cancelling.requirements, definitions.after(cancelling.event))
+    for unreachable in observed.unreachable_states:
+        check_hindrances(definitions, unreachable)
+    for gap in observed.provide_gaps:
+        check_example(definitions, gap.example, definitions.gap(gap.event, gap.data))
+    for conflict in observed.shared_topic_conflicts:
+        both = definitions.allowed(conflict.first) & definitions.allowed(conflict.second)
+        check_example(definitions, conflict.example, both)
 
 
 def holds(oracle, requirement, state):
     return oracle.value(requirement.condition, state, {}) == (requirement.kind == sct.RequirementKind.needs)
 
 
-def check_forbidding(oracle, each, told, states):
+def check_forbidding(oracle, event, told, states):
     """Those told are all that alone hold in none of the states; else some that do not together, none too many."""
-    own = [requirement for requirement in oracle.model.requirements if requirement.event is each]
+    own = [requirement for requirement in oracle.model.requirements if requirement.event is event]
     alone = [one for one in own if not any(holds(oracle, one, state) for state in states)]
     if alone:
         assert list(told) == alone
@@ -227,19 +229,19 @@ def check_hindrances(definitions: Definitions, observed: UnreachableState) -> No
     """They are all transitions to the state, and what is said of each keeps it from ever being taken."""
     oracle, location = definitions.oracle, observed.location
     component = location.eContainer()
-    assert {each.edge for each in observed.hindrances} == {
+    assert {hindrance.edge for hindrance in observed.hindrances} == {
         edge
         for other in component.locations
         if other is not location
         for edge in other.edges
         if edge.target is location
     }
-    for each in observed.hindrances:
-        happens = each.edge.event
-        here = [s for s in oracle.controlled if s[oracle.places[component]] is each.edge.eContainer()]
+    for hindrance in observed.hindrances:
+        happens = hindrance.edge.event
+        here = [s for s in oracle.controlled if s[oracle.places[component]] is hindrance.edge.eContainer()]
         enabled = [state for state in here if oracle.edges(happens, state) is not None]
         required = [state for state in enabled if oracle.required(happens, state)]
-        assert each.forbidden is (
+        assert hindrance.forbidden is (
             Forbidden.BY_SYNTHESIS
             if required
             else Forbidden.BY_REQUIREMENTS
@@ -248,21 +250,21 @@ def check_hindrances(definitions: Definitions, observed: UnreachableState) -> No
             if here
             else None
         )
-        event(f"unreachable {each.forbidden}")
-        if each.forbidden is Forbidden.BY_REQUIREMENTS:
-            check_forbidding(oracle, happens, each.requirements, enabled)
-        assert (each.counterexample is not None) == bool(required)
-        if each.counterexample is not None:
-            replay = Replay(oracle.model, each.counterexample.trace)
+        event(f"unreachable {hindrance.forbidden}")
+        if hindrance.forbidden is Forbidden.BY_REQUIREMENTS:
+            check_forbidding(oracle, happens, hindrance.requirements, enabled)
+        assert (hindrance.counterexample is not None) == bool(required)
+        if hindrance.counterexample is not None:
+            replay = Replay(oracle.model, hindrance.counterexample.trace)
             assert replay.after(len(replay.trace) - 1, requirements=True) in required
 
 
 def check_example(definitions: Definitions, example: Example, states: set[State]) -> None:
     """The example is one of the states, and settled if one of them is."""
     oracle = definitions.oracle
-    silent = [each for each in definitions.controllable if each.kind in SILENT]
-    unsettled = {state for each in silent for state in definitions.allowed(each)}
-    [state] = [each for each in states if shown(oracle, each) == example.state]
+    silent = [event for event in definitions.controllable if event.kind in SILENT]
+    unsettled = {state for silent in silent for state in definitions.allowed(silent)}
+    [state] = [state for state in states if shown(oracle, state) == example.state]
     assert list(example.state) == list(oracle.places)
     assert example.quiescent == (state not in unsettled) == bool(states - unsettled)
 
@@ -292,7 +294,9 @@ def check_counterexample(
     if counterexample.onwards:
         assert not replay.events[steps[-1].event].controllable
         assert not is_blocked(oracle, replay.after(len(steps) - 1, requirements=True))
-    assert set(counterexample.unmarked) == {each for each in oracle.model.plants if is_never_marked(oracle, each, end)}
+    assert set(counterexample.unmarked) == {
+        plant for plant in oracle.model.plants if is_never_marked(oracle, plant, end)
+    }
 
 
 def test_counterexample_that_comes_later_is_traced_to_its_end():
@@ -312,10 +316,10 @@ def test_counterexample_that_comes_later_is_traced_to_its_end():
     observed = diagnose(model([machine])).observations
     [restricted] = observed.silent_restricted
     assert restricted.event.name == "c_tau1"
-    assert [each.event for each in restricted.counterexample.trace] == ["M.c_tau1"]
-    assert [each.event for each in restricted.counterexample.onwards] == ["M.u_slip", "M.c_tau3", "M.u_fall"]
+    assert [step.event for step in restricted.counterexample.trace] == ["M.c_tau1"]
+    assert [onward.event for onward in restricted.counterexample.onwards] == ["M.u_slip", "M.c_tau3", "M.u_fall"]
     assert restricted.counterexample.unmarked == (machine.element,)
-    never = {each.event.name: each for each in observed.never_enabled}
+    never = {observation.event.name: observation for observation in observed.never_enabled}
     assert never["c_tau1"].counterexample == restricted.counterexample
     assert never["c_tau2"].forbidden is Forbidden.BY_PLANTS
     assert never["c_tau2"].plants == (machine.element,)
@@ -336,7 +340,7 @@ def test_counterexample_leads_through_what_nothing_prevents():
     )
     [(held_back, counterexample)] = diagnose(model([machine])).observations.counterexamples.items()
     assert held_back.name == "c_tau1"
-    assert [each.event for each in counterexample.onwards] == ["M.u_slip", "M.u_fall"]
+    assert [onward.event for onward in counterexample.onwards] == ["M.u_slip", "M.u_fall"]
 
 
 def test_large_models_get_no_more_counterexamples_than_are_cheap():
@@ -384,5 +388,5 @@ def test_what_can_still_be_marked_after_a_counterexample():
     )
     made = model([machine, gate, lamp, bulb], [needs("c_tau2", "M.rest"), needs("c_tau3", "B.inserted")])
     [restricted] = diagnose(made).observations.silent_restricted
-    assert [each.event for each in restricted.counterexample.trace] == ["M.c_tau1"]
+    assert [step.event for step in restricted.counterexample.trace] == ["M.c_tau1"]
     assert restricted.counterexample.unmarked == (machine.element, gate.element)

@@ -27,7 +27,7 @@ RULES = {
 def findings(folder: Path, text: str) -> list[Diagnostic]:
     (folder / "model.rscd").write_text(text)
     reading = read(folder / "model.rscd")
-    assert [each for each in check(reading.base, reading.findings) if each.severity is Severity.ERROR] == []
+    assert [finding for finding in check(reading.base, reading.findings) if finding.severity is Severity.ERROR] == []
     try:
         return supervise(robosc_to_sct.transform(reading.base)[0]).findings
     except ModelError as error:

@@ -48,7 +48,9 @@ def models(folder: Path, text: str = MODEL) -> Models:
 
 def test_what_a_person_reads_for_an_event(tmp_path: Path) -> None:
     events = Roles(models(tmp_path).sct).events
-    assert {event_name(each): with_words(each) for each in events} == {name: name + said for name, said in TOLD.items()}
+    assert {event_name(event): with_words(event) for event in events} == {
+        name: name + said for name, said in TOLD.items()
+    }
 
 
 def test_simulate_tells_it(tmp_path: Path) -> None:
@@ -62,7 +64,7 @@ def test_generated_texts_tell_the_statement_and_no_line(tmp_path: Path) -> None:
     """So a comment in the model changes nothing in them."""
     generators = (cif.generate, supervisor.generate)
     texts = [generate(models(tmp_path), Configuration()) for generate in generators]
-    told = "\n".join(text for each in texts for text in each.values())
+    told = "\n".join(text for told_texts in texts for text in told_texts.values())
     assert '@doc("The choice of provide 2 for Base.speed.")\n  controllable c_d2;\n' in told
     assert "Base.speed is to be sent with the data of `provide` 1, if Base.near." in told
     assert "Base.speed is to be sent with the data of `provide` 2." in told

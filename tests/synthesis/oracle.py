@@ -26,15 +26,15 @@ class Oracle:
     @cached_property
     def places(self) -> dict[Any, int]:
         """Where in a state an element's value is."""
-        return {each: index for index, each in enumerate(e for p in self.model.plants for e in (p, *p.variables))}
+        return {e: index for index, e in enumerate(e for p in self.model.plants for e in (p, *p.variables))}
 
     @cached_property
     def initial(self) -> State:
         return tuple(
-            next(location for location in each.locations if location.initial)
-            if isinstance(each, sct.Plant)
-            else self.value(each.initial, (), {})
-            for each in self.places
+            next(location for location in place.locations if location.initial)
+            if isinstance(place, sct.Plant)
+            else self.value(place.initial, (), {})
+            for place in self.places
         )
 
     def value(self, expression: ex.Expression | None, state: State, inputs: dict[sct.Input, Any]) -> Any:  # noqa: C901, PLR0912
@@ -112,7 +112,7 @@ class Oracle:
         if self.edges(event, state) is None:
             return {}
         reached: dict[State, dict[sct.Input, Any]] = {}
-        for values in product(*(values_of(each.type) for each in event.inputs)):
+        for values in product(*(values_of(parameter.type) for parameter in event.inputs)):
             inputs = dict(zip(event.inputs, values, strict=True))
             reached.setdefault(self.successor(event, state, inputs), inputs)
         return reached
@@ -130,9 +130,9 @@ class Oracle:
     def required(self, event: sct.Event, state: State) -> bool:
         """Whether the requirements let the event happen."""
         return all(
-            self.value(each.condition, state, {}) == (each.kind == sct.RequirementKind.needs)
-            for each in self.model.requirements
-            if each.event is event
+            self.value(requirement.condition, state, {}) == (requirement.kind == sct.RequirementKind.needs)
+            for requirement in self.model.requirements
+            if requirement.event is event
         )
 
     def is_marked(self, state: State) -> bool:
@@ -188,7 +188,9 @@ class Oracle:
     def allows(self, event: sct.Event, state: State) -> bool:
         """Whether the event can happen in a controlled state under the supervisor."""
         after = self.successors(event, state)
-        return bool(after) and self.required(event, state) and all(each in self.controlled for each in after)
+        return (
+            bool(after) and self.required(event, state) and all(state_after in self.controlled for state_after in after)
+        )
 
 
 def values_of(kind: ex.Type) -> list[Any]:

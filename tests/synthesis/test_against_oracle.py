@@ -30,7 +30,7 @@ def check(model: sct.SupervisoryControlModel, synthesis: Synthesis) -> None:
 
 
 def check_guards(oracle: Oracle, supervisor: sct.Supervisor) -> None:
-    assert [each.event for each in supervisor.guards] == [each for each in oracle.events if each.controllable]
+    assert [guard.event for guard in supervisor.guards] == [event for event in oracle.events if event.controllable]
     for guard in supervisor.guards:
         ever = False
         for state in oracle.controlled:
@@ -81,5 +81,5 @@ def test_bits_that_take_turns(model):
 def test_synthesis_never_restricts_data_events(model):
     synthesis = synthesize(model)
     if synthesis.supervisor is not None:
-        data = [each for each in synthesis.supervisor.guards if each.event.kind == sct.EventKind.data]
-        assert [each.synthesis for each in data] == [None] * len(data)
+        data = [guard for guard in synthesis.supervisor.guards if guard.event.kind == sct.EventKind.data]
+        assert [guard.synthesis for guard in data] == [None] * len(data)

@@ -16,9 +16,9 @@ def guards(synthesis):
     """For each guard that says something the text of its requirement and synthesis part."""
     assert synthesis.supervisor is not None
     return {
-        event_name(each.event): tuple(part and TEXT(part) for part in (each.requirement, each.synthesis))
-        for each in synthesis.supervisor.guards
-        if each.requirement is not None or each.synthesis is not None
+        event_name(guard.event): tuple(part and TEXT(part) for part in (guard.requirement, guard.synthesis))
+        for guard in synthesis.supervisor.guards
+        if guard.requirement is not None or guard.synthesis is not None
     }
 
 
@@ -174,7 +174,7 @@ def test_large_ranges_are_no_trouble():
 )
 def test_integers_saturate_at_both_bounds(value, reached):
     counter = plant("C", {"only": [edge("u", do={"n": value})]}, uncontrollable=["u"], variables={"n": "-2..3 = 0"})
-    counted = model([counter, lamp()], [needs("light", " or ".join(f"C.n == {each}" for each in reached))])
+    counted = model([counter, lamp()], [needs("light", " or ".join(f"C.n == {number}" for number in reached))])
     synthesis = synthesize(counted)
     assert synthesis.uncontrolled_states == len(set(reached))
     assert guards(synthesis) == {}

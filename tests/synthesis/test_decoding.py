@@ -28,7 +28,7 @@ MODEL = model(
     enumerations={"Colour": ["red", "green", "blue", "black", "white"]},
 )
 LAYOUT = Layout(MODEL)
-DOMAINS = {each.element.name: each for each in LAYOUT.state}
+DOMAINS = {domain.element.name: domain for domain in LAYOUT.state}
 CHOICES = st.sampled_from(sorted(DOMAINS)).flatmap(
     lambda name: st.tuples(st.just(DOMAINS[name]), st.sets(st.integers(0, DOMAINS[name].size - 1), min_size=1))
 )
@@ -54,7 +54,7 @@ def test_the_expression_is_true_for_the_codes_and_for_no_other(choice):
         state[oracle.places[element]] = value
         assert oracle.value(expression, tuple(state), {}) == (code in chosen), SctPrinter()(expression)
     leaves = (sct.VariableReference, sct.LocationReference)
-    assert cost(domain, ranges_of(chosen)) == sum(isinstance(each, leaves) for _, each in tree(expression))
+    assert cost(domain, ranges_of(chosen)) == sum(isinstance(part, leaves) for _, part in tree(expression))
 
 
 @given(CHOICES)

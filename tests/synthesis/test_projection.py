@@ -19,19 +19,19 @@ from tests.random_sct import sct_models
 def test_it_says_of_the_elements_what_the_states_do(model, data, widest):
     layout = Layout(model)
     encoding = Encoding(layout, Diagrams(layout.levels, 1 << 16))
-    steps = [each.plant_step for each in event_relations(model, encoding) if each.plant_step is not None]
+    steps = [relation.plant_step for relation in event_relations(model, encoding) if relation.plant_step is not None]
     states = reachable(encoding.diagrams, steps, encoding.initial, encoding.diagrams.true)
     elements = data.draw(st.lists(st.sampled_from(list(layout.domains)), unique=True))
     with patch.object(projection, "_WIDEST", widest):
         seen = Projection(states, encoding).onto(elements)
         factor, domains = Projection(states, encoding).factor(elements)
     assert not (states & ~seen).satisfiable()
-    others = [each for each in layout.state if each.element not in elements]
-    cube = encoding.diagrams.cube(level for each in others for level in each.levels)
+    others = [domain for domain in layout.state if domain.element not in elements]
+    cube = encoding.diagrams.cube(level for other in others for level in other.levels)
     assert seen.exists(cube) == states.exists(cube)
-    inside = {each.element for each in domains}
-    assert {each for each in elements if each in encoding.initial_codes} <= inside | {
-        each.element for each in layout.state if not each.levels
+    inside = {domain.element for domain in domains}
+    assert {element for element in elements if element in encoding.initial_codes} <= inside | {
+        domain.element for domain in layout.state if not domain.levels
     }
-    rest = states.exists(encoding.diagrams.cube(level for each in domains for level in each.levels))
+    rest = states.exists(encoding.diagrams.cube(level for domain in domains for level in domain.levels))
     assert factor & rest == states

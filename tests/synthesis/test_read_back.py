@@ -41,9 +41,9 @@ def read(text: str) -> sct.SupervisoryControlModel:
     for plant in model.plants:
         for location in plant.locations:
             for edge in edges_from(location):
-                for _, each in (found for update in edge.updates for found in tree(update)):
-                    if isinstance(each, sct.InputReference) and each.input not in edge.event.inputs:
-                        edge.event.inputs.append(each.input)
+                for _, part in (found for update in edge.updates for found in tree(update)):
+                    if isinstance(part, sct.InputReference) and part.input not in edge.event.inputs:
+                        edge.event.inputs.append(part.input)
     return model
 
 

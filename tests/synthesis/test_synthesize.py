@@ -24,10 +24,10 @@ from tests.synthesis.classics import philosophers
 from tests.synthesis.test_acceleration import turning
 bdd._FIRST_CAPACITY = 3000
 counters = model(turning(2), [needs("go0", "P0.n < P1.n + 3")])
-for each in philosophers(6), counters:
-    synthesis = synthesize(each)
+for made in philosophers(6), counters:
+    synthesis = synthesize(made)
     print(synthesis.bdd_nodes, synthesis.controlled_states)
-    print([each.synthesis and SctPrinter()(each.synthesis) for each in synthesis.supervisor.guards])
+    print([guard.synthesis and SctPrinter()(guard.synthesis) for guard in synthesis.supervisor.guards])
     print({**vars(synthesis.statistics), "seconds": None})
 """
 
@@ -50,7 +50,7 @@ def test_every_run_gives_the_same():
 
 def described(synthesis):
     text = SctPrinter()
-    guards = [each.synthesis and text(each.synthesis) for each in synthesis.supervisor.guards]
+    guards = [guard.synthesis and text(guard.synthesis) for guard in synthesis.supervisor.guards]
     return synthesis.uncontrolled_states, synthesis.controlled_states, synthesis.bdd_nodes, guards
 
 
@@ -92,8 +92,8 @@ def test_doubles_are_refused_where_they_stand(condition):
     made = model(
         [plant("P", {"only": [edge("c")]}, controllable=["c"], variables={"v": "0..3"})], [needs("c", condition)]
     )
-    for each in (made.requirements[0].condition, made.requirements[0].condition.left):
-        each.source = Place.parse("robot.rscd:3:7-3:16")
+    for part in (made.requirements[0].condition, made.requirements[0].condition.left):
+        part.source = Place.parse("robot.rscd:3:7-3:16")
     with pytest.raises(ModelError, match="has no place in an sct model") as caught:
         synthesize(made)
     [finding] = caught.value.diagnostics

@@ -70,20 +70,20 @@ def add_pit(model: sct.SupervisoryControlModel) -> None:
     model.plants.append(sct.Plant(name="pit", kind=sct.PlantKind.behaviour, events=[fall], locations=[edge, bottom]))
 
 
-def input_values(each: sct.Event) -> Iterator[dict[str, Value]]:
+def input_values(asked: sct.Event) -> Iterator[dict[str, Value]]:
     """All that may come with an event."""
-    for values in product(*(values_of(own.type) for own in each.inputs)):
-        yield {own.name: getattr(one, "name", one) for own, one in zip(each.inputs, values, strict=True)}
+    for values in product(*(values_of(own.type) for own in asked.inputs)):
+        yield {own.name: getattr(one, "name", one) for own, one in zip(asked.inputs, values, strict=True)}
 
 
 def making_it_possible(engine: Engine, state: State, name: str) -> set[str]:
     """The events after which, with some data, another is possible that is not now."""
     found = set()
-    for each in engine.roles.events:
-        for data in input_values(each):
+    for asked in engine.roles.events:
+        for data in input_values(asked):
             engine.state = state
-            if engine.perform(event_name(each), data) and engine.enabled(name):
-                found.add(event_name(each))
+            if engine.perform(event_name(asked), data) and engine.enabled(name):
+                found.add(event_name(asked))
     engine.state = state
     return found
 
@@ -95,13 +95,13 @@ def run(engine: Engine, steps: Sequence[TraceStep]) -> None:
 
 def some_states(engine: Engine, number: int = 12):
     """States that the engine comes to, breadth first."""
-    inputs = {event_name(each): bool(each.inputs) for each in engine.roles.events}
+    inputs = {event_name(event): bool(event.inputs) for event in engine.roles.events}
     seen = {engine.state: None}
     pending = [engine.state]
     for state in pending:
-        for each in engine.events:
+        for name in engine.events:
             engine.state = state
-            if not inputs[each] and engine.perform(each) and engine.state not in seen:
+            if not inputs[name] and engine.perform(name) and engine.state not in seen:
                 seen[engine.state] = None
                 pending.append(engine.state)
         if len(pending) >= number:
@@ -123,13 +123,13 @@ def test_an_event_in_a_state_is_what_the_engine_says(model):
             engine.state = state
             told = told_state(engine)
             codes = state_given(model, told) if told else {}
-            for each in engine.roles.events:
+            for asked in engine.roles.events:
                 engine.state = state
-                told = explain(system, each, codes)
+                told = explain(system, asked, codes)
                 assert told.situation.reach is Reach.SUPERVISED
                 assert {name: told.situation.state[name] for name in state} == dict(state)
-                assert told.by == engine.blocked_by(event_name(each))
-                assert told.allowed == engine.enabled(event_name(each))
+                assert told.by == engine.blocked_by(event_name(asked))
+                assert told.allowed == engine.enabled(event_name(asked))
                 event(f"by {told.by}")
                 check(engine, state, told)
 
@@ -161,10 +161,10 @@ def check(engine: Engine, state, told: Explanation) -> None:
         steps = [*told.situation.trace, *told.counterexample.trace, *told.counterexample.onwards]
         replay = Replay(engine.model, steps)
         end = replay.after(len(steps), requirements=True)
-        assert [each.event for each in told.counterexample.trace] == [name]
+        assert [step.event for step in told.counterexample.trace] == [name]
         assert is_blocked(replay.oracle, end)
-        assert {each.name for each in told.counterexample.unmarked} == {
-            each.name for each in engine.model.plants if is_never_marked(replay.oracle, each, end)
+        assert {plant.name for plant in told.counterexample.unmarked} == {
+            plant.name for plant in engine.model.plants if is_never_marked(replay.oracle, plant, end)
         }
 
 
@@ -176,7 +176,8 @@ def test_states_out_of_the_supervisors_reach_are_told_apart(model, requirement, 
     engine = supervised(model)
     oracle = Oracle(model)
     outside = sorted(
-        (oracle.uncontrolled - oracle.controlled), key=lambda each: str([getattr(part, "name", part) for part in each])
+        (oracle.uncontrolled - oracle.controlled),
+        key=lambda state: str([getattr(part, "name", part) for part in state]),
     )
     state = data.draw(st.sampled_from(outside))
     chosen = data.draw(st.sampled_from(engine.roles.events))
@@ -212,37 +213,39 @@ def test_what_never_happens(model):
     definitions = Definitions(oracle)
 
     def look(system: SynthesizedSystem) -> None:
-        for each in engine.roles.events:
-            told = possibility(system, each)
+        for asked in engine.roles.events:
+            told = possibility(system, asked)
             ever = any(
-                oracle.allows(each, state) if each.controllable else oracle.edges(each, state) is not None
+                oracle.allows(asked, state) if asked.controllable else oracle.edges(asked, state) is not None
                 for state in oracle.controlled
             )
             assert told.possible == ever
             if told.nearest is None:
-                assert not any(oracle.edges(each, state) is not None for state in oracle.uncontrolled)
+                assert not any(oracle.edges(asked, state) is not None for state in oracle.uncontrolled)
                 assert told.plants
                 continue
             event(f"nearest {told.nearest.situation.reach} {told.nearest.by}")
             fresh = Engine(model)
             if told.nearest.situation.reach is Reach.SUPERVISED:
                 run(fresh, told.nearest.situation.trace)
-                assert fresh.blocked_by(event_name(each)) == told.nearest.by
+                assert fresh.blocked_by(event_name(asked)) == told.nearest.by
             if not ever:
-                assert (told.nearest.by is Blocked.SYNTHESIS) == bool(definitions.held_back(each))
-                check_beyond(oracle, each, told.beyond)
-                check_conflict(oracle, each, told)
-                check_loosenings(model, told.loosenings, partial(possible, event_name(each)))
+                assert (told.nearest.by is Blocked.SYNTHESIS) == bool(definitions.held_back(asked))
+                check_beyond(oracle, asked, told.beyond)
+                check_conflict(oracle, asked, told)
+                check_loosenings(model, told.loosenings, partial(possible, event_name(asked)))
 
     explored(model, look)
 
 
-def check_beyond(oracle: Oracle, each: sct.Event, beyond: Explanation | None) -> None:
+def check_beyond(oracle: Oracle, chosen: sct.Event, beyond: Explanation | None) -> None:
     """It is there where plants and requirements allow the event in no controlled state, but in some other."""
     willing = [
-        state for state in oracle.uncontrolled if oracle.edges(each, state) is not None and oracle.required(each, state)
+        state
+        for state in oracle.uncontrolled
+        if oracle.edges(chosen, state) is not None and oracle.required(chosen, state)
     ]
-    enabled = any(oracle.edges(each, state) is not None for state in oracle.controlled)
+    enabled = any(oracle.edges(chosen, state) is not None for state in oracle.controlled)
     assert (beyond is not None) == (bool(willing) and enabled and not any(s in oracle.controlled for s in willing))
     if beyond is not None:
         replay = Replay(oracle.model, beyond.situation.trace)
@@ -250,9 +253,9 @@ def check_beyond(oracle: Oracle, each: sct.Event, beyond: Explanation | None) ->
         assert beyond.refusal is not None
 
 
-def check_conflict(oracle: Oracle, each: sct.Event, told: Possibility) -> None:
+def check_conflict(oracle: Oracle, asked: sct.Event, told: Possibility) -> None:
     """It is there where the requirements on the event allow it nowhere; what it names suffices for that."""
-    willing = [state for state in oracle.uncontrolled if oracle.edges(each, state) is not None]
+    willing = [state for state in oracle.uncontrolled if oracle.edges(asked, state) is not None]
     assert bool(told.conflict) == (told.nearest.by is Blocked.REQUIREMENT and told.beyond is None)
     if told.conflict:
         assert not any(
@@ -283,7 +286,7 @@ def check_loosenings(model, loosenings, helps) -> None:
         assert not helps(model)
         model.requirements.extend(requirements)
     else:
-        assert {each.requirements for each in loosenings} == {(each,) for each in helpful}
+        assert {loosening.requirements for loosening in loosenings} == {(each,) for each in helpful}
 
 
 def changes_something(model, event):
@@ -305,39 +308,39 @@ def test_why_there_is_no_supervisor(model):
     synthesis = diagnose(model)
     told = explored(model, emptiness)
     assert told.reason == synthesis.reason
-    assert [each.element for each in told.stuck] == [
-        each.locations[told.reason.codes[each]] for each in told.reason.unmarked
+    assert [note.element for note in told.stuck] == [
+        plant.locations[told.reason.codes[plant]] for plant in told.reason.unmarked
     ]
     oracle = Oracle(model)
     before = 1 if told.reason.event is not None and told.reason.event.controllable else 0
     end = Replay(model, told.reason.trace).after(len(told.reason.trace) - before, requirements=True)
     onwards = oracle.reach(end, requirements=True)
-    assert {each.element for each in told.blamed} == {
-        each
-        for each in model.requirements
+    assert {note.element for note in told.blamed} == {
+        requirement
+        for requirement in model.requirements
         if any(
-            oracle.edges(each.event, state) is not None
-            and oracle.value(each.condition, state, {}) != (each.kind == sct.RequirementKind.needs)
+            oracle.edges(requirement.event, state) is not None
+            and oracle.value(requirement.condition, state, {}) != (requirement.kind == sct.RequirementKind.needs)
             for state in onwards
         )
     }
     # What forbids an event that changes nothing keeps the robot from nowhere.
-    at_fault = {each.element for each in told.blamed if changes_something(model, each.element.event)}
+    at_fault = {note.element for note in told.blamed if changes_something(model, note.element.event)}
     if before:
         at_fault = {
-            each
-            for each in model.requirements
-            if each.event is told.reason.event
-            and oracle.value(each.condition, end, {}) != (each.kind == sct.RequirementKind.needs)
+            requirement
+            for requirement in model.requirements
+            if requirement.event is told.reason.event
+            and oracle.value(requirement.condition, end, {}) != (requirement.kind == sct.RequirementKind.needs)
         }
     assert set(told.reason.requirements) == (at_fault if told.reason.event is not None else set())
     event(f"loosenings {told.loosenings and len(told.loosenings)}")
     check_loosenings(model, told.loosenings, lambda other: synthesize(other).supervisor is not None)
-    for each in told.loosenings or ():
-        for own in each.requirements:
+    for loosening in told.loosenings or ():
+        for own in loosening.requirements:
             model.requirements.remove(own)
-        assert synthesize(model).controlled_states == each.states
-        model.requirements.extend(each.requirements)
+        assert synthesize(model).controlled_states == loosening.states
+        model.requirements.extend(loosening.requirements)
 
 
 @given(sct_models())
@@ -346,6 +349,6 @@ def test_a_state_reads_as_it_is_written(model):
     engine = supervised(model)
     told = told_state(engine)
     codes = state_given(model, told) if told else {}
-    whole = {each: codes.get(each, 0) for plant in model.plants for each in (plant, *plant.variables)}
+    whole = {variable: codes.get(variable, 0) for plant in model.plants for variable in (plant, *plant.variables)}
     shown = whole_state(model, whole)
     assert {name: shown[name] for name in engine.state} == dict(engine.state)

@@ -17,10 +17,10 @@ EXAMPLES = sorted((Path(__file__).parents[3] / "examples").glob("*/*.rscd"))
 USHER = Path(__file__).parents[2] / "m2t" / "layer" / "usher.rscd"
 
 
-@pytest.mark.parametrize("path", [*EXAMPLES, USHER], ids=lambda each: each.stem)
+@pytest.mark.parametrize("path", [*EXAMPLES, USHER], ids=lambda path: path.stem)
 def test_without_each_requirement(path: Path) -> None:
     robot = robosc.load(path)
-    written = [each for each in robot.definitions if isinstance(each, rsc.Requirement)]
+    written = [definition for definition in robot.definitions if isinstance(definition, rsc.Requirement)]
 
     def look(system: SynthesizedSystem) -> list[tuple[int, int]]:
         texts = requirement_texts(system)
@@ -28,7 +28,7 @@ def test_without_each_requirement(path: Path) -> None:
         counts = []
         for text in texts:
             other = system.without(frozenset(text))
-            left_out = next(each for each in written if text[0].source == each.source)
+            left_out = next(requirement for requirement in written if text[0].source == requirement.source)
             counts.append((system.encoding.count(other.controlled), states_without(robot, left_out)))
         return counts
 

@@ -32,11 +32,11 @@ def porter() -> rosgraph.RosGraph:
 
 
 def test_the_supervisor_knows(porter: rosgraph.RosGraph) -> None:
-    guards = {event_name(each.event): each for each in porter.model.supervisor.guards}
-    assert {name for name, each in guards.items() if each.explanation} == {"message_enter.c_trigger"}
+    guards = {event_name(guard.event): guard for guard in porter.model.supervisor.guards}
+    assert {name for name, guard in guards.items() if guard.explanation} == {"message_enter.c_trigger"}
     assert guards["message_enter.c_trigger"].explanation == WHY
     # What no requirement ever forbids is not among those behind a guard.
-    behind = {name: [each.text for each in guard.requirements] for name, guard in guards.items()}
+    behind = {name: [requirement.text for requirement in guard.requirements] for name, guard in guards.items()}
     assert behind == {
         "message_open.c_trigger": [],
         "message_hold.c_trigger": [],
@@ -50,9 +50,9 @@ def test_a_saved_supervisor_knows_it_still(porter: rosgraph.RosGraph, tmp_path: 
     for name, text in robosc.generate("xmi", Models(porter.model, porter)).items():
         (tmp_path / name).write_text(text)
     read = xmi.load(str(tmp_path / "Porter.sct.xmi"))
-    guards = [(each.explanation, [own.text for own in each.requirements]) for each in read.supervisor.guards]
+    guards = [(guard.explanation, [own.text for own in guard.requirements]) for guard in read.supervisor.guards]
     assert guards == [
-        (each.explanation, [own.text for own in each.requirements]) for each in porter.model.supervisor.guards
+        (guard.explanation, [own.text for own in guard.requirements]) for guard in porter.model.supervisor.guards
     ]
 
 
@@ -86,10 +86,13 @@ def test_a_generated_layer_says_it_when_it_blocks(porter: rosgraph.RosGraph, tar
 
 def test_so_does_a_layer_that_runs(porter: rosgraph.RosGraph, tmp_path: Path) -> None:
     port, configuration = FakePort(), Configuration()
-    values = {each.name: each.default for each in layer_parameters(porter, configuration, str(tmp_path / "log"))}
+    values = {
+        parameter.name: parameter.default
+        for parameter in layer_parameters(porter, configuration, str(tmp_path / "log"))
+    }
     layer = Layer(porter, Settings(values, configuration), port, EventLoop(lambda: port.time))
     layer.start()
-    sendings = {each.name: each for publisher in porter.publishers for each in publisher.sendings}
+    sendings = {sending.name: sending for publisher in porter.publishers for sending in publisher.sendings}
     assert layer.passes(sendings["open"])
     assert not layer.passes(sendings["enter"])
     [report] = [json.loads(text) for what, text in port.told if what == "blocked"]

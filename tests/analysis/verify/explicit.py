@@ -31,7 +31,7 @@ class Explicit:
 
     @cached_property
     def guards(self) -> dict[sct.Event, sct.EventGuard]:
-        return {each.event: each for each in self.model.supervisor.guards}
+        return {guard.event: guard for guard in self.model.supervisor.guards}
 
     def guarded(self, event: sct.Event, state: State) -> bool:
         guard = self.guards.get(event)
@@ -56,7 +56,7 @@ class Explicit:
         return self._moves[state]
 
     def silent(self, state: State) -> list[Move]:
-        return [each for each in self.moves(state) if each[0].kind in _SILENT]
+        return [move for move in self.moves(state) if move[0].kind in _SILENT]
 
     # The control loop, in configurations: a state, and where in a batch it is
 
@@ -73,7 +73,7 @@ class Explicit:
     def failed(self, event: sct.Event, state: State) -> bool:
         """Whether the event is the reset of what has failed."""
         edges = [edge for location in plant_of(event).locations for edge in location.edges]
-        failed = {each.target for each in edges if each.event.kind == sct.EventKind.error}
+        failed = {edge.target for edge in edges if edge.event.kind == sct.EventKind.error}
         return event.kind == sct.EventKind.reset and state[self.oracle.places[plant_of(event)]] in failed
 
     def rests(self, state: State) -> bool:
@@ -103,7 +103,8 @@ class Explicit:
                 found.append((event, (after, None)))
             elif self.rests(state) or self.overruns:
                 batch = next(
-                    ((number, each.index(event) + 1) for number, each in enumerate(self.batches) if event in each), None
+                    ((number, batch.index(event) + 1) for number, batch in enumerate(self.batches) if event in batch),
+                    None,
                 )
                 found.append((event, (after, batch)))
         return found
@@ -122,9 +123,12 @@ class Explicit:
     def loop_blocked(self) -> set[State]:
         """The states of the loop from which it comes to no marked one in which it rests; it waits only at rest."""
         alive: set[Configuration] = {
-            (each, None) for each in self.loop_states if self.oracle.is_marked(each) and self.rests(each)
+            (state, None) for state in self.loop_states if self.oracle.is_marked(state) and self.rests(state)
         }
-        places = [None, *((batch, done) for batch, each in enumerate(self.batches) for done in range(1, len(each) + 1))]
+        places = [
+            None,
+            *((batch, done) for batch, events in enumerate(self.batches) for done in range(1, len(events) + 1)),
+        ]
         left = {(state, place) for state in self.states for place in places} - alive
 
         def leads(here: Configuration) -> bool:
@@ -141,22 +145,22 @@ class Explicit:
 
     def is_run_of_the_loop(self, trace: Iterable[TraceStep]) -> bool:
         """Whether the control loop can let these events happen."""
-        events = {event_name(each): each for each in self.oracle.events}
+        events = {event_name(event): event for event in self.oracle.events}
         here: set[Configuration] = {(self.oracle.initial, None)}
         for number, step in enumerate(trace := list(trace)):
             after = self.after(trace[: number + 1])
             here |= {(state, None) for state, _ in here}
             here = {
                 following
-                for each in here
-                for event, following in self.loop_moves(each)
+                for state in here
+                for event, following in self.loop_moves(state)
                 if event is events[step.event] and following[0] == after
             }
         return bool(here)
 
     def torn(self) -> set[State]:
         """The states of the loop that end in several, whatever resets of what has failed are held back meanwhile."""
-        resets = [each for each in self.oracle.events if each.kind == sct.EventKind.reset]
+        resets = [event for event in self.oracle.events if event.kind == sct.EventKind.reset]
         found = set()
         for size in range(len(resets) + 1):
             for held in combinations(resets, size):
@@ -165,9 +169,9 @@ class Explicit:
 
     def ends(self, state: State, held: Iterable[sct.Event] = ()) -> set[State]:
         def silent(here: State) -> list[Move]:
-            return [each for each in self.silent(here) if not (each[0] in held and self.failed(each[0], here))]
+            return [silent for silent in self.silent(here) if not (silent[0] in held and self.failed(silent[0], here))]
 
-        return {each for each in self.distances(silent, state) if not silent(each)}
+        return {distance for distance in self.distances(silent, state) if not silent(distance)}
 
     def distances(self, moves: Callable[[State], list[Move]], start: State) -> dict[State, int]:
         """All states that the moves lead to, with the least number of them."""
@@ -212,7 +216,7 @@ class Explicit:
 
     def _ready(self, event: sct.Event, plant: sct.Plant, state: State) -> bool:
         location = state[self.oracle.places[plant]]
-        return any(each.event is event and self.oracle.value(each.guard, state, {}) for each in edges_from(location))
+        return any(edge.event is event and self.oracle.value(edge.guard, state, {}) for edge in edges_from(location))
 
     def broken(self, requirement: sct.Requirement) -> set[State]:
         wanted = requirement.kind == sct.RequirementKind.needs
@@ -256,21 +260,25 @@ class Explicit:
     def after(self, trace: Iterable[TraceStep], state: State | None = None) -> State:
         """The state to which a trace leads: what it leaves open makes no difference."""
         state = self.oracle.initial if state is None else state
-        events = {event_name(each): each for each in self.oracle.events}
+        events = {event_name(event): event for event in self.oracle.events}
         for step in trace:
             event = events[step.event]
             assert self.allowed(event, state), step
             found = {
                 after
                 for after, inputs in self._all_successors(event, state)
-                if all(_shown(inputs[each]) == step.inputs[each.name] for each in inputs if each.name in step.inputs)
+                if all(
+                    _shown(inputs[parameter]) == step.inputs[parameter.name]
+                    for parameter in inputs
+                    if parameter.name in step.inputs
+                )
             }
             assert len(found) == 1, step
             state = found.pop()
         return state
 
     def _all_successors(self, event: sct.Event, state: State) -> Iterable[tuple[State, dict]]:
-        for values in product(*(values_of(each.type) for each in event.inputs)):
+        for values in product(*(values_of(parameter.type) for parameter in event.inputs)):
             inputs = dict(zip(event.inputs, values, strict=True))
             yield self.oracle.successor(event, state, inputs), inputs
 

@@ -25,7 +25,7 @@ def supervised_models(draw: st.DrawFn) -> sct.SupervisoryControlModel:
     supervisor = synthesize(model).supervisor
     if supervisor is None:
         events = [event for plant in model.plants for event in plant.events if event.controllable]
-        supervisor = sct.Supervisor(guards=[sct.EventGuard(event=each, everEnabled=True) for each in events])
+        supervisor = sct.Supervisor(guards=[sct.EventGuard(event=event, everEnabled=True) for event in events])
     model.supervisor = supervisor
     for guard in supervisor.guards if draw(st.booleans()) else ():
         if draw(st.booleans()):
@@ -44,7 +44,7 @@ def test_random_models(model: sct.SupervisoryControlModel) -> None:
     explicit = Explicit(model)
     assume(len(explicit.states) < 100)
     verdicts = verify_system(model)
-    by_name = {each.property: each for each in verdicts}
+    by_name = {verdict.property: verdict for verdict in verdicts}
     faults = {
         "non-blocking": explicit.blocked(explicit.moves, explicit.states),
         "controllability": explicit.uncontrolled(),
@@ -60,8 +60,8 @@ def test_random_models(model: sct.SupervisoryControlModel) -> None:
     assert (by_name["no dead events"].outcome is Outcome.REFUTED) == bool(explicit.dead())
     check_silent_events(explicit, by_name)
     check_control_loop(explicit, by_name["non-blocking in the control loop"])
-    for each in verdicts:
-        event(f"{each.property.split(' on ')[0]} {each.outcome}")
+    for reached in verdicts:
+        event(f"{reached.property.split(' on ')[0]} {reached.outcome}")
 
 
 def test_random_models_accelerated() -> None:
@@ -78,17 +78,19 @@ def check(explicit: Explicit, verdict: Verdict, faults: set[State], *, appended:
     assert verdict.explanation
     trace = verdict.trace[:-1] if appended else verdict.trace
     assert explicit.after(trace) in faults
-    assert len(trace) == min(explicit.states[each] for each in faults)
+    assert len(trace) == min(explicit.states[fault] for fault in faults)
 
 
 def check_silent_events(explicit: Explicit, verdicts: dict[str, Verdict]) -> None:
-    finite, bounded, confluent = (verdicts[each] for each in ("finite response", "bounded response", "confluence"))
+    finite, bounded, confluent = (
+        verdicts[question] for question in ("finite response", "bounded response", "confluence")
+    )
     divergent = explicit.divergent()
     assert (finite.outcome is Outcome.REFUTED) == bool(divergent)
     if divergent:
         start = explicit.after(finite.trace)
         assert finite.onwards
-        assert all(each.event.rpartition(".")[2].startswith(("c_tau", "c_reset")) for each in finite.onwards)
+        assert all(onward.event.rpartition(".")[2].startswith(("c_tau", "c_reset")) for onward in finite.onwards)
         assert explicit.after(finite.onwards, start) == start
         assert bounded.outcome is Outcome.REFUTED
         return
@@ -128,20 +130,23 @@ def internal_models(draw: st.DrawFn) -> sct.SupervisoryControlModel:
     """Models whose silent events mostly lead downhill, and meet: under conditions on each other's locations."""
     names = [f"p{index}" for index in range(draw(st.integers(1, 3)))]
     locations = [f"l{index}" for index in range(4)]
-    anywhere = [None, *(f"{prefix}{name}.{each}" for name in names for each in locations for prefix in ("", "not "))]
+    anywhere = [
+        None,
+        *(f"{prefix}{name}.{location}" for name in names for location in locations for prefix in ("", "not ")),
+    ]
     plants = []
     for name in names:
         silent = [f"c_tau{index}" for index in range(1, draw(st.integers(1, 2)) + 1)] + ["c_reset"]
         edges = {
             location: [
-                edge(each, to=draw(st.sampled_from(locations[place + 1 :])), when=draw(st.sampled_from(anywhere)))
-                for each in silent
+                edge(silent, to=draw(st.sampled_from(locations[place + 1 :])), when=draw(st.sampled_from(anywhere)))
+                for silent in silent
                 if place < 3 and draw(st.booleans())
             ]
             for place, location in enumerate(locations)
         }
-        used = {each.event for location in locations for each in edges[location]}
-        edges["l0"] += [edge(each, to="l1") for each in silent if each not in used]
+        used = {edge.event for location in locations for edge in edges[location]}
+        edges["l0"] += [edge(silent, to="l1") for silent in silent if silent not in used]
         for location in locations:
             edges[location].append(edge("u_response", to=draw(st.sampled_from(locations))))
         if draw(st.integers(0, 5)) == 0:
@@ -158,11 +163,11 @@ def internal_models(draw: st.DrawFn) -> sct.SupervisoryControlModel:
 @given(internal_models())
 @settings(max_examples=40, suppress_health_check=[HealthCheck.too_slow])
 def test_internal_events(made: sct.SupervisoryControlModel) -> None:
-    by_name = {each.property: each for each in verify_system(made)}
+    by_name = {verdict.property: verdict for verdict in verify_system(made)}
     check_silent_events(Explicit(made), by_name)
     check_control_loop(Explicit(made), by_name["non-blocking in the control loop"])
-    for each in ("finite response", "bounded response", "confluence"):
-        event(f"{each} {by_name[each].outcome}")
+    for question in ("finite response", "bounded response", "confluence"):
+        event(f"{question} {by_name[question].outcome}")
 
 
 @given(sct_models())
@@ -170,8 +175,8 @@ def test_internal_events(made: sct.SupervisoryControlModel) -> None:
 def test_what_synthesis_makes_keeps_its_promises(model: sct.SupervisoryControlModel) -> None:
     model.supervisor = synthesize(model).supervisor
     assume(model.supervisor is not None)
-    by_name = {each.property: each for each in verify_system(model)}
+    by_name = {verdict.property: verdict for verdict in verify_system(model)}
     promised = ["non-blocking", "controllability", "maximal permissiveness", *map(requirement_name, model.requirements)]
-    assert {by_name[each].outcome for each in promised} == {Outcome.PROVED}
+    assert {by_name[question].outcome for question in promised} == {Outcome.PROVED}
     divergent = by_name["finite response"].outcome is Outcome.REFUTED
     assert (model.supervisor.settlingBound is None) == divergent

@@ -25,7 +25,7 @@ def models_of(name: str) -> Models:
 
 
 def guard_of(model: sct.SupervisoryControlModel, event: str) -> sct.EventGuard:
-    return next(each for each in model.supervisor.guards if event_name(each.event) == event)
+    return next(guard for guard in model.supervisor.guards if event_name(guard.event) == event)
 
 
 def weaken_a_requirement(model: sct.SupervisoryControlModel) -> None:
@@ -44,16 +44,16 @@ def forbid_an_event(model: sct.SupervisoryControlModel) -> None:
 
 
 def forbid_it_in_one_state(model: sct.SupervisoryControlModel) -> None:
-    blocked = next(each for plant in model.plants for each in plant.locations if each.name == "blocked")
+    blocked = next(location for plant in model.plants for location in plant.locations if location.name == "blocked")
     reference = ex.Negation(operand=sct.LocationReference(location=blocked))
     guard_of(model, "message_halt.c_trigger").synthesis = reference
 
 
 def drop_a_self_loop(model: sct.SupervisoryControlModel) -> None:
     """The one by which a component lets come what does not concern it."""
-    component = next(each for each in model.plants if each.name == "component_LineDetector")
-    location = next(each for each in component.locations if each.name == "searching")
-    loop = next(each for each in location.edges if each.target is location)
+    component = next(plant for plant in model.plants if plant.name == "component_LineDetector")
+    location = next(location for location in component.locations if location.name == "searching")
+    loop = next(edge for edge in location.edges if edge.target is location)
     location.edges.remove(loop)
 
 
@@ -76,12 +76,12 @@ MUTATIONS = {
 }
 
 
-@pytest.mark.parametrize("mutate", MUTATIONS, ids=lambda each: each.__name__)
+@pytest.mark.parametrize("mutate", MUTATIONS, ids=lambda mutation: mutation.__name__)
 def test_a_mutation_is_found(mutate: Callable[[sct.SupervisoryControlModel], None]) -> None:
     model = models_of("line_follower").sct
-    assert {each.outcome for each in verify_system(model)} == {Outcome.PROVED}
+    assert {verdict.outcome for verdict in verify_system(model)} == {Outcome.PROVED}
     mutate(model)
-    refuted = {each.property for each in verify_system(model) if each.outcome is Outcome.REFUTED}
+    refuted = {verdict.property for verdict in verify_system(model) if verdict.outcome is Outcome.REFUTED}
     assert refuted == MUTATIONS[mutate]
 
 

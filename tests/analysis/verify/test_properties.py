@@ -14,7 +14,7 @@ from tests.sct_models import disables, edge, model, needs, plant
 
 
 def verdict(made: sct.SupervisoryControlModel, name: str) -> Verdict:
-    return next(each for each in verify_system(made) if each.property == name)
+    return next(verdict for verdict in verify_system(made) if verdict.property == name)
 
 
 def refuted(made: sct.SupervisoryControlModel, name: str) -> tuple[str, list[str], list[str], list[str]]:
@@ -22,7 +22,7 @@ def refuted(made: sct.SupervisoryControlModel, name: str) -> tuple[str, list[str
     found = verdict(made, name)
     assert found.outcome is Outcome.REFUTED
     traces = (found.trace, found.onwards, found.other)
-    return found.explanation, *([str(each) for each in steps] for steps in traces)
+    return found.explanation, *([str(step) for step in steps] for steps in traces)
 
 
 def door() -> Any:
@@ -293,7 +293,7 @@ def bolt(*leaving: Any, **others: Any) -> Any:
         "out": [edge("far.u_response"), edge("near.u_response")],
         **others,
     }
-    taus = sorted({each.event for edges in locations.values() for each in edges if each.event.startswith("c_tau")})
+    taus = sorted({edge.event for edges in locations.values() for edge in edges if edge.event.startswith("c_tau")})
     return plant("bolt", locations, controllable=taus, marked=list(locations), origin="Bolt")
 
 
@@ -339,7 +339,7 @@ def test_what_has_failed_is_reset_later() -> None:
             "over": [edge("c_reset", to="idle")],
         }
         own = ["u_error", "u_response"]
-        call["waiting"] += [edge(each) for each in own if each != failing]
+        call["waiting"] += [edge(event) for event in own if event != failing]
         watch = {
             "off": [edge("far.u_response", to="torn", when="call.over")],
             "torn": [edge("c_tau1", to="one"), edge("c_tau2", to="other"), edge("far.u_response")],

@@ -108,7 +108,7 @@ def with_changed_cif(pattern: str, replacement: str, kind: str = "supervised.cif
 def test_the_examples_are_translated_faithfully(name: str) -> None:
     models = models_of(name)
     in_c, in_cif = validate(models, Configuration())
-    assert [(each.outcome, each.explanation) for each in (in_c, in_cif)] == [(Outcome.PROVED, "")] * 2
+    assert [(verdict.outcome, verdict.explanation) for verdict in (in_c, in_cif)] == [(Outcome.PROVED, "")] * 2
     assert in_c.evidence.startswith(f"{models.sct.supervisor.controlledStates:,} states, ")
 
 
@@ -117,13 +117,15 @@ def test_the_examples_are_translated_faithfully(name: str) -> None:
 def test_random_models_are_translated_faithfully(made: sct.SupervisoryControlModel) -> None:
     if supervised(made).supervisor is None:
         made.supervisor = sct.Supervisor(
-            guards=[sct.EventGuard(event=each) for plant in made.plants for each in plant.events if each.controllable]
+            guards=[
+                sct.EventGuard(event=event) for plant in made.plants for event in plant.events if event.controllable
+            ]
         )
     verdicts = validate(Models(made), Configuration())
-    assert [(each.outcome, each.explanation) for each in verdicts] == [(Outcome.PROVED, "")] * 2
+    assert [(verdict.outcome, verdict.explanation) for verdict in verdicts] == [(Outcome.PROVED, "")] * 2
 
 
-@pytest.mark.parametrize("corner", [each for each in corners.ALL if each is not corners.wide])
+@pytest.mark.parametrize("corner", [corner for corner in corners.ALL if corner is not corners.wide])
 def test_corners_are_translated_faithfully(corner) -> None:
     made = corner()
     assert validate_c(made, c_of(made)).outcome is Outcome.PROVED
@@ -203,7 +205,7 @@ C_MUTANTS = {
 def test_changed_c_is_refuted(pattern: str, replacement: str, trace: list[str], explanation: str) -> None:
     verdict = with_changed_c(pattern, replacement)
     assert (verdict.outcome, verdict.explanation) == (Outcome.REFUTED, explanation)
-    assert [str(each) for each in verdict.trace] == trace
+    assert [str(step) for step in verdict.trace] == trace
 
 
 def test_c_that_changes_something_when_asked_in_vain_is_refuted() -> None:
@@ -392,7 +394,7 @@ CIF_MUTANTS = {
 def test_changed_cif_is_refuted(pattern: str, replacement: str, trace: list[str], explanation: str) -> None:
     verdict = with_changed_cif(pattern, replacement)
     assert (verdict.outcome, verdict.explanation) == (Outcome.REFUTED, explanation)
-    assert [str(each) for each in verdict.trace] == trace
+    assert [str(step) for step in verdict.trace] == trace
 
 
 @pytest.mark.parametrize(
@@ -588,7 +590,7 @@ CHOSEN_MUTANTS = {
 
 @pytest.mark.parametrize(
     ("kind", "pattern", "replacement", "trace", "explanation"),
-    [(kind, *each) for kinds, *each in CHOSEN_MUTANTS.values() for kind in kinds],
+    [(kind, *mutant) for kinds, *mutant in CHOSEN_MUTANTS.values() for kind in kinds],
     ids=[f"{name}-{kind}" for name, (kinds, *_) in CHOSEN_MUTANTS.items() for kind in kinds],
 )
 def test_either_file_of_cif_is_compared(
@@ -602,7 +604,7 @@ def test_either_file_of_cif_is_compared(
     file = "the generated CIF" if kind == "supervised.cif" else "the generated CIF without supervisor"
     assert verdict.outcome is Outcome.REFUTED
     assert verdict.explanation.startswith(explanation.replace("FILE", file))
-    assert [str(each) for each in verdict.trace] == trace
+    assert [str(step) for step in verdict.trace] == trace
 
 
 LOOP_MUTANTS = {
