@@ -71,7 +71,7 @@ def _condition_lowered(expression: ex.Expression) -> Generator[_Part, Any, ex.Ex
         made.append((yield operand, False))  # noqa: PERF401 - no comprehension yields
     if isinstance(expression, ex.Conditional):
         return ex.Conditional(condition=made[0], then=made[1], otherwise=made[2])
-    return with_operands(type(expression), made)
+    return with_operands(expression, made)
 
 
 def assigned(variable: sct.DiscreteVariable, value: ex.Expression) -> ex.Expression:
