@@ -299,6 +299,8 @@ class Encoding:
         kind = type(expression)
         if kind in _ARITHMETIC:
             return _ARITHMETIC[kind](*parts)
+        if isinstance(expression, ex.FunctionCall) and expression.function == "mod":
+            return self._modulo(*parts)
         if kind in _LOGICAL:
             vector: Vector = (_LOGICAL[kind](*(part[0] for part in parts)), self.diagrams.false)
         elif kind in _COMPARISON:
@@ -310,6 +312,18 @@ class Encoding:
             vector = self._atom(expression)
         self._vectors[expression] = vector
         return vector
+
+    def _modulo(self, value: Vector, divisor: Vector) -> Vector:
+        """The remainder by a constant: from the sign down, each bit doubles what is left of those above it."""
+        number = arithmetic.value_of(divisor)
+        assert number is not None
+        none = arithmetic.constant(self.diagrams, 0)
+        *bits, sign = value
+        left = arithmetic.choose(sign, arithmetic.constant(self.diagrams, number - 1), none)
+        for bit in reversed(bits):
+            doubled = (bit, *left)
+            left = arithmetic.choose(arithmetic.less(doubled, divisor), doubled, arithmetic.subtract(doubled, divisor))
+        return left
 
     def _atom(self, expression: ex.Expression) -> Vector:
         match expression:

@@ -35,7 +35,7 @@ _ATOMS = (
     sct.VariableReference,
     sct.InputReference,
 )
-_NUMERIC = (ex.IntegerLiteral, ex.Addition, ex.Subtraction, ex.Multiplication, ex.UnaryMinus)
+_NUMERIC = (ex.IntegerLiteral, ex.Addition, ex.Subtraction, ex.Multiplication, ex.UnaryMinus, ex.FunctionCall)
 _Comparison = type[ex.BinaryExpression]
 #: Alternatives, of which the first counts whose condition holds; the last has none.
 _Pieces = list[tuple[ex.Expression | None, Linear]]
@@ -208,6 +208,9 @@ def _number_lowered(expression: ex.Expression) -> Generator[_Part, Any, _Pieces]
         case ex.Multiplication():
             left, right = (yield expression.left, True), (yield expression.right, True)
             return _product(expression, left, right)
+        case ex.FunctionCall(function="mod"):
+            value, divisor = (yield expression.arguments[0], True), (yield expression.arguments[1], True)
+            return _modulo(expression, value, divisor[0][1].constant)
         case ex.Conditional():
             chosen = yield expression.condition, False
             then = yield expression.then, True
@@ -242,6 +245,19 @@ def _product(expression: ex.Multiplication, left: _Pieces, right: _Pieces) -> _P
             equal = ex.Equation(left=copied(split), right=_number(value))
             guard = condition(equal)
         made += [(_both(guard, other), piece.times(value)) for other, piece in others]
+    return made
+
+
+def _modulo(expression: ex.FunctionCall, values: _Pieces, divisor: int) -> _Pieces:
+    """Split by how often the divisor goes into the value."""
+    made: _Pieces = []
+    for guard, value in values:
+        low, high = (bound // divisor for bound in value.range())
+        _limit(expression, len(made) + high - low + 1)
+        for times in range(low, high + 1):
+            rest = value + Linear(-times * divisor)
+            below = _against_zero(ex.LessThan, rest + Linear(-divisor), expression) if times < high else None
+            made.append((_both(guard, below), rest))
     return made
 
 
