@@ -64,7 +64,7 @@ class Roles:
     @cached_property
     def data(self) -> tuple[tuple[sct.Event, ...], ...]:
         """The events that choose what data goes out, plant by plant, most wanted first."""
-        chosen = ([each for each in plant.events if each.kind == sct.EventKind.data] for plant in self.model.plants)
+        chosen = ([event for event in plant.events if event.kind == sct.EventKind.data] for plant in self.model.plants)
         return tuple(tuple(events) for events in chosen if events)
 
     @cached_property
@@ -86,7 +86,7 @@ class Roles:
     def batches(self) -> tuple[tuple[sct.Event, ...], ...]:
         """The events of each message from the robot, two or more: they happen with nothing in between."""
         kind = sct.PlantKind.message
-        return tuple(each for each in self.sources if len(each) > 1 and plant_of(each[0]).kind == kind)
+        return tuple(events for events in self.sources if len(events) > 1 and plant_of(events[0]).kind == kind)
 
     @cached_property
     def shared_topics(self) -> tuple[tuple[sct.Event, ...], ...]:

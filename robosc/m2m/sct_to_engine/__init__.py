@@ -74,7 +74,7 @@ def _transform(model: sct.SupervisoryControlModel, polled: int) -> engine.Engine
     incremental = len(events) > polled and any(event.role != engine.Role.incoming for event in events.values())
     lower = Lowering(Terms(), variables, inputs)
     guards = combine_guards(model, edges, variables, lower)
-    shared = share_conditions(guards, events, incremental=incremental)
+    shared = share_conditions(guards, events, lower.terms, incremental=incremental)
     effects = {event: merge_effects(edges[event], variables, lower) for event in events}
     made = engine.EngineModel(
         name=model.name,

@@ -37,6 +37,9 @@ def build_expression(
             built.append(_built(term, operands))
         elif shared is not None and term in shared.conditions and not (body and term is root):
             built.append(engine.ConditionReference(condition=shared.conditions[term]))
+        elif shared is not None and term in shared.denied and not (body and term is root):
+            reference = engine.ConditionReference(condition=shared.conditions[shared.denied[term]])
+            built.append(ex.Negation(operand=reference))
         elif term.operands:
             parts = term.operands if shared is None else shared.operands(term)
             pending.append((term, len(parts)))

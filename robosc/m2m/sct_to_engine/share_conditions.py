@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from robosc.m2m.sct_to_engine.combine_guards import GuardTerms
-    from robosc.m2m.sct_to_engine.terms import Term
+    from robosc.m2m.sct_to_engine.terms import Term, Terms
     from robosc.metamodel import expression as ex
 
 #: In how many guards a single comparison of a variable is to be for an incremental loop to compute it once for all.
@@ -28,8 +28,10 @@ _Owners = dict["Term", dict[object, None]]
 class Shared:
     """Terms that are shared, and how others are put together from them."""
 
-    def __init__(self, terms: Sequence[Term]) -> None:
+    def __init__(self, terms: Sequence[Term], opposites: Mapping[Term, Term]) -> None:
         self.conditions = {term: engine.Condition(name=f"condition_{number}") for number, term in enumerate(terms, 1)}
+        #: Terms that are the opposite of a shared one.
+        self.denied = {term: shared for term, shared in opposites.items() if shared in self.conditions}
         parts = Counter(operand for term in terms for operand in term.operands)
         #: By the operand that the fewest of them have.
         self._with: dict[Term, list[Term]] = {}
@@ -68,8 +70,8 @@ class Shared:
         pending = list(roots)
         while pending:
             term = pending.pop()
-            if term in self.conditions:
-                found[term] = None
+            if term in self.conditions or term in self.denied:
+                found[self.denied.get(term, term)] = None
             elif term not in seen:
                 seen.add(term)
                 pending += self.operands(term)
@@ -92,23 +94,23 @@ class Shared:
 
 
 def share_conditions(
-    guards: Mapping[sct.Event, GuardTerms], events: Mapping[sct.Event, engine.Event], *, incremental: bool
+    guards: Mapping[sct.Event, GuardTerms], events: Mapping[sct.Event, engine.Event], terms: Terms, *, incremental: bool
 ) -> Shared:
     """The terms that are shared; inner ones come before those that they are part of.
 
-    Shared is a junction that several guards or other shared conditions refer to; where the control loop is incremental
-    also a comparison of a variable that many guards ask for by itself.
+    Shared is a junction that several guards or other shared conditions refer to, as it is or denied; where the control
+    loop is incremental also a comparison of a variable that many guards ask for by itself.
     """
-    found = _find(guards.values(), incremental=incremental)
+    found, opposites = _find(guards.values(), terms, incremental=incremental)
     for _ in range(_ROUNDS):
-        shared = Shared(found)
+        shared = Shared(found, opposites)
         called = Counter(term for guard in guards.values() for term in shared.inside(shared.ask_for(guard)))
         called.update(inner for term in found for inner in shared.inside(shared.operands(term)))
         kept = [term for term in found if called[term] > 1]
         if len(kept) == len(found):
             break
         found = kept
-    shared = Shared(found)
+    shared = Shared(found, opposites)
     for event, guard in guards.items():
         pending = list(shared.inside(shared.ask_for(guard)))
         told = set()
@@ -121,8 +123,11 @@ def share_conditions(
     return shared
 
 
-def _find(guards: Iterable[GuardTerms], *, incremental: bool) -> list[Term]:
-    """The common subexpressions of the guards: every term is looked at once, outer ones first."""
+def _find(guards: Iterable[GuardTerms], terms: Terms, *, incremental: bool) -> tuple[list[Term], dict[Term, Term]]:
+    """The common subexpressions of the guards: every term is looked at once, outer ones first.
+
+    Also which junctions are the opposites of which: these count as references to them.
+    """
     order: dict[Term, None] = {}
     owners: _Owners = {}
     asked: _Owners = {}
@@ -133,17 +138,25 @@ def _find(guards: Iterable[GuardTerms], *, incremental: bool) -> list[Term]:
             _refer(asked, roots, [guard])
             for root in roots:
                 order |= dict.fromkeys(root.below())
+    number = {term: position for position, term in enumerate(order)}
+    opposites = {
+        term: opposite
+        for term, opposite in terms.complements(order).items()
+        if term.operator in _JUNCTIONS and number.get(opposite, len(order)) < number[term]
+    }
     shared = []
     for term in reversed(order):
         own, direct = owners.pop(term, {}), asked.pop(term, {})
         junction = term.operator in _JUNCTIONS
-        if len(own) > 1 if junction else incremental and len(direct) >= _MANY and _reads_variable(term):
+        if term in opposites:
+            pass  # Whoever refers to it refers to its opposite.
+        elif len(own) > 1 if junction else incremental and len(direct) >= _MANY and _reads_variable(term):
             shared.append(term)
             own, direct = {term: None}, {}
-        _refer(owners, term.operands, own)
+        _refer(owners, [opposites[term]] if term in opposites else term.operands, own)
         if term.operator is engine.And:
             _refer(asked, term.operands, direct)
-    return shared[::-1]
+    return shared[::-1], opposites
 
 
 def operands_of(condition: Term) -> Sequence[Term]:

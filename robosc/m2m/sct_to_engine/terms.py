@@ -189,6 +189,17 @@ class Terms:
             return next(iter(parts), neutral)
         return self._make(kind, tuple(parts), None, None, BOOLEAN)
 
+    def complements(self, conditions: Iterable[Term]) -> dict[Term, Term]:
+        """The opposites of conditions, each of which comes after its operands; junctions are turned inside out."""
+        opposite: dict[Term, Term] = {}
+        for condition in conditions:
+            if condition.operator in (engine.And, engine.Or):
+                kind = engine.Or if condition.operator is engine.And else engine.And
+                opposite[condition] = self.junction(kind, [opposite[operand] for operand in condition.operands])
+            elif condition.sort is None:
+                opposite[condition] = self.negation(condition)
+        return opposite
+
     def _contradictory(self, kind: type[engine.And | engine.Or], parts: Iterable[Term]) -> bool:
         """Whether some of the parts, all on one variable or location, decide the junction whatever its value is."""
         groups: dict[engine.Declaration, list[Term]] = {}

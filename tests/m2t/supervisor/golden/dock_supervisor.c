@@ -352,8 +352,8 @@ static void react(dock_supervisor *self, unsigned source)
 /* Each enabled cancel, then each enabled trigger runs once; at most so many. */
 static void go_round(dock_supervisor *self, unsigned most)
 {
-    for (unsigned each = 1U; each <= 2U; ++each) {
-        self->taken[each] = false;
+    for (unsigned number = 1U; number <= 2U; ++number) {
+        self->taken[number] = false;
     }
     (void)serve(self, true, QUEUED, most);
 }
@@ -372,11 +372,11 @@ static void start(dock_supervisor *self)
         self->queue[event] = (uint8_t)event;
         self->due[event] = false;
     }
-    for (unsigned each = 0U; each <= 2U; ++each) {
-        self->taken[each] = false;
+    for (unsigned number = 0U; number <= 2U; ++number) {
+        self->taken[number] = false;
     }
-    for (unsigned each = 0U; each < SOURCES; ++each) {
-        self->reactions[each] = 0U;
+    for (unsigned number = 0U; number < SOURCES; ++number) {
+        self->reactions[number] = 0U;
     }
     self->last = 0U;
     self->owing = false;
@@ -446,8 +446,8 @@ void dock_tick(dock_supervisor *self)
 {
     settle(self);
     self->started = true;
-    for (unsigned each = 0U; each < SOURCES; ++each) {
-        self->reactions[each] = 0U;
+    for (unsigned source = 0U; source < SOURCES; ++source) {
+        self->reactions[source] = 0U;
     }
     self->owing = false;
     go_round(self, (self->settings.events_per_tick > 0U) ? self->settings.events_per_tick : QUEUED);
