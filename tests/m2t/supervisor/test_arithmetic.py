@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from robosc.engine import Settings
 from robosc.m2t.c.preconditions import preconditions
 from robosc.metamodel import sct
+from robosc.metamodel.places import Place
 from tests.m2t.supervisor.driver import build, run
 from tests.m2t.supervisor.walk import Walk
 from tests.sct_models import edge, model, plant
@@ -46,7 +47,7 @@ def _model(values: list[tuple[str, str]]) -> sct.SupervisoryControlModel:
     made = model([x, p], guards={})
     for number, step in enumerate(made.plants[1].locations[0].edges, 1):
         step.event.inputs.append(made.plants[0].inputs[0])
-        step.updates[0].source = f"{number}:1-{number}:2"
+        step.updates[0].source = Place.parse(f"{number}:1-{number}:2")
     refused = {each.span.line for each in preconditions(made)}
     for number, step in enumerate(made.plants[1].locations[0].edges, 1):
         if number in refused:
