@@ -14,7 +14,7 @@ from robosc.runtime.core.event_log import nested
 from robosc.runtime.core.node_data import NodeData, PastEndError
 from robosc.semantics.evaluation import as_double
 from robosc.semantics.messages import receptions
-from robosc.semantics.roles import Roles, event_name
+from robosc.semantics.roles import event_name
 from robosc.simulation.unreadable import Unreadable, past_end
 
 if TYPE_CHECKING:
@@ -49,7 +49,7 @@ class EventData:
     """
 
     def __init__(self, engine: Engine, graph: rosgraph.RosGraph | None) -> None:
-        self._events = {event_name(event): event for event in Roles(engine.model).events}
+        self._events = {event_name(event): event for plant in engine.model.plants for event in plant.events}
         self._node = None if graph is None else _JsonData(graph, engine)
         received = [] if graph is None else receptions(graph)
         self._assignments = {given.input: given for reception in received for given in reception.inputs}

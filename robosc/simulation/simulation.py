@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from robosc.engine import ControlLoop, Engine, Hooks, Settings
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
+from robosc.metamodel.engine import Role
 from robosc.semantics.definition import named_state
 from robosc.semantics.roles import event_name
 from robosc.simulation.data import EventData
@@ -64,7 +65,7 @@ class Simulation:
         self.data = EventData(self.engine, graph)
         self.trace: list[Happened] = []
         self._before: list[State] = []
-        self._inputs = {event_name(event): list(event.inputs) for event in self.engine.roles.events}
+        self._inputs = {event_name(event): list(event.inputs) for plant in model.plants for event in plant.events}
 
     @property
     def enabled(self) -> list[str]:
@@ -134,7 +135,8 @@ class LoopSimulation:
     @property
     def events(self) -> list[str]:
         """What a script may name: what comes from the robot, and the loop's own steps."""
-        return [*map(event_name, self._loop.engine.roles.incoming), *self.OWN]
+        events = self._loop.engine.executed.events
+        return [*(event.name for event in events if event.role == Role.incoming), *self.OWN]
 
     def step(self, event: str, data: Mapping[str, Any]) -> dict[str, Any]:
         """What came of a step: the object that `simulate --loop --script` prints. Raises DataError."""

@@ -6,11 +6,12 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 from robosc.engine import ControlLoop, Hooks
+from robosc.metamodel import engine
 from robosc.runtime.core.event_log import EventLog, ReceivedData
 from robosc.runtime.core.node_data import NodeData, PastEndError
 from robosc.runtime.core.reports import StateReporter, Throttle
 from robosc.semantics.messages import receptions
-from robosc.semantics.roles import Roles, event_name
+from robosc.semantics.roles import event_name
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -47,12 +48,16 @@ class EventHandler:
         self._data = NodeData(graph, self._control.engine)
         self._reports = StateReporter(graph, self._control.engine, self._data, port, settings.configuration)
         self._warn = Throttle(port.warn, event_loop.clock)
-        roles = Roles(graph.model)
-        self._events = {event_name(event): event for event in roles.events}
-        self._incoming = set(roles.incoming)
+        self._events = {event_name(event): event for plant in graph.model.plants for event in plant.events}
+        self._incoming = self._of_role(engine.Role.incoming)
         #: The message that the event at hand came with, and the event that would have been made of it.
         self._received: tuple[sct.Event, Message] | None = None
         self._logged = {reception.event: self._read(reception) for reception in receptions(graph)}
+
+    def _of_role(self, *roles: engine.Role) -> set[sct.Event]:
+        """The events for which the control loop does one of these."""
+        executed = self._control.engine.executed
+        return {self._events[event.name] for event in executed.events if event.role in roles}
 
     def _read(self, reception: rosgraph.Reception) -> ReceivedData:
         return ReceivedData([given.value for given in reception.inputs] + self._data.values_read(reception.event))

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from robosc.metamodel import engine
 from robosc.runtime.core.event_handler import EventHandler
 from robosc.runtime.core.event_log import Json, json_text
 from robosc.semantics.edges import edges_from, edges_of
-from robosc.semantics.roles import Roles, event_name, plant_of
+from robosc.semantics.roles import event_name, plant_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -29,9 +30,8 @@ class Layer(EventHandler):
     def __init__(self, graph: rosgraph.RosGraph, settings: Settings, port: Port, event_loop: EventLoop) -> None:
         super().__init__(graph, settings, port, event_loop)
         self._period = settings.seconds("period_ms")
-        roles = Roles(graph.model)
-        self._outgoing = {*roles.triggers, *roles.cancels}
-        self._data_events = {event for events in roles.data for event in events}
+        self._outgoing = self._of_role(engine.Role.trigger, engine.Role.cancel)
+        self._data_events = self._of_role(engine.Role.data)
         assert graph.model.supervisor is not None
         guards = graph.model.supervisor.guards
         self._explained = {guard.event: [guard.explanation] for guard in guards if guard.explanation}
