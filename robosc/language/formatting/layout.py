@@ -72,6 +72,8 @@ class _Layout:
             return self._clauses(parts, rule)
         if rule == "Expression":
             return self._chain(parts[0], [(link[0], *_parts(link[0])) for link in parts[1:]])
+        if rule == "FunctionCall":
+            return Group(self._row(parts, Gap.NONE, after={","}))
         if rule == "Operand" and len(parts) > 1:
             return self._brackets(*parts)
         return self._row(parts, Gap.NONE if rule in _TIGHT else Gap.SPACE)
