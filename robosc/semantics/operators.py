@@ -95,6 +95,15 @@ def divide(left: float, right: float) -> float:
     return math.copysign(math.inf, left) * math.copysign(1.0, right)
 
 
+def modulo(value: int, divisor: int) -> int:
+    """The remainder, 0 to `divisor - 1` whatever the value's sign; 0 where the rule `argument` reports the divisor."""
+    return value % divisor if divisor > 0 else 0
+
+
+def _modulo_in(value: Interval, divisor: Interval) -> Interval:
+    return value if Interval(0, divisor.low - 1).holds(value) else Interval(0, max(divisor.high - 1, 0))
+
+
 def _arithmetic(compute: Callable[[Any, Any], Any]) -> Callable[[Any, Any], Any]:
     def computed(left: Any, right: Any) -> Any:
         if isinstance(left, float) or isinstance(right, float):
@@ -199,7 +208,9 @@ OPERATORS = (
 )
 
 #: The functions, by their names.
-FUNCTIONS: dict[str, Operator] = {}
+FUNCTIONS = {
+    "mod": Operator(ex.FunctionCall, "mod", 9, Rule.INTEGER, modulo, _modulo_in, parameters=2, divisors=frozenset({1}))
+}
 
 BY_CLASS = {row.metaclass: row for row in OPERATORS} | {
     # Only transformations make it; no text has it.

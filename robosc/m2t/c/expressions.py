@@ -99,6 +99,10 @@ class CPrinter:
             case ex.Conditional():
                 condition, then, otherwise = (around(part, _CONDITIONAL + 1) for part in parts)
                 return f"{condition} ? {then} : {otherwise}", _CONDITIONAL
+            case ex.FunctionCall(function="mod"):
+                # What C leaves has the sign of the value.
+                dividend, divisor = (around(part, ATOM) for part in parts)
+                return f"(({dividend} % {divisor}) + {divisor}) % {divisor}", PRECEDENCE[ex.Multiplication]
         assert isinstance(node, ex.BinaryExpression)
         return self._binary(node, parts)
 
@@ -161,6 +165,8 @@ def _operands(node: ex.Expression) -> Sequence[ex.Expression]:
             return node.left, node.right
         case ex.UnaryExpression():
             return (node.operand,)
+        case ex.FunctionCall():
+            return list(node.arguments)
         case engine.And() | engine.Or():
             return list(node.operands)
         case ex.Conditional():

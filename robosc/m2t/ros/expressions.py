@@ -74,6 +74,14 @@ class CppPrinter(Printer):
             return Printed(number(-expression.operand.value), PRECEDENCE[ex.UnaryMinus])
         return super().unary(expression, operand)
 
+    def call(self, expression: ex.FunctionCall, given: Sequence[Printed]) -> Printed:
+        """A function of the header `data.hpp`, of whole numbers of the node."""
+        arguments = [
+            f"Integer({text})" if self._constant(argument) else text
+            for argument, (text, _) in zip(expression.arguments, given, strict=True)
+        ]
+        return Printed(f"{expression.function}({', '.join(arguments)})")
+
     def choice(self, condition: Printed, then: Printed, otherwise: Printed) -> Printed:
         """The conditional operator, in parentheses."""
         return Printed(f"({condition.tight} ? {then.tight} : {otherwise.tight})")

@@ -58,6 +58,11 @@ class Integer {
     }
     return a.value_ * b.value_;
   }
+  /// The remainder of a division by a positive number, which is never negative.
+  friend Integer mod(Integer a, Integer b) {
+    const std::int64_t remainder = a.value_ % b.value_;
+    return remainder < 0 ? remainder + b.value_ : remainder;
+  }
   friend Integer operator-(Integer a) { return Integer(0) - a; }
   friend constexpr bool operator==(Integer a, Integer b) { return a.value_ == b.value_; }
   friend constexpr bool operator!=(Integer a, Integer b) { return a.value_ != b.value_; }
