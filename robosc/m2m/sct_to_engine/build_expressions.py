@@ -8,6 +8,8 @@ from robosc.m2m.sct_to_engine.intervals import Width, working_width
 from robosc.m2m.sct_to_engine.terms import COMPLEMENTS
 from robosc.metamodel import engine, sct
 from robosc.metamodel import expression as ex
+from robosc.semantics.domains import Interval
+from robosc.semantics.operators import FUNCTIONS
 
 if TYPE_CHECKING:
     from collections.abc import Collection
@@ -126,6 +128,10 @@ def _working(term: Term) -> Width:
     """What an operator computes in: a signed integer that holds its operands and its result."""
     values = [operand.values for operand in term.operands if operand.sort is int]
     values += [term.values] if term.sort is int else []
+    if term.operator is ex.FunctionCall:
+        # A remainder is made positive by adding the divisor.
+        divisors = [term.operands[position] for position in FUNCTIONS[term.leaf].divisors]
+        values += [Interval(0, 2 * divisor.values.high) for divisor in divisors]
     union = values[0]
     for interval in values[1:]:
         union = union.union(interval)
