@@ -195,7 +195,6 @@ def generate(
     from robosc.configuration import Configuration
     from robosc.diagnostics import ModelError, has_errors
     from robosc.m2t.targets import TARGETS
-    from robosc.semantics.recursion import deep_recursion
 
     if target not in TARGETS:
         raise ValueError(f"there is no target {target!r}, but {', '.join(TARGETS)}")
@@ -204,9 +203,7 @@ def generate(
     if TARGETS[target].needs_graph and models.rosgraph is None:
         raise ValueError(f"{target} needs the ROS graph")
     configuration = configuration or Configuration()
-    with deep_recursion():
-        findings = TARGETS[target].findings(models, configuration)
+    findings = TARGETS[target].findings(models, configuration)
     if has_errors(findings):
         raise ModelError(findings)
-    with deep_recursion():
-        return TARGETS[target].files(models, configuration, with_tests=with_tests)
+    return TARGETS[target].files(models, configuration, with_tests=with_tests)

@@ -15,7 +15,6 @@ from robosc.checks.rule import RULES
 from robosc.diagnostics import Diagnostic, in_order
 from robosc.metamodel.places import place
 from robosc.ros_types import RosTypes
-from robosc.semantics.recursion import deep_recursion
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -26,7 +25,6 @@ for _module in iter_modules(__path__):
     import_module(f"{__name__}.{_module.name}")
 
 
-@deep_recursion()
 def check(
     base: rsc.Base | None, known: Iterable[Diagnostic] = (), interfaces: RosTypes | None = None
 ) -> list[Diagnostic]:

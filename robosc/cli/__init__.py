@@ -18,7 +18,6 @@ from robosc.cli import interruption
 from robosc.cli.saying import say
 from robosc.diagnostics.visible import visible, visible_lines
 from robosc.files.reading import noting
-from robosc.semantics.recursion import deep_recursion
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -107,7 +106,7 @@ class _Commands(click.Group):
                 # A terminal that lacks a character, or a file name that is no text, shall not end in an error.
                 stream.reconfigure(errors="backslashreplace")
         try:
-            with noting(), deep_recursion():
+            with noting():
                 return super().invoke(ctx)
         except (click.ClickException, click.exceptions.Exit, click.Abort, BrokenPipeError):
             raise

@@ -104,7 +104,7 @@ def _tokens(text: str) -> Iterator[Token]:
 
 
 #: How deep brackets and signs may be nested, and how many operators one expression may have: what reads the model
-#: follows it by recursion (`robosc.semantics.recursion` says how far that goes).
+#: follows it by calls inside each other, which Python bounds.
 DEEPEST = 50
 LONGEST = 5000
 _STARTERS = first_words("Definition", "ComponentDefinition", "AutomatonDefinition")

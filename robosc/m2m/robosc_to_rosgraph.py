@@ -14,7 +14,6 @@ from robosc.ros_types import RosTypes, Section
 from robosc.semantics.cone_of_influence import transitions
 from robosc.semantics.instances import Instance, InstanceVariable, Occurrence
 from robosc.semantics.naming import Names
-from robosc.semantics.recursion import deep_recursion
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -41,7 +40,6 @@ class _Part(NamedTuple):
     part: Section
 
 
-@deep_recursion()
 def transform(trace: Trace, interfaces: RosTypes | None = None) -> rosgraph.RosGraph:
     """The ROS graph of the robot whose transformation to the sct model left this trace.
 

@@ -14,7 +14,6 @@ from robosc.semantics.cone_of_influence import Data, needed, transitions
 from robosc.semantics.instances import Instance, Instances, InstanceVariable, Occurrence
 from robosc.semantics.naming import Names
 from robosc.semantics.printing import RoboscPrinter, conjunction, disjunction
-from robosc.semantics.recursion import deep_recursion
 
 if TYPE_CHECKING:
     from robosc.metamodel.places import Place
@@ -23,7 +22,6 @@ if TYPE_CHECKING:
 _NEVER_BLOCKED = (sct.EventKind.response, sct.EventKind.error, sct.EventKind.feedback, sct.EventKind.cancel)
 
 
-@deep_recursion()
 def transform(robot: robosc.Robot) -> tuple[sct.SupervisoryControlModel, Trace]:
     """The plants and requirements of a robot that the checks accept, and what became of what.
 

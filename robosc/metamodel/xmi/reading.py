@@ -13,7 +13,6 @@ from robosc.metamodel.validity import faults
 from robosc.metamodel.xmi.building import Document, Reference, build
 from robosc.metamodel.xmi.format import a
 from robosc.metamodel.xmi.markup import parse
-from robosc.semantics.recursion import deep_recursion
 
 if TYPE_CHECKING:
     from robosc.metamodel.places import SourceFile
@@ -22,7 +21,6 @@ _FRAGMENT = re.compile(r"/(/@\w+(\.[0-9]{1,9})?)*", re.ASCII)
 _ADDRESS = re.compile(r"[\w.+-]+:|/")
 
 
-@deep_recursion()
 def load(
     path: str | Path,
     texts: MutableMapping[str, str] | None = None,
