@@ -89,7 +89,11 @@ def command(
         elif as_data:
             put(json.dumps(data_of(told, _position), indent=2))
         else:
-            say(Renderer(plants, lambda each: visible("{file}:{line}:{column}".format(**_position(each)))).answer(told))
+            say(
+                Renderer(plants, lambda element: visible("{file}:{line}:{column}".format(**_position(element)))).answer(
+                    told
+                )
+            )
 
 
 def _question(

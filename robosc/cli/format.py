@@ -72,7 +72,7 @@ def _files(model: str) -> Iterator[str]:
         yield model
     else:
         for folder, inner, names in os.walk(model, onerror=_refuse):
-            inner[:] = sorted(each for each in inner if not each.startswith("."))
+            inner[:] = sorted(folder for folder in inner if not folder.startswith("."))
             paths = (Path(folder, name) for name in sorted(names) if name.endswith(".rscd"))
             yield from (str(path) for path in paths if path.is_file() and not path.is_symlink())
 
@@ -83,7 +83,7 @@ def _refuse(error: OSError) -> NoReturn:
 
 def _show(file: str, before: bytes, after: str, *, diff: bool) -> None:
     if diff:
-        old, new = (_lines(each) for each in (before.decode(), after))
+        old, new = (_lines(content) for content in (before.decode(), after))
         say("".join(unified_diff(old, new, visible(file), visible(file))), nl=False)
     elif after.encode() != before:
         say(visible(file))
@@ -92,7 +92,7 @@ def _show(file: str, before: bytes, after: str, *, diff: bool) -> None:
 def _lines(text: str) -> list[str]:
     lines = text.split("\n")
     last = [f"{lines[-1]}\n\\ No newline at end of file\n"] if lines[-1] else []
-    return [f"{each}\n" for each in lines[:-1]] + last
+    return [f"{line}\n" for line in lines[:-1]] + last
 
 
 def _write(file: str, text: str) -> None:

@@ -55,8 +55,8 @@ def progress(what: str | Callable[[], str]) -> Iterator[None]:
     finally:
         timer.cancel()
         timer.join()
-        for each in shown:
-            each.stop()
+        for progress in shown:
+            progress.stop()
 
 
 @contextmanager

@@ -99,7 +99,7 @@ def _played(models: Models, script: str, settings: Settings | None, report: Repo
     """The answer to each line of a script; what is wrong with the script goes to the report, which then ends."""
     name = "<stdin>" if script == "-" else script
     decoded, faults = decode(name, files.read_stdin(name) if script == "-" else files.read(script))
-    report.add([replace(each, rule=RULE) for each in faults], {name: decoded.content})
+    report.add([replace(fault, rule=RULE) for fault in faults], {name: decoded.content})
     report.stop_on_errors()
     text = decoded.content
     simulation = Simulation(models.sct, models.rosgraph)
@@ -109,12 +109,12 @@ def _played(models: Models, script: str, settings: Settings | None, report: Repo
     else:
         steps, findings = read_script(name, text, looped.events, simulation.engine.events)
     own = () if looped is None else looped.OWN
-    found = unfit_data(name, (each for each in steps if each.event not in own), simulation.data)
+    found = unfit_data(name, (step for step in steps if step.event not in own), simulation.data)
     report.add([*findings, *found], {name: text})
     report.stop_on_errors()
     if looped is not None:
-        return (looped.step(each.event, each.data) for each in steps)
-    return (simulation.perform(each.event, each.data).answer() for each in steps)
+        return (looped.step(step.event, step.data) for step in steps)
+    return (simulation.perform(step.event, step.data).answer() for step in steps)
 
 
 def _run(simulation: Simulation, number: int, seed: int) -> None:
@@ -127,7 +127,7 @@ def _run(simulation: Simulation, number: int, seed: int) -> None:
 
 
 def _converse(simulation: Simulation, seed: int) -> None:
-    named = {event_name(each): with_words(each) for each in simulation.engine.roles.events}
+    named = {event_name(event): with_words(event) for event in simulation.engine.roles.events}
     session = Session(simulation, seed, named)
     interactive = sys.stdin.isatty()
     if hasattr(sys.stdin, "reconfigure"):

@@ -67,7 +67,7 @@ def command(
 
 
 def _show_json(model: sct.SupervisoryControlModel, synthesis: Synthesis) -> None:
-    guards = {each.event: each for each in synthesis.supervisor.guards} if synthesis.supervisor else {}
+    guards = {guard.event: guard for guard in synthesis.supervisor.guards} if synthesis.supervisor else {}
     events = [event for plant in model.plants for event in plant.events] if synthesis.supervisor else []
     answer = {
         "robot": model.name,
@@ -75,7 +75,7 @@ def _show_json(model: sct.SupervisoryControlModel, synthesis: Synthesis) -> None
         "controlled_states": synthesis.controlled_states,
         "empty": synthesis.supervisor is None,
         "events": [
-            _controllable(guards[each]) if each in guards else _uncontrollable(each, synthesis) for each in events
+            _controllable(guards[event]) if event in guards else _uncontrollable(event, synthesis) for event in events
         ],
         "seconds": round(synthesis.seconds, 3),
         "bdd_nodes": synthesis.bdd_nodes,

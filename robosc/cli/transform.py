@@ -34,7 +34,7 @@ def _targets(_context: click.Context, _parameter: click.Parameter, values: Seque
     return [TARGETS[name] for name in dict.fromkeys(names)]
 
 
-_EPILOG = "\n".join(["\b", "Targets:", *(f"  {each.name:<11} {each.description}" for each in TARGETS.values())])
+_EPILOG = "\n".join(["\b", "Targets:", *(f"  {target.name:<11} {target.description}" for target in TARGETS.values())])
 
 
 @click.command("transform", epilog=_EPILOG)
@@ -83,8 +83,8 @@ def command(
 
     Exit status: 0 done, 1 errors in the model, 2 a wrong call, 3 no supervisor exists.
     """
-    if with_tests and not any(each.tested_ros for each in targets):
-        tested = [each.name for each in TARGETS.values() if each.tested_ros]
+    if with_tests and not any(target.tested_ros for target in targets):
+        tested = [target.name for target in TARGETS.values() if target.tested_ros]
         raise CallError(f"--with-tests is for {' and '.join(tested)}: the other targets have none")
     with Report(form) as report:
         models = read_models(model, library_paths, report, interface_paths)

@@ -85,7 +85,7 @@ def command(
         put(as_json(models.sct.name, verdicts), nl=False)
     else:
         _show(models.sct, verdicts)
-    if any(each.outcome is Outcome.REFUTED for each in verdicts):
+    if any(verdict.outcome is Outcome.REFUTED for verdict in verdicts):
         raise click.exceptions.Exit(ERRORS_FOUND)
 
 
@@ -97,12 +97,12 @@ def _show(model: sct.SupervisoryControlModel, verdicts: Sequence[Verdict]) -> No
     for heading in ("property", "verdict", "evidence"):
         table.add_column(heading)
     table.add_column("seconds", justify="right")
-    for each in verdicts:
-        verdict = Text(each.outcome.value, _STYLES[each.outcome])
-        table.add_row(Text(each.property), verdict, Text(visible(each.evidence)), f"{each.seconds:.3f}")
+    for verdict in verdicts:
+        outcome = Text(verdict.outcome.value, _STYLES[verdict.outcome])
+        table.add_row(Text(verdict.property), outcome, Text(visible(verdict.evidence)), f"{verdict.seconds:.3f}")
     console.print(table)
-    for each in verdicts:
-        said = details(each, model)
+    for verdict in verdicts:
+        said = details(verdict, model)
         if said:
             say(f"\n{said}")
     say(f"\n{TRUSTED}\n\n{model.name}: {summary(verdicts)}")

@@ -251,14 +251,14 @@ def find(folder: Path) -> Path | None:
     """
     level = [folder]
     for _ in range(SEARCH_DEPTH + 1):
-        found = [each / FILE_NAME for each in level if (each / FILE_NAME).is_file()]
+        found = [folder / FILE_NAME for folder in level if (folder / FILE_NAME).is_file()]
         if len(found) > 1:
-            names = " and ".join(f"{each.relative_to(folder)}" for each in found)
+            names = " and ".join(f"{file.relative_to(folder)}" for file in found)
             message = f"the model's folder has several configurations: {names}"
             raise ModelError([_error(str(found[1]), message, hint="choose one with --config")])
         if found:
             return found[0]
-        level = [below for each in level for below in _folders(each)]
+        level = [below for folder in level for below in _folders(folder)]
     return None
 
 
@@ -277,7 +277,7 @@ def read(file: Path) -> Configuration:
     try:
         configuration = Configuration.model_validate(values, context=(name, text), by_alias=True, by_name=False)
     except ValidationError as error:
-        findings += [_explained(name, text, each) for each in error.errors()]
+        findings += [_explained(name, text, fault) for fault in error.errors()]
     if findings:
         raise ModelError(findings)
     return configuration
@@ -292,7 +292,7 @@ def schema() -> str:
 def _folders(folder: Path) -> list[Path]:
     try:
         return sorted(
-            each for each in folder.iterdir() if each.is_dir() and not each.is_symlink() and each.name[0] != "."
+            path for path in folder.iterdir() if path.is_dir() and not path.is_symlink() and path.name[0] != "."
         )
     except OSError:
         return []
@@ -305,7 +305,7 @@ def _error(file: str, message: str, span: Span | None = None, hint: str | None =
 def _explained(file: str, text: str, fault: Any) -> Diagnostic:
     """What pydantic found, in words that name the key."""
     key: Key = fault["loc"]
-    name = ".".join(str(each) for each in key)
+    name = ".".join(str(part) for part in key)
     span = _span(text, key)
     if fault["type"] == "extra_forbidden":
         return _error(file, f'unknown key "{name}"', span, _repair(key))
@@ -334,7 +334,7 @@ def _repair(key: Key) -> str:
 
 def _keys_below(outer: str) -> list[str]:
     """The keys of the object that a key of the configuration has; none where it has no object."""
-    field = next(each for each in Configuration.model_fields.values() if each.alias == outer)
+    field = next(entry for entry in Configuration.model_fields.values() if entry.alias == outer)
     by_topic = get_origin(field.annotation) is dict
     return _keys_at((outer,)) if _settings_in(field.annotation) and not by_topic else []
 
@@ -343,7 +343,7 @@ def _keys_at(key: Key) -> list[str]:
     """The keys that an object of the configuration may have."""
     model: type[BaseModel] = Configuration
     for name in key:
-        field = next((each for each in model.model_fields.values() if each.alias == name), None)
+        field = next((entry for entry in model.model_fields.values() if entry.alias == name), None)
         below = _settings_in(field.annotation) if field else None
         model = below or model
     return [str(field.alias) for field in model.model_fields.values()]
@@ -352,14 +352,14 @@ def _keys_at(key: Key) -> list[str]:
 def _settings_in(annotation: Any) -> type[BaseModel] | None:
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         return annotation
-    return next((each for each in map(_settings_in, getattr(annotation, "__args__", ())) if each), None)
+    return next((found for found in map(_settings_in, getattr(annotation, "__args__", ())) if found), None)
 
 
 def _span(text: str, key: Key) -> Span:
     """Where a key of a JSON text stands; of one that is not there, the innermost key around it."""
     start = end = inside = _skip(text, 0)
     for name in key:
-        entry = next((each for each in _entries(text, inside) if each[0] in (name, f"/{name}")), None)
+        entry = next((entry for entry in _entries(text, inside) if entry[0] in (name, f"/{name}")), None)
         if entry is None:
             break
         _, start, end, inside = entry

@@ -51,7 +51,7 @@ def automaton(key: str, title: str, remarks: Sequence[str], states: Sequence[Sta
     arrows = [
         Arrow(_key(key, source), _key(key, target), tuple(labels)) for (source, target), labels in between.items()
     ]
-    return Group(key, visible(title), [visible(each) for each in remarks], nodes, arrows)
+    return Group(key, visible(title), [visible(remark) for remark in remarks], nodes, arrows)
 
 
 def _node(key: str, number: int, state: State, steps: Sequence[Step]) -> Node:
@@ -66,11 +66,11 @@ def _node(key: str, number: int, state: State, steps: Sequence[Step]) -> Node:
 
 
 def _rows(source: int, steps: Sequence[Step]) -> list[Label]:
-    return [_visible(each.label) for each in steps if each.source == source and each.target in (None, source)]
+    return [_visible(step.label) for step in steps if step.source == source and step.target in (None, source)]
 
 
 def _visible(label: Label) -> Label:
-    return tuple(visible(each) for each in label)
+    return tuple(visible(line) for line in label)
 
 
 def _key(group: str, number: int) -> str:

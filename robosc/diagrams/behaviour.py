@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 def behaviour_graph(base: robosc.Base) -> Graph:
     """The components of a robot or a library that have a behaviour, imported ones included, each as a group."""
     instances = Instances(base)
-    shown = [each for each in instances if each.automaton is not None]
-    groups = [_Component(each, instances).group(f"c{number}") for number, each in enumerate(shown, 1)]
+    shown = [instance for instance in instances if instance.automaton is not None]
+    groups = [_Component(instance, instances).group(f"c{number}") for number, instance in enumerate(shown, 1)]
     return Graph(f"{visible(base.name)}: behaviour", groups)
 
 
@@ -39,18 +39,18 @@ class _Component(RoboscPrinter):
         automaton_model = self.instance.automaton
         assert automaton_model is not None
         definitions = automaton_model.definitions
-        states = [each for each in definitions if isinstance(each, robosc.State)]
-        numbers = {each: number for number, each in enumerate(states)}
-        sources = [(EVERY, each) for each in definitions if isinstance(each, robosc.Transition)]
-        sources += [(numbers[state], each) for state in states for each in state.transitions]
+        states = [definition for definition in definitions if isinstance(definition, robosc.State)]
+        numbers = {state: number for number, state in enumerate(states)}
+        sources = [(EVERY, definition) for definition in definitions if isinstance(definition, robosc.Transition)]
+        sources += [(numbers[state], transition) for state in states for transition in state.transitions]
         return automaton(
             key,
             self.instance.name,
-            [self.variable(each) for each in definitions if isinstance(each, robosc.Variable)],
-            [State(each.name, each.initial, each.marked) for each in states],
+            [self.variable(definition) for definition in definitions if isinstance(definition, robosc.Variable)],
+            [State(state.name, state.initial, state.marked) for state in states],
             [
-                Step(source, None if each.target is None else numbers[each.target], self.label(each))
-                for source, each in sources
+                Step(source, None if transition.target is None else numbers[transition.target], self.label(transition))
+                for source, transition in sources
             ],
         )
 
@@ -69,7 +69,7 @@ class _Component(RoboscPrinter):
         return (first, *self.assignments(transition.assignments))
 
     def assignments(self, assignments: Sequence[robosc.Assignment]) -> list[str]:
-        texts = [f"{self(each.item)} := {self(each.value)}" for each in assignments]
+        texts = [f"{self(assignment.item)} := {self(assignment.value)}" for assignment in assignments]
         # A line for each, with the comma that parts it from the next.
         return ("do " + ",\n".join(texts)).split("\n") if texts else []
 
@@ -78,7 +78,7 @@ class _Component(RoboscPrinter):
         occurrence = self.instances.occurrence(reference, self.instance)
         assert occurrence is not None
         name = written(occurrence.communication.name)
-        others = sum(each.communication.name == occurrence.communication.name for each in self.instances.occurrences())
+        others = sum(port.communication.name == occurrence.communication.name for port in self.instances.occurrences())
         own = occurrence.instance is self.instance
         return name if own or others == 1 else f"{written(occurrence.instance.name)}.{name}"
 

@@ -58,17 +58,17 @@ class ClassDiagram:
 
 def _class(classifier: Any, package: Any) -> Class:
     if hasattr(classifier, "eLiterals"):
-        literals = [each.name for each in classifier.eLiterals]
+        literals = [literal.name for literal in classifier.eLiterals]
         return Class(classifier.name, False, documentation(classifier), (), (), (), literals)
-    own = [each.ePackage.name == package.name for each in classifier.eSuperTypes]
+    own = [parent.ePackage.name == package.name for parent in classifier.eSuperTypes]
     parents = list(zip(classifier.eSuperTypes, own, strict=True))
     return Class(
         name=classifier.name,
         abstract=classifier.abstract,
         documentation=documentation(classifier),
-        parents=[each.name for each, near in parents if near],
-        foreign_parents=[f"{each.ePackage.name}.{each.name}" for each, near in parents if not near],
-        features=[_feature(each, package) for each in classifier.eStructuralFeatures],
+        parents=[parent.name for parent, near in parents if near],
+        foreign_parents=[f"{parent.ePackage.name}.{parent.name}" for parent, near in parents if not near],
+        features=[_feature(feature, package) for feature in classifier.eStructuralFeatures],
         literals=(),
     )
 

@@ -87,16 +87,16 @@ class _Head:
 
 def draw(diagram: ClassDiagram) -> Drawing:
     """Lays the diagram out. Inheritance and containment run from left to right where they form no circle."""
-    heads = {each.name: _head(each) for each in diagram.classes}
+    heads = {shown.name: _head(shown) for shown in diagram.classes}
     kinds, links = _links(diagram, heads)
     arranged = arrange({name: (head.width, head.height) for name, head in heads.items()}, links)
     boxes = [
         _box(
-            each,
-            heads[each.name],
-            *(offset + margin for offset, margin in zip(arranged.places[each.name], _ORIGIN, strict=True)),
+            shown,
+            heads[shown.name],
+            *(offset + margin for offset, margin in zip(arranged.places[shown.name], _ORIGIN, strict=True)),
         )
-        for each in diagram.classes
+        for shown in diagram.classes
     ]
     lines = [_line(kind, route) for kind, route in zip(kinds, arranged.routes, strict=True)]
     return Drawing(round(arranged.width + 2 * _MARGIN), round(arranged.height + 2 * _MARGIN + _TITLE), boxes, lines)
@@ -108,18 +108,19 @@ _ORIGIN = (_MARGIN, _MARGIN + _TITLE)
 def _links(diagram: ClassDiagram, heads: dict[str, _Head]) -> tuple[list[str], list[Link]]:
     """The links with their kinds; those that matter most for the layout first."""
     found: list[tuple[str, Link]] = []
-    for each in diagram.classes:
-        head = heads[each.name]
+    for shown in diagram.classes:
+        head = heads[shown.name]
         found += [
-            ("inheritance", Link(parent, each.name, heads[parent].middle, head.middle, True)) for parent in each.parents
+            ("inheritance", Link(parent, shown.name, heads[parent].middle, head.middle, True))
+            for parent in shown.parents
         ]
-        for feature, port in zip(each.features, head.ports, strict=True):
-            if _is_drawn(feature, each):
+        for feature, port in zip(shown.features, head.ports, strict=True):
+            if _is_drawn(feature, shown):
                 kind = "containment" if feature.containment else "reference"
                 ranking = feature.containment or not feature.reference
-                found.append((kind, Link(each.name, feature.type, port, heads[feature.type].low, ranking)))
+                found.append((kind, Link(shown.name, feature.type, port, heads[feature.type].low, ranking)))
     order = ("inheritance", "containment", "reference")
-    found.sort(key=lambda each: order.index(each[0]))
+    found.sort(key=lambda placed: order.index(placed[0]))
     return [kind for kind, _ in found], [link for _, link in found]
 
 
@@ -129,13 +130,13 @@ def _is_drawn(feature: Feature, owner: Class) -> bool:
 
 def _head(shown: Class) -> _Head:
     notes = ["«enumeration»"] if shown.literals else []
-    notes += [f"extends {each}" for each in shown.foreign_parents]
-    rows = [*shown.literals, *(_row(each, shown) for each in shown.features)]
+    notes += [f"extends {foreign_parent}" for foreign_parent in shown.foreign_parents]
+    rows = [*shown.literals, *(_row(feature, shown) for feature in shown.features)]
     line = _PADDING + _ROW * (1 + len(notes))
     width = max(
         1.12 * text_width(shown.name, 13),
-        *(text_width(each, 12) for each in rows),
-        *(text_width(each, 10) for each in notes),
+        *(text_width(row, 12) for row in rows),
+        *(text_width(note, 10) for note in notes),
         60,
     )
     return _Head(
@@ -155,12 +156,12 @@ def _row(feature: Feature, owner: Class) -> str:
 
 
 def _box(shown: Class, head: _Head, x: float, y: float) -> Box:
-    texts = [Text(_at(y + _ROW * (index + 0.5) + _PADDING), each, "note") for index, each in enumerate(head.notes)]
+    texts = [Text(_at(y + _ROW * (index + 0.5) + _PADDING), note, "note") for index, note in enumerate(head.notes)]
     name = "abstract" if shown.abstract else "name"
     texts.append(Text(_at(y + head.line - _PADDING / 2 - 4), shown.name, name))
     texts += [
-        Text(_at(y + head.line + _PADDING / 2 + _ROW * (index + 0.75)), each, "row")
-        for index, each in enumerate(head.rows)
+        Text(_at(y + head.line + _PADDING / 2 + _ROW * (index + 0.75)), row, "row")
+        for index, row in enumerate(head.rows)
     ]
     kind = "enumeration" if shown.literals else "abstract" if shown.abstract else "class"
     return Box(

@@ -106,7 +106,9 @@ class _Pen:
         back = (x - way[0] * _HEAD_LENGTH, y - way[1] * _HEAD_LENGTH)
         side = (way[1] * _HEAD_WIDTH, way[0] * _HEAD_WIDTH)
         corners = [(back[0] + side[0], back[1] + side[1]), (x, y), (back[0] - side[0], back[1] - side[1])]
-        self.lines.append(Line("head", "M" + "L".join(f"{_at(each)} {_at(other)}" for each, other in corners) + "z"))
+        self.lines.append(
+            Line("head", "M" + "L".join(f"{_at(corner)} {_at(other)}" for corner, other in corners) + "z")
+        )
 
 
 class _Panel:
@@ -118,7 +120,7 @@ class _Panel:
         self.layout: Layout = lay_out(group, downwards=self.framed)
         above = HEAD + LINE * len(group.remarks) if self.framed else 0.0
         inset = _FRAME if self.framed else 0.0
-        texts = [1.15 * text_width(group.title, 14), *(text_width(each, ROW_SIZE) for each in group.remarks)]
+        texts = [1.15 * text_width(group.title, 14), *(text_width(remark, ROW_SIZE) for remark in group.remarks)]
         self.start = (inset, above + inset)
         self.width = max(self.layout.width, *texts) + 2 * inset
         self.height = self.layout.height + above + 2 * inset
@@ -172,7 +174,7 @@ class _Panel:
 def _way(points: Sequence[Point], axis: int) -> Point:
     """One step in the direction in which a path arrives at its last point, along an axis (0: across, 1: down)."""
     end = points[-1][axis]
-    before = next((each[axis] for each in reversed(points) if each[axis] != end), end - 1)
+    before = next((point[axis] for point in reversed(points) if point[axis] != end), end - 1)
     step = 1.0 if end > before else -1.0
     return (step, 0.0) if axis == 0 else (0.0, step)
 

@@ -112,9 +112,9 @@ def _ranks(names: Iterable[str], links: Sequence[Link]) -> dict[str, int]:
     ranks: dict[str, int] = {}
     order = list(nx.lexicographical_topological_sort(graph, key=list(graph).index))
     for name in order:
-        ranks[name] = max((ranks[each] + 1 for each in graph.predecessors(name)), default=0)
+        ranks[name] = max((ranks[predecessor] + 1 for predecessor in graph.predecessors(name)), default=0)
     for name in reversed(order):
-        after = [ranks[each] for each in graph.successors(name)]
+        after = [ranks[successor] for successor in graph.successors(name)]
         if not graph.in_degree(name):
             # What nothing ranks stands just before what it links to.
             after = after or [ranks[link.target] for link in links if link.source == name]
@@ -146,8 +146,8 @@ def _ordered(boxes: Iterable[_Item], chains: Sequence[Sequence[_Item]]) -> list[
         item = pending.pop()
         if item not in found:
             found[item] = None
-            pending += [each for each, _, _ in reversed(item.right)]
-    return list(found | dict.fromkeys(each for chain in chains for each in chain))
+            pending += [neighbour for neighbour, _, _ in reversed(item.right)]
+    return list(found | dict.fromkeys(neighbour for chain in chains for neighbour in chain))
 
 
 def _fewest_crossings(layers: list[list[_Item]]) -> list[list[_Item]]:
@@ -155,7 +155,7 @@ def _fewest_crossings(layers: list[list[_Item]]) -> list[list[_Item]]:
     for sweep in range(_SWEEPS):
         forward = sweep % 2 == 0
         for layer in layers if forward else reversed(layers):
-            positions = {item: index for each in layers for index, item in enumerate(each)}
+            positions = {item: index for layer in layers for index, item in enumerate(layer)}
             layer.sort(key=lambda item: _barycenter(item, positions, forward=forward))
         crossings = _crossings(layers)
         if crossings < least:
@@ -168,7 +168,7 @@ def _barycenter(item: _Item, positions: Mapping[_Item, int], *, forward: bool) -
     if not near:
         return positions[item]
     # The port decides between links of one box: a lower row of it belongs lower.
-    return sum(positions[each] + port / (each.height + 1) for each, port, _ in near) / len(near)
+    return sum(positions[neighbour] + port / (neighbour.height + 1) for neighbour, port, _ in near) / len(near)
 
 
 def _crossings(layers: Sequence[Sequence[_Item]]) -> int:
@@ -194,7 +194,7 @@ def _set_tops(layers: Sequence[Sequence[_Item]]) -> None:
             wanted = []
             for item in layer:
                 near = (item.left if forward else item.right) or item.left or item.right
-                heights = [each.top + port - own for each, port, own in near]
+                heights = [neighbour.top + port - own for neighbour, port, own in near]
                 wanted.append(sum(heights) / len(heights) if heights else item.top)
             _place(layer, wanted)
     highest = min((item.top for layer in layers for item in layer), default=0.0)
@@ -242,8 +242,8 @@ class _Geometry:
         self._edges: list[tuple[float, float]] = []
         self._width = left = 0.0
         for column, layer in enumerate(layers):
-            right = left + max((sizes[each.name][0] for each in layer if each.name), default=0.0)
-            inside = sum(each[0].column == each[-1].column == column for each in chains)
+            right = left + max((sizes[item.name][0] for item in layer if item.name), default=0.0)
+            inside = sum(chain[0].column == chain[-1].column == column for chain in chains)
             self._edges.append((left, right))
             self._width = right + (_BESIDE * (inside + 2) if inside else 0.0)
             left = right + column_gap + _BESIDE * inside

@@ -66,7 +66,7 @@ def _render(name: str, graph: Graph, **values: object) -> str:
 def _mermaid(text: str | Label) -> str:
     """Text for a label: lines with `<br/>` between, and codes for all characters that could mean something else."""
     lines = [text] if isinstance(text, str) else text
-    return "<br/>".join(_PLAIN.sub(lambda found: f"#{ord(found[0])};", each) for each in lines)
+    return "<br/>".join(_PLAIN.sub(lambda found: f"#{ord(found[0])};", line) for line in lines)
 
 
 def _mermaid_labels(labels: Sequence[Label]) -> str:
@@ -95,4 +95,4 @@ def _dot_node(node: Node) -> str:
 def _dot_rows(labels: Sequence[Label]) -> str:
     """Lines to the left, those that belong to another indented."""
     lines = [("" if number == 0 else "  ") + text for label in labels for number, text in enumerate(label)]
-    return "".join(rf"{_dot_line(each)}\l" for each in lines)
+    return "".join(rf"{_dot_line(line)}\l" for line in lines)

@@ -31,7 +31,7 @@ class _Plant(SctPrinter):
 
     def group(self, key: str) -> Group:
         locations = list(self.plant.locations)
-        numbers = {each: number for number, each in enumerate(locations)}
+        numbers = {location: number for number, location in enumerate(locations)}
         steps = [
             Step(number, numbers[edge.target], self.label(edge))
             for location, number in numbers.items()
@@ -40,8 +40,11 @@ class _Plant(SctPrinter):
         return automaton(
             key,
             self.plant.name,
-            [f"{each.name}: {_type(each.type)} = {self(each.initial)}" for each in self.plant.variables],
-            [State(each.name, each.initial, each.marked) for each in locations],
+            [
+                f"{variable.name}: {_type(variable.type)} = {self(variable.initial)}"
+                for variable in self.plant.variables
+            ],
+            [State(location.name, location.initial, location.marked) for location in locations],
             _joined(steps, locations, alike=self.plant.kind == sct.PlantKind.data),
         )
 
@@ -49,7 +52,8 @@ class _Plant(SctPrinter):
         own = plant_of(edge.event) is self.plant
         guard = [] if edge.guard is None else [f"if {self(edge.guard)}"]
         updates = [
-            f"{self(sct.VariableReference(variable=each.variable))} := {self(each.value)}" for each in edge.updates
+            f"{self(sct.VariableReference(variable=update.variable))} := {self(update.value)}"
+            for update in edge.updates
         ]
         return (edge.event.name if own else event_name(edge.event), *guard, *updates)
 

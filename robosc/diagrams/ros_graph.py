@@ -26,8 +26,8 @@ def ros_graph(graph: rosgraph.RosGraph) -> Graph:
     nodes = [*_topics(graph), *_servers("s", "service", graph.serviceClients)]
     nodes += _servers("a", "action", graph.actionClients)
     controller = Node(_CONTROLLER, "controller", visible(controller_name(graph)))
-    heard = {visible(each.topic) for each in graph.subscriptions}
-    told = {visible(each.topic) for each in graph.publishers}
+    heard = {visible(subscription.topic) for subscription in graph.subscriptions}
+    told = {visible(publisher.topic) for publisher in graph.publishers}
     arrows = []
     for node in nodes:
         comes = node.kind != "topic" or node.title in heard

@@ -18,7 +18,8 @@ _WIDE = dict.fromkeys("mwMW@", 0.92) | dict.fromkeys("ABCDEFGHKNOPQRSUVXYZ", 0.7
 def text_width(text: str, size: float) -> float:
     """How wide a line of text is at most, about, in a face of that size."""
     return size * sum(
-        _NARROW.get(each, _WIDE.get(each, 1.0 if east_asian_width(each) in "WF" else 0.58)) for each in text
+        _NARROW.get(character, _WIDE.get(character, 1.0 if east_asian_width(character) in "WF" else 0.58))
+        for character in text
     )
 
 

@@ -24,7 +24,7 @@ class JsonError(ValueError):
 def json_value(text: str) -> Any:
     """The value of a JSON text. Raises JsonError, also where it nests too deeply or a number is too large."""
     # `json` follows any number of brackets, until the process ends.
-    if max(accumulate((_BRACKETS.get(each, 0) for each in text), initial=0)) > _DEEPEST:
+    if max(accumulate((_BRACKETS.get(character, 0) for character in text), initial=0)) > _DEEPEST:
         raise JsonError("nested too deeply")
     try:
         return json.loads(text, parse_constant=_refuse, parse_int=_integer, parse_float=_number)

@@ -268,8 +268,12 @@ class _Stage:
             if content.startswith(b"#!"):
                 new.chmod(new.stat().st_mode | 0o111)
             self._moves.append(_Move(number, path.relative_to(self._folder).as_posix(), _mark(new)))
-            missing = [each for each in path.relative_to(self._folder).parents if not (self._folder / each).exists()]
-            self._folders += [each.as_posix() for each in reversed(missing) if each.as_posix() not in self._folders]
+            missing = [
+                parent for parent in path.relative_to(self._folder).parents if not (self._folder / parent).exists()
+            ]
+            self._folders += [
+                parent.as_posix() for parent in reversed(missing) if parent.as_posix() not in self._folders
+            ]
         moves = [[move.number, move.path, move.mark] for move in self._moves]
         draft = self._path / "journal.new"
         draft.write_text(json.dumps({"moves": moves, "folders": self._folders}), encoding="utf-8")
@@ -280,7 +284,7 @@ class _Stage:
         try:
             found = json_value(reading.read(self._journal, is_input=False).decode("utf-8"))
             self._moves = [_Move(int(number), str(path), list(mark)) for number, path, mark in found["moves"]]
-            self._folders = [str(each) for each in found["folders"]]
+            self._folders = [str(named) for named in found["folders"]]
             for path in [*(move.path for move in self._moves), *self._folders]:
                 _inside(self._folder, path)
         except FileNotFoundError:
@@ -291,8 +295,8 @@ class _Stage:
 
     def move(self, signals: _Signals) -> None:
         """Moves every file to its place; what is there is kept."""
-        for each in self._folders:
-            (self._folder / each).mkdir()
+        for folder in self._folders:
+            (self._folder / folder).mkdir()
         for move in self._moves:
             signals.check()
             path = self._folder / move.path
@@ -316,9 +320,9 @@ class _Stage:
                 old.replace(path)
             elif is_there:
                 path.unlink()
-        for each in reversed(self._folders):
+        for folder in reversed(self._folders):
             with suppress(OSError):  # it was not made yet, or somebody else uses it
-                (self._folder / each).rmdir()
+                (self._folder / folder).rmdir()
 
     def commit(self) -> None:
         """From now on nothing comes back."""
@@ -343,7 +347,7 @@ def _left_over(folder: Path) -> Iterator[_Stage]:
         found = path.lstat()
         if stat.S_ISDIR(found.st_mode) and (sys.platform == "win32" or found.st_uid == os.geteuid()):
             stage = _Stage(folder, path)
-            if all(_STAGED.fullmatch(each.name) for each in path.iterdir()) and stage.read_journal():
+            if all(_STAGED.fullmatch(entry.name) for entry in path.iterdir()) and stage.read_journal():
                 yield stage
 
 
@@ -384,11 +388,11 @@ def _undo(stages: Iterable[_Stage], cause: BaseException) -> None:
 
 
 def _make(folder: Path, made: ExitStack) -> None:
-    missing = [each for each in (folder, *folder.parents) if not each.exists()]
-    for each in reversed(missing):
+    missing = [parent for parent in (folder, *folder.parents) if not parent.exists()]
+    for parent in reversed(missing):
         with suppress(FileExistsError):
-            each.mkdir()
-            made.callback(_remove_empty, each)
+            parent.mkdir()
+            made.callback(_remove_empty, parent)
 
 
 def _remove_empty(folder: Path) -> None:

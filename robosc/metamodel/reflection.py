@@ -15,7 +15,7 @@ def features(metaclass: EClass) -> Mapping[str, Any]:
     found: dict[str, Any] = {}
     for parent in metaclass.eSuperTypes:
         found |= features(parent)
-    return found | {each.name: each for each in metaclass.eStructuralFeatures}
+    return found | {feature.name: feature for feature in metaclass.eStructuralFeatures}
 
 
 def is_attribute(feature: Any) -> bool:
@@ -27,7 +27,7 @@ def is_attribute(feature: Any) -> bool:
 def _containments(metaclass: EClass) -> Sequence[tuple[str, bool]]:
     """The names of the references of a class that contain, each with whether there may be many."""
     found = features(metaclass).items()
-    return [(name, each.many) for name, each in found if not is_attribute(each) and each.containment]
+    return [(name, feature.many) for name, feature in found if not is_attribute(feature) and feature.containment]
 
 
 def contents(element: Any) -> Iterator[tuple[str, Any]]:

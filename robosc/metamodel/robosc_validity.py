@@ -15,8 +15,8 @@ Fault = tuple[Any, str]
 
 def robosc_faults(elements: Sequence[Any]) -> Iterator[Fault]:
     """What references of these elements can't mean: another component's state, a property of another object."""
-    imports = [each for each in elements if isinstance(each, robosc.ImportedComponent)]
-    broken = [fault for each in imports for fault in _import_faults(each)]
+    imports = [element for element in elements if isinstance(element, robosc.ImportedComponent)]
+    broken = [fault for imported in imports for fault in _import_faults(imported)]
     if broken:
         yield from broken
         return
@@ -47,9 +47,9 @@ def _import_faults(imported: robosc.ImportedComponent) -> Iterator[Fault]:
         seen.add(component)
         component = component.type.definition
     own = _definitions(imported.definition)
-    for each in imported.remappings:
-        if each.communicationType not in own:
-            yield each, f"'{each.communicationType.name}' is no communication of {imported.definition.name}"
+    for remapping in imported.remappings:
+        if remapping.communicationType not in own:
+            yield remapping, f"'{remapping.communicationType.name}' is no communication of {imported.definition.name}"
 
 
 def _communication_faults(reference: robosc.CommunicationReference) -> Iterator[Fault]:
@@ -76,7 +76,11 @@ def _access_faults(access: robosc.Access) -> Iterator[Fault]:
         if component is None:
             yield access, f"it does not say whose '{item.name}' is meant"
             return
-        automata = [each.automaton for each in _definitions(component) if isinstance(each, robosc.ComponentBehaviour)]
+        automata = [
+            definition.automaton
+            for definition in _definitions(component)
+            if isinstance(definition, robosc.ComponentBehaviour)
+        ]
         if item.eContainer() not in automata:
             yield access, f"'{item.name}' is no state or variable of '{component.name}'"
             return

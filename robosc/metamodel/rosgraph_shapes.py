@@ -49,21 +49,21 @@ def shape_faults(graph: rosgraph.RosGraph, elements: Sequence[Any]) -> Iterator[
                 yield from _sent_faults(element)
             case rosgraph.Conversion():
                 shape = _Shape()
-                for each in _reads(rule.condition for rule in element.rules):
-                    yield from shape.add(each, _path(each), each.type)
+                for read in _reads(rule.condition for rule in element.rules):
+                    yield from shape.add(read, _path(read), read.type)
     yield from _received_faults(graph)
 
 
 def _sent_faults(sending: rosgraph.Sending) -> Iterator[Fault]:
     shape = _Shape()
     for alternative in sending.alternatives:
-        for each in alternative.fields:
-            yield from shape.add(each, list(each.path), each.type)
+        for field in alternative.fields:
+            yield from shape.add(field, list(field.path), field.type)
 
 
 def _reads(values: Iterable[ex.Expression]) -> Iterator[rosgraph.WireAccess]:
     for value in values:
-        yield from (each for _, each in tree(value) if isinstance(each, rosgraph.WireAccess))
+        yield from (access for _, access in tree(value) if isinstance(access, rosgraph.WireAccess))
 
 
 def _access_faults(access: rosgraph.WireAccess) -> Iterator[Fault]:
@@ -76,22 +76,22 @@ def _access_faults(access: rosgraph.WireAccess) -> Iterator[Fault]:
 
 
 def _received_faults(graph: rosgraph.RosGraph) -> Iterator[Fault]:
-    sources = [list(each.receptions) for each in graph.subscriptions]
-    sources += [[each.response] for each in graph.serviceClients]
-    sources += [[each] for client in graph.actionClients for each in (client.feedback, client.response)]
+    sources = [list(subscription.receptions) for subscription in graph.subscriptions]
+    sources += [[client.response] for client in graph.serviceClients]
+    sources += [[reception] for client in graph.actionClients for reception in (client.feedback, client.response)]
     reactions: dict[Any, list[Any]] = defaultdict(list)
     for reaction in graph.reactions:
-        reactions[reaction.event] += [each.value for each in reaction.assignments]
+        reactions[reaction.event] += [assignment.value for assignment in reaction.assignments]
     read_anywhere = set()
     for receptions in sources:
         shape = _Shape()
         for reception in receptions:
             read_anywhere.add(reception.event)
-            for access in _reads([*(each.value for each in reception.inputs), *reactions[reception.event]]):
+            for access in _reads([*(input_.value for input_ in reception.inputs), *reactions[reception.event]]):
                 yield from _seen(shape, access)
     for event, values in reactions.items():
         if event not in read_anywhere:
-            yield from ((each, f"'{event.name}' comes with no data") for each in _reads(values))
+            yield from ((read, f"'{event.name}' comes with no data") for read in _reads(values))
 
 
 def _seen(shape: _Shape, access: rosgraph.WireAccess) -> Iterator[Fault]:
@@ -101,11 +101,11 @@ def _seen(shape: _Shape, access: rosgraph.WireAccess) -> Iterator[Fault]:
     yield from shape.add(access, path, access.type)
     owner = access.eContainer()
     if isinstance(owner, rosgraph.ConversionCall):
-        for each in _reads(rule.condition for rule in owner.conversion.rules):
-            yield from shape.add(access, [*path, *_path(each)], each.type)
+        for read in _reads(rule.condition for rule in owner.conversion.rules):
+            yield from shape.add(access, [*path, *_path(read)], read.type)
 
 
 def _path(access: rosgraph.WireAccess) -> list[str | int]:
     return [
-        each.index if isinstance(each, rosgraph.IndexStep) else str(getattr(each, "name", "")) for each in access.steps
+        step.index if isinstance(step, rosgraph.IndexStep) else str(getattr(step, "name", "")) for step in access.steps
     ]

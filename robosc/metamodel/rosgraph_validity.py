@@ -42,7 +42,7 @@ def _typed_faults(element: Any, types: ExpressionTypes) -> Iterator[Fault]:
             yield from types.unless(element.value, declared_type(element.type))
         case rosgraph.InputAssignment():
             yield from types.unless(element.value, declared_type(element.input.type))
-            if any(isinstance(each, rosgraph.IndexStep) for _, each in tree(element.value)):
+            if any(isinstance(step, rosgraph.IndexStep) for _, step in tree(element.value)):
                 yield element, "an input is no element of an array, which need not be there"
         case rosgraph.NodeAssignment():
             yield from types.unless(element.value, declared_type(element.variable.type))
@@ -63,7 +63,7 @@ def _reference_faults(element: Any) -> Iterator[Fault]:
                     yield assignment, f"'{element.event.name}' does not carry the input '{assignment.input.name}'"
         case rosgraph.ProvidedData() if element.location.eContainer().kind != sct.PlantKind.data:
             yield element, f"'{element.location.name}' is no location of a data plant"
-        case rosgraph.Reaction() if len({each.eContainer() for each in element.locations}) > 1:
+        case rosgraph.Reaction() if len({location.eContainer() for location in element.locations}) > 1:
             yield element, "the locations are of several plants"
 
 

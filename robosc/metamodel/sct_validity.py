@@ -79,7 +79,7 @@ def _element(element: Any, own: set[Any]) -> Iterator[Fault]:
 
 
 def _plant(plant: sct.Plant, types: ExpressionTypes) -> Iterator[Fault]:
-    initial = sum(each.initial for each in plant.locations)
+    initial = sum(location.initial for location in plant.locations)
     if initial != 1:
         yield plant, f"plant '{plant.name}' has {initial or 'no'} initial locations; it starts in exactly one"
     for event in plant.events:
@@ -171,11 +171,14 @@ def _read(reference: sct.InputReference) -> Iterator[Fault]:
 def _supervisor(model: sct.SupervisoryControlModel) -> Iterator[Fault]:
     if model.supervisor is None:
         return
-    guarded = Counter(each.event for each in model.supervisor.guards)
+    guarded = Counter(guard.event for guard in model.supervisor.guards)
     for guard in model.supervisor.guards:
         if guarded[guard.event] > 1:
             yield guard, f"the event '{guard.event.name}' has more than one guard"
-        if any(each.event is not guard.event or each not in model.requirements for each in guard.requirements):
+        if any(
+            requirement.event is not guard.event or requirement not in model.requirements
+            for requirement in guard.requirements
+        ):
             yield guard, f"a requirement of this guard is not one on '{guard.event.name}'"
     for plant in model.plants:
         for event in plant.events:

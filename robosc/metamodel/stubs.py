@@ -87,5 +87,5 @@ def _references(package: EPackage) -> set[str]:
 
 
 if __name__ == "__main__":
-    for each in PACKAGES:
-        Path(__file__).with_name(f"{each}.pyi").write_text(stub(each), encoding="utf-8")
+    for package in PACKAGES:
+        Path(__file__).with_name(f"{package}.pyi").write_text(stub(package), encoding="utf-8")

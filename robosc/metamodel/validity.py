@@ -52,7 +52,7 @@ def _own_faults(element: Any) -> Iterator[tuple[Any, str]]:
         case rosgraph.FieldStep():
             texts.append(("name", element.name))
         case rosgraph.FieldAssignment():
-            texts += [("path", each) for each in element.path]
+            texts += [("path", part) for part in element.path]
         case ex.IntegerLiteral() | ex.DoubleLiteral():
             yield from _literal_faults(element)
         case robosc.IndexSegment() | rosgraph.IndexStep() if element.index < 0:

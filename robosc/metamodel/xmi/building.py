@@ -94,7 +94,7 @@ def _root_class(document: Document, top: Element) -> Any:
     elif (top.namespace, top.name) == (XMI, "XMI"):
         document.report(top.span, "this file has several models; one is wanted")
     elif package is None:
-        known = ", ".join(packages()[each].nsURI for each in ROOTS)
+        known = ", ".join(packages()[root].nsURI for root in ROOTS)
         document.report(top.span, f"no model of RoboSC has the namespace '{top.namespace}'", f"known are {known}")
     elif top.name not in ROOTS.get(package.name, ()):
         wanted = ", ".join(name for names in ROOTS.values() for name in names)
@@ -105,7 +105,7 @@ def _root_class(document: Document, top: Element) -> Any:
 
 
 def _package(uri: str | None) -> Any:
-    return next((each for each in packages().values() if each.nsURI == uri), None)
+    return next((package for package in packages().values() if package.nsURI == uri), None)
 
 
 @cache
@@ -153,7 +153,7 @@ class _Filling:
             self.document.report(self.markup.attribute_span(name), f"'{name}' refers to one element")
             return
         self.document.references += [
-            Reference(self.element, feature, f"#{each}", self.markup, is_attribute=True) for each in targets
+            Reference(self.element, feature, f"#{target}", self.markup, is_attribute=True) for target in targets
         ]
 
     def child(self, child: Element) -> None:
@@ -204,7 +204,9 @@ class _Filling:
         value = self.document.place(text) if feature.eType.eType is Place else from_text(feature.eType, text)
         if value is None:
             kind = feature.eType
-            hint = f"one of {', '.join(each.name for each in kind.eLiterals)}" if isinstance(kind, EEnum) else None
+            hint = (
+                f"one of {', '.join(literal.name for literal in kind.eLiterals)}" if isinstance(kind, EEnum) else None
+            )
             self.document.report(where(), f"'{feature.name}' can't be '{text[:80]}'", hint)
         elif feature.many:
             getattr(self.element, feature.name).append(value)

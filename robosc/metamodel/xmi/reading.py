@@ -61,7 +61,7 @@ class _Loading:
 
     def _stop_if_wrong(self) -> None:
         documents = self._documents.values()
-        findings = [each for one in documents for each in sorted(one.findings, key=lambda found: found.span)]
+        findings = [finding for one in documents for finding in sorted(one.findings, key=lambda found: found.span)]
         if findings:
             raise ModelError(findings)
 

@@ -92,21 +92,21 @@ class _Document:
             if not values:
                 continue
             if is_attribute(feature):
-                texts = [self._value(element, each) for each in values]
+                texts = [self._value(element, value) for value in values]
                 if feature.many:
-                    children += [(f"<{name}>{escape(each, {chr(13): '&#13;'})}</{name}>", None) for each in texts]
+                    children += [(f"<{name}>{escape(text, {chr(13): '&#13;'})}</{name}>", None) for text in texts]
                 else:
                     attributes.append((name, texts[0]))
             elif feature.containment:
-                children += [(name, each) for each in values]
+                children += [(name, value) for value in values]
             else:
-                targets = [self._target(element, name, each) for each in values]
-                if all(each.file == self.file for each in targets):
-                    attributes.append((name, " ".join(each.fragment for each in targets)))
+                targets = [self._target(element, name, value) for value in values]
+                if all(target.file == self.file for target in targets):
+                    attributes.append((name, " ".join(target.fragment for target in targets)))
                 else:
                     children += [
-                        (self._href(name, feature, each, target), None)
-                        for each, target in zip(values, targets, strict=True)
+                        (self._href(name, feature, value, target), None)
+                        for value, target in zip(values, targets, strict=True)
                     ]
         return attributes, children
 
