@@ -164,7 +164,12 @@ class Terms:
             ):
                 kind = ex.Equation
             # Of two locations or literals: not to be one is to be the other.
-            if kind is ex.Inequation and other.sort is not int and other.values == BOOLEAN:
+            if (
+                kind is ex.Inequation
+                and other.sort is not int
+                and other.values == BOOLEAN
+                and BOOLEAN.holds(side.values)
+            ):
                 return self._comparison(ex.Equation, other, self.constant(other.sort, 1 - side.values.low))
         return self._make(kind, (left, right), None, None, _interval(kind, left, right))
 

@@ -6,6 +6,7 @@ from hypothesis import strategies as st
 
 from robosc.m2m.sct_to_engine import lowering
 from robosc.m2m.sct_to_engine.intervals import Width, storage, working_width
+from robosc.m2m.sct_to_engine.terms import Terms
 from robosc.m2t.c.types import number, type_name
 from robosc.metamodel import engine, sct
 from robosc.metamodel import expression as ex
@@ -96,6 +97,16 @@ def test_what_is_decided(text: str, value: int | None) -> None:
     )
     made = model([p, plant("q", {"only": []})])
     assert lowering(made)(made.plants[0].locations[0].edges[0].guard).constant == value
+
+
+def test_a_choice_of_two_literals_is_never_a_third() -> None:
+    terms = Terms()
+    owner = ex.Enumeration(name="e", literals=[ex.EnumerationLiteral(name=name) for name in ("e0", "e1", "e2")])
+    first, second, third = (terms.constant(owner, position) for position in range(3))
+    condition = terms.reference(engine.StateVariable(name="b", type=ex.BooleanType()))
+    choice = terms.operation(ex.Conditional, condition, first, second)
+    assert terms.operation(ex.Inequation, choice, third) is terms.true
+    assert terms.operation(ex.Inequation, choice, second).constant is None
 
 
 @pytest.mark.parametrize(
