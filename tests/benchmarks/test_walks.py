@@ -14,7 +14,7 @@ from benchmarks.walks import exponent as slope
 from benchmarks.walks import page
 from robosc.checks import check
 from robosc.diagnostics import ModelError
-from robosc.language import read
+from robosc.language import Documents, read
 from robosc.metamodel import sct
 
 pytestmark = pytest.mark.slow
@@ -111,3 +111,33 @@ def test_the_page_in_the_documentation_is_that_of_the_results():
     for family, points in results["families"].items():
         assert slope(points) < MOST, family
         assert slope(points[-2:]) < MOST, f"the two longest of {family}"
+
+
+def lines(number: int) -> str:
+    """A robot of ten lines for each of as many components."""
+    parts = [
+        f"""component C{i} {{
+          outgoing message m{i} with type: none
+          incoming message k{i} with type: boolean
+          behaviour {{
+            variable v: boolean = false
+            initial marked state A {{ on response from k{i} do v := value goto B }}
+            state B {{ transition if v goto A }}
+          }}
+        }}
+        requirement C{i}.m{i} needs C{i}.A and C{max(i - 1, 0)}.v"""
+        for i in range(number)
+    ]
+    return "\n".join(["robot Long {", *parts, "}", ""])
+
+
+@pytest.mark.parametrize("broken", [False, True])
+def test_a_model_of_thousands_of_lines(broken):
+    counts = []
+    for number in (1, 100, 400):
+        text = lines(number).replace("needs C7.A", "needs needs C7.A" if broken else "needs C7.A")
+        documents = Documents({"model.rscd": text})
+        read_calls, found = calls(lambda: read("model.rscd", documents=documents))  # noqa: B023
+        check_calls, _ = calls(check, found.base, found.findings)
+        counts.append(read_calls + check_calls)
+    assert log(counts[2] / counts[1]) / log(4) < 1.2
