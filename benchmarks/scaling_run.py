@@ -24,8 +24,9 @@ sys.path.insert(0, str(ROOT))
 import robosc  # noqa: E402
 from benchmarks.automata import faudes_states  # noqa: E402
 from benchmarks.families import FAMILIES  # noqa: E402
+from robosc.analysis.supervise import diagnose  # noqa: E402
 from robosc.language import reading  # noqa: E402
-from robosc.synthesis import Phase, Statistics, synthesize  # noqa: E402
+from robosc.synthesis import Phase, Statistics  # noqa: E402
 from tests.synthesis.oracle import Oracle  # noqa: E402
 
 if TYPE_CHECKING:
@@ -104,7 +105,7 @@ def _transform(path: Path, costs: Costs, found: dict[str, Any]) -> None:
         assert not robosc.check(robot, INTERFACES)
     with costs.during("m2m"):
         models = robosc.Models(robosc.to_sct(robot), robosc.to_rosgraph(robot, INTERFACES), robot)
-    synthesis = synthesize(models.sct, statistics=costs)
+    synthesis = diagnose(models.sct, statistics=costs)
     models.sct.supervisor = synthesis.supervisor
     found |= {"uncontrolled": synthesis.uncontrolled_states, "states": synthesis.controlled_states}
     found["nodes"] = synthesis.bdd_nodes

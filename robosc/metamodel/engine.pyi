@@ -4,6 +4,7 @@ from collections.abc import Iterable, MutableSequence
 from typing import Any, ClassVar
 
 from robosc.metamodel import expression, sct
+from robosc.metamodel.places import Place
 
 class EngineModel(expression.NamedElement):
     """One robot's controller."""
@@ -17,7 +18,7 @@ class EngineModel(expression.NamedElement):
     choices: MutableSequence[Choice]
     settlingBound: int
     incremental: bool
-    def __init__(self, *, model: sct.SupervisoryControlModel | None = ..., variables: Iterable[StateVariable] = ..., inputs: Iterable[Input] = ..., sources: Iterable[Source] = ..., groups: Iterable[Group] = ..., conditions: Iterable[Condition] = ..., events: Iterable[Event] = ..., choices: Iterable[Choice] = ..., settlingBound: int | None = ..., incremental: bool | None = ..., name: str | None = ..., source: str | None = ...) -> None: ...
+    def __init__(self, *, model: sct.SupervisoryControlModel | None = ..., variables: Iterable[StateVariable] = ..., inputs: Iterable[Input] = ..., sources: Iterable[Source] = ..., groups: Iterable[Group] = ..., conditions: Iterable[Condition] = ..., events: Iterable[Event] = ..., choices: Iterable[Choice] = ..., settlingBound: int | None = ..., incremental: bool | None = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class Storage:
     """An integer type of a machine."""
@@ -51,7 +52,7 @@ class Input(Declaration):
 class LocationType(expression.Type):
     """The locations of a plant."""
     plant: sct.Plant
-    def __init__(self, *, plant: sct.Plant | None = ..., source: str | None = ...) -> None: ...
+    def __init__(self, *, plant: sct.Plant | None = ..., source: Place | None = ...) -> None: ...
 
 class Source:
     """What incoming events come from: a topic, a service or an action. Reactions are counted for each."""
@@ -198,41 +199,41 @@ class VariableReference(expression.Expression):
     """The value of a part of the state."""
     variable: StateVariable
     before: bool
-    def __init__(self, *, variable: StateVariable | None = ..., before: bool | None = ..., source: str | None = ...) -> None: ...
+    def __init__(self, *, variable: StateVariable | None = ..., before: bool | None = ..., source: Place | None = ...) -> None: ...
 
 class InputReference(expression.Expression):
     """The value of an input."""
     input: Input
-    def __init__(self, *, input: Input | None = ..., source: str | None = ...) -> None: ...
+    def __init__(self, *, input: Input | None = ..., source: Place | None = ...) -> None: ...
 
 class ConditionReference(expression.Expression):
     """The value of a shared condition."""
     condition: Condition
-    def __init__(self, *, condition: Condition | None = ..., source: str | None = ...) -> None: ...
+    def __init__(self, *, condition: Condition | None = ..., source: Place | None = ...) -> None: ...
 
 class LocationLiteral(expression.Expression):
     """A location of a plant, as a value."""
     location: sct.Location
-    def __init__(self, *, location: sct.Location | None = ..., source: str | None = ...) -> None: ...
+    def __init__(self, *, location: sct.Location | None = ..., source: Place | None = ...) -> None: ...
 
 class And(expression.Expression):
     """Whether all operands hold. No operand is of the same class or decided, and no two are alike; side effects there are none, so that all or some may be computed."""
     operands: MutableSequence[expression.Expression]
-    def __init__(self, *, operands: Iterable[expression.Expression] = ..., source: str | None = ...) -> None: ...
+    def __init__(self, *, operands: Iterable[expression.Expression] = ..., source: Place | None = ...) -> None: ...
 
 class Or(expression.Expression):
     """Whether an operand holds. No operand is of the same class or decided, and no two are alike; side effects there are none, so that all or some may be computed."""
     operands: MutableSequence[expression.Expression]
-    def __init__(self, *, operands: Iterable[expression.Expression] = ..., source: str | None = ...) -> None: ...
+    def __init__(self, *, operands: Iterable[expression.Expression] = ..., source: Place | None = ...) -> None: ...
 
 class Saturation(expression.UnaryExpression):
     """The nearest value within bounds."""
     minimum: int
     maximum: int
     bits: int
-    def __init__(self, *, minimum: int | None = ..., maximum: int | None = ..., bits: int | None = ..., operand: expression.Expression | None = ..., source: str | None = ...) -> None: ...
+    def __init__(self, *, minimum: int | None = ..., maximum: int | None = ..., bits: int | None = ..., operand: expression.Expression | None = ..., source: Place | None = ...) -> None: ...
 
 class Conversion(expression.UnaryExpression, Storage):
     """The same value in another storage, which holds it. Operators on integers compute in the storage that their operands have; a literal has that of what it meets. Comparisons with a literal need no conversion."""
     widens: bool
-    def __init__(self, *, widens: bool | None = ..., operand: expression.Expression | None = ..., source: str | None = ..., bits: int | None = ..., signed: bool | None = ...) -> None: ...
+    def __init__(self, *, widens: bool | None = ..., operand: expression.Expression | None = ..., source: Place | None = ..., bits: int | None = ..., signed: bool | None = ...) -> None: ...

@@ -144,7 +144,7 @@ class FunctionCall(Expression):
     """A function of its arguments, such as `mod(a, b)`. What each function means stands in robosc/semantics/operators.py."""
     function: str
     arguments: MutableSequence[Expression]
-    def __init__(self, *, function: str | None = ..., arguments: Iterable[Expression] = ..., source: str | None = ...) -> None: ...
+    def __init__(self, *, function: str | None = ..., arguments: Iterable[Expression] = ..., source: Place | None = ...) -> None: ...
 
 class BooleanLiteral(Expression):
     """`true` or `false`."""

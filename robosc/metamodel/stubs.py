@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from pyecore.ecore import EClass, EPackage, EStructuralFeature
+from pyecore.ecore import EClass, EClassifier, EPackage, EStructuralFeature
 
 from robosc.metamodel._ecore import PACKAGES, packages
 from robosc.metamodel.reflection import documentation
@@ -42,7 +42,8 @@ def _attribute(feature: EStructuralFeature, package: EPackage) -> str:
 def stub(name: str) -> str:
     """The text of the stub of one metamodel module."""
     package = packages(documented=True)[name]
-    others = [other for other in PACKAGES if other != name and f"{other}.ecore" in _references(package)]
+    used = _types(package)
+    others = [other for other in PACKAGES if other != name and any(target.ePackage.name == other for target in used)]
     lines = [
         f'"""Generated from metamodel/{name}.ecore by `python -m robosc.metamodel.stubs`."""',
         "",
@@ -51,7 +52,8 @@ def stub(name: str) -> str:
         "",
     ]
     lines += [f"from robosc.metamodel import {', '.join(others)}"] if others else []
-    lines += ["from robosc.metamodel.places import Place", ""]
+    lines += ["from robosc.metamodel.places import Place"] if "Place" in {target.name for target in used} else []
+    lines += [""]
     for classifier in package.eClassifiers:
         if classifier.name == "Place":
             continue  # a class of Python
@@ -77,13 +79,13 @@ def stub(name: str) -> str:
     return "\n".join(lines)
 
 
-def _references(package: EPackage) -> set[str]:
+def _types(package: EPackage) -> set[EClassifier]:
+    """Those that a package's classes inherit from or have features of, all of them with a package."""
     used = set()
     for classifier in package.eClassifiers:
         if isinstance(classifier, EClass):
-            targets = list(classifier.eSuperTypes) + [f.eType for f in classifier.eAllStructuralFeatures()]
-            used |= {f"{t.ePackage.name}.ecore" for t in targets if t.ePackage is not None}
-    return used
+            used |= {*classifier.eSuperTypes, *(feature.eType for feature in classifier.eAllStructuralFeatures())}
+    return {target for target in used if target.ePackage is not None}
 
 
 if __name__ == "__main__":

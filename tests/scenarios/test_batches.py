@@ -26,9 +26,8 @@ class HalfSeeing(Controller):
 
     def receive(self, subscription: rosgraph.Subscription, message: Any) -> None:
         for reception in subscription.receptions:
-            self._loop.begin()
-            self._hear(reception, subscription.topic, message)
-            self._loop.end()
+            with self._batch():
+                self._receive(reception, subscription.topic, message)
 
 
 def on_half(log: list[dict[str, Any]]) -> list[str]:

@@ -11,7 +11,7 @@ from robosc.analysis.verify import Outcome, verify_system
 from robosc.cli import main
 from robosc.m2t.models import Models
 from robosc.metamodel import expression as ex
-from robosc.metamodel import sct
+from robosc.metamodel import sct, xmi
 from robosc.semantics.roles import event_name
 from tests.examples.conftest import MODELS
 
@@ -104,6 +104,9 @@ def test_the_supervisor_of_a_saved_model_is_taken_as_it_is(tmp_path: Path) -> No
 def test_a_saved_model_without_a_guard_is_refused(tmp_path: Path) -> None:
     models = models_of("line_follower")
     models.sct.supervisor.guards.remove(guard_of(models.sct, "message_halt.c_trigger"))
-    answer = CliRunner().invoke(main, ["verify", str(saved(models, tmp_path))])
+    file = tmp_path / "line_follower.sct.xmi"
+    # The model alone: what is executed is saved of a whole supervisor only.
+    file.write_text(xmi.to_texts({file.name: models.sct})[file.name])
+    answer = CliRunner().invoke(main, ["verify", str(file)])
     assert answer.exit_code == 1
     assert "the event 'message_halt.c_trigger' has no guard" in answer.stderr
