@@ -41,7 +41,7 @@ class Automaton:
 
 def plants(model: sct.SupervisoryControlModel) -> dict[sct.Plant, Automaton]:
     """The automaton of each plant; all of its variables are in its states."""
-    return {each: _plant(each) for each in model.plants}
+    return {plant: _plant(plant) for plant in model.plants}
 
 
 def requirements(model: sct.SupervisoryControlModel, of: Mapping[sct.Plant, Automaton]) -> list[Automaton]:
@@ -51,7 +51,7 @@ def requirements(model: sct.SupervisoryControlModel, of: Mapping[sct.Plant, Auto
         needed = requirement.kind == sct.RequirementKind.needs
         for part in _parts(requirement.condition, ex.Conjunction if needed else ex.Disjunction):
             read = _plants_read(part)
-            about = tuple(each for each in model.plants if each in read)
+            about = tuple(plant for plant in model.plants if plant in read)
             asked.setdefault(about, []).append((event_name(requirement.event), part, needed))
     return [_requirement([of[each] for each in about], parts) for about, parts in asked.items()]
 
@@ -68,11 +68,11 @@ def uncontrollable(model: sct.SupervisoryControlModel) -> set[str]:
 
 
 def _plant(plant: sct.Plant) -> Automaton:
-    initial: Valuation = {plant: next(each for each in plant.locations if each.initial)}
+    initial: Valuation = {plant: next(location for location in plant.locations if location.initial)}
     for variable in plant.variables:
         initial[variable] = evaluate(variable.initial, _reading({}))
     events = dict.fromkeys(edge.event for edge in edges_of(plant))
-    occurrences = [(event, *each) for event in events for each in _occurrences(event)]
+    occurrences = [(event, *occurrence) for event in events for occurrence in _occurrences(event)]
 
     def successors(values: Valuation) -> Iterator[tuple[str, Valuation]]:
         for event, label, inputs in occurrences:
@@ -80,8 +80,8 @@ def _plant(plant: sct.Plant) -> Automaton:
             for edge in edges_from(values[plant]):
                 if edge.event is event and (edge.guard is None or evaluate(edge.guard, read)):
                     updated = {
-                        each.variable: _saturated(evaluate(each.value, read), each.variable.type)
-                        for each in edge.updates
+                        update.variable: _saturated(evaluate(update.value, read), update.variable.type)
+                        for update in edge.updates
                     }
                     yield label, {**values, **updated, plant: edge.target}
 
@@ -136,8 +136,8 @@ def _explored(
 def _occurrences(event: sct.Event) -> list[tuple[str, dict[sct.Input, Any]]]:
     """The names and the data of what an event may be."""
     occurrences = []
-    for values in product(*(_values(each.type) for each in event.inputs)):
-        data = ", ".join(each.name if isinstance(each, ex.EnumerationLiteral) else str(each) for each in values)
+    for values in product(*(_values(input_.type) for input_ in event.inputs)):
+        data = ", ".join(value.name if isinstance(value, ex.EnumerationLiteral) else str(value) for value in values)
         name = f"{event_name(event)}({data})" if values else event_name(event)
         occurrences.append((name, dict(zip(event.inputs, values, strict=True))))
     return occurrences
@@ -187,9 +187,9 @@ def _parts(condition: ex.Expression, glue: type[ex.BinaryExpression]) -> Iterato
 def _plants_read(condition: ex.Expression) -> set[sct.Plant]:
     references = (each for _, each in tree(condition))
     return {
-        (each.location if isinstance(each, sct.LocationReference) else each.variable).eContainer()
-        for each in references
-        if isinstance(each, sct.LocationReference | sct.VariableReference)
+        (reference.location if isinstance(reference, sct.LocationReference) else reference.variable).eContainer()
+        for reference in references
+        if isinstance(reference, sct.LocationReference | sct.VariableReference)
     }
 
 
@@ -207,7 +207,7 @@ def faudes_states(
     with during("automata"):
         flat = plants(model)
         plants_ = [_generator(each, never_forbidden) for each in flat.values()]
-        requirements_ = [_generator(each, never_forbidden) for each in requirements(model, flat)]
+        requirements_ = [_generator(requirement, never_forbidden) for requirement in requirements(model, flat)]
     with during("plants"):
         plant = _composed(plants_)
     with during("requirements"):
@@ -223,9 +223,9 @@ def _composed(generators: list[Any]) -> Any:
     import faudes  # noqa: PLC0415
 
     whole = generators[0]
-    for each in generators[1:]:
+    for generator in generators[1:]:
         part, whole = whole, faudes.System()
-        faudes.Parallel(part, each, whole)
+        faudes.Parallel(part, generator, whole)
     return whole
 
 

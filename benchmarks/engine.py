@@ -125,7 +125,7 @@ def _bytes(found: Sequence[Results]) -> str:
     columns = ("text", "rodata", "data", "bss", "controller", "stack")
     head = (
         "robot",
-        *(f"{target}: {columns[0]}" if not at else each for target in targets for at, each in enumerate(columns)),
+        *(f"{target}: {columns[0]}" if not at else column for target in targets for at, column in enumerate(columns)),
     )
     return _table(
         head,
@@ -138,7 +138,7 @@ def _bytes(found: Sequence[Results]) -> str:
 
 def _table(head: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
     lines = [head, ["---", *["---:"] * (len(head) - 1)], *rows]
-    return "\n".join(f"| {' | '.join(map(str, each))} |" for each in lines)
+    return "\n".join(f"| {' | '.join(map(str, line))} |" for line in lines)
 
 
 if __name__ == "__main__":

@@ -234,7 +234,7 @@ def _program(model: SupervisoryControlModel, source: Path) -> Path:
 
 def _inputs(model: SupervisoryControlModel, names: CNames) -> Iterator[str]:
     """Sets each input to any of its values."""
-    for each in (each for plant in model.plants for each in plant.inputs):
+    for each in (input_ for plant in model.plants for input_ in plant.inputs):
         low, high = interval_of(each.type)
         member = f"robot.inputs.{names.member(each)}"
         value = f"INT64_C({low}) + (int64_t)(chance() % UINT64_C({high - low + 1}))"

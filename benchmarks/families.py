@@ -147,7 +147,7 @@ def sensors(number: int) -> str:
         ),
         _component(
             "Drive",
-            [f'incoming message {each} with identifier: "/cmd_vel", type: Twist links twist' for each in speeds],
+            [f'incoming message {speed} with identifier: "/cmd_vel", type: Twist links twist' for speed in speeds],
             {
                 "initial marked state standing": ["on request to slow goto crawling"],
                 "state crawling": ["on request to fast goto rushing", "on request to halt goto standing"],

@@ -57,21 +57,21 @@ def costs(nodes: Workspace | Runner, folder: Path, seconds: float) -> dict[str, 
                 processes.environment["ROS_DOMAIN_ID"] = str(domain + number)
             runs.append(_Run(nodes, scenario, processes, place))
         _watch(runs, WARM_UP)
-        before = [each.processor() for each in runs]
+        before = [run.processor() for run in runs]
         began = time.monotonic()
         _watch(runs, seconds)
         passed = time.monotonic() - began
         return {
-            each.scenario.title: each.end((each.processor() - start) / passed, round(passed / PERIOD))
-            for each, start in zip(runs, before, strict=True)
+            run.scenario.title: run.end((run.processor() - start) / passed, round(passed / PERIOD))
+            for run, start in zip(runs, before, strict=True)
         }
 
 
 def _watch(runs: list[_Run], seconds: float) -> None:
     until = time.monotonic() + seconds
     while time.monotonic() < until:
-        for each in runs:
-            each.go_on()
+        for run in runs:
+            run.go_on()
         time.sleep(0.2)
 
 
@@ -86,7 +86,7 @@ class _Run:
         self._world_command = [*world, "--ros", str(nodes.ros.version)]
         if scenario.layer:
             names = ("/correction", "/no_line", "/simple_movement")
-            behind = [f"{each}:={LAYER}/controller{each}" for each in names]
+            behind = [f"{name}:={LAYER}/controller{name}" for name in names]
             stepper = {**processes.environment, "ROBOSC_TICK_TIMES": str(folder / "stepper.txt")}
             processes.environment, kept = stepper, processes.environment
             processes.start("stepper", _node(nodes, STEPPER, behind))
@@ -133,8 +133,8 @@ def _node(nodes: Workspace | Runner, scenario: Scenario, remappings: list[str] |
         timed = [*command[:1], HERE / "timed_run.py", *command[3:]]
         return [*command] if scenario.layer else timed
     command = one_process(nodes, scenario.package)
-    for each in remappings or []:
-        command += [each] if nodes.ros.version == 1 else ["-r", each]
+    for remapping in remappings or []:
+        command += [remapping] if nodes.ros.version == 1 else ["-r", remapping]
     return command
 
 

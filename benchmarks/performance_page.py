@@ -90,7 +90,7 @@ moment at which the processor was somebody else's, and one such among 3,000 tick
 
 def percentiles(seconds: Sequence[float]) -> dict[str, float]:
     """Milliseconds: the median, what 99 of 100 keep (nearest rank), and the most."""
-    ordered = sorted(1000 * each for each in seconds)
+    ordered = sorted(1000 * second for second in seconds)
     return {"median": median(ordered), "p99": ordered[math.ceil(0.99 * len(ordered)) - 1], "max": ordered[-1]}
 
 
@@ -117,7 +117,7 @@ def _span(values: Iterator[str]) -> str:
 
 def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
     lines = [head, ["---", *["---:"] * (len(head) - 1)], *rows]
-    return "".join(f"| {' | '.join(each)} |\n" for each in lines)
+    return "".join(f"| {' | '.join(line)} |\n" for line in lines)
 
 
 def _reactions(found: Mapping[Kind, Results]) -> str:
@@ -152,8 +152,8 @@ def _ticks(kind: Kind, found: Results) -> str:
     rows = []
     for title, node in found["nodes"].items():
         if "node" in node:
-            row = [title, *(f"{node['node'][each]:.0f}" for each in values)]
+            row = [title, *(f"{node['node'][value]:.0f}" for value in values)]
             if compiled:
-                row += [f"{node['engine'][each]:.2f}" for each in values]
+                row += [f"{node['engine'][value]:.2f}" for value in values]
             rows.append([*row, *map(str, THESIS[title])])
     return f"### {kind.title}\n\n" + _table(head, rows)

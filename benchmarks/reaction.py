@@ -116,15 +116,15 @@ def _reaction(nodes: Workspace | Runner, folder: Path, reason: str, times: int) 
 def _costs(nodes: Workspace | Runner, folder: Path, options: argparse.Namespace) -> dict[str, Any]:
     found = {
         title: {
-            "processor": each.processor,
-            "resident": each.resident,
-            "virtual": each.virtual,
-            "ticks": len(each.node),
-            "played": each.played,
-            "reached": each.reached,
-            **{name: summary(times) for name, times in (("node", each.node), ("engine", each.engine)) if times},
+            "processor": cost.processor,
+            "resident": cost.resident,
+            "virtual": cost.virtual,
+            "ticks": len(cost.node),
+            "played": cost.played,
+            "reached": cost.reached,
+            **{name: summary(times) for name, times in (("node", cost.node), ("engine", cost.engine)) if times},
         }
-        for title, each in costs(nodes, folder, options.seconds).items()
+        for title, cost in costs(nodes, folder, options.seconds).items()
     }
     return {"seconds": options.seconds, "nodes": found}
 

@@ -91,10 +91,10 @@ def _options() -> argparse.Namespace:
 
 
 def _installed(tools: Sequence[str]) -> list[str]:
-    missing = [each for each in tools if each == "faudes" and not find_spec("faudes")]
+    missing = [tool for tool in tools if tool == "faudes" and not find_spec("faudes")]
     for each in missing:
         _say(f"{each} is left out: `pip install -e '.[benchmarks]'` installs it")
-    return [each for each in tools if each not in missing]
+    return [tool for tool in tools if tool not in missing]
 
 
 def _series(family: Family, tool: str, options: argparse.Namespace) -> list[dict[str, Any]]:
@@ -119,8 +119,8 @@ def _transforms(options: argparse.Namespace) -> list[dict[str, Any]]:
         text = cells(components // 2)
         with tempfile.TemporaryDirectory() as folder:
             command = _measured(["-m", "robosc", *COMMAND, "-o", folder], text, 3 * options.limit)
-            files = [each for each in Path(folder).rglob("*") if each.is_file()]
-            written = sum(each.stat().st_size for each in files)
+            files = [path for path in Path(folder).rglob("*") if path.is_file()]
+            written = sum(file.stat().st_size for file in files)
         phases = _measured([str(RUN), "robosc"], text, 3 * options.limit).get("phases", {})
         point = {"components": components, "lines": text.count("\n"), **command, "bytes": written, "phases": phases}
         measured.append(point)

@@ -201,7 +201,7 @@ def _synthesis_seconds(point: Results) -> float:
 
 def growth(points: Sequence[Results], measure: Callable[[Results], float]) -> str:
     """`N^k`, or `b^N` where that leaves far less unexplained, for the last four points; a dash for fewer than three."""
-    last = [(each["n"], measure(each)) for each in points if measure(each) > 0][-4:]
+    last = [(point["n"], measure(point)) for point in points if measure(point) > 0][-4:]
     if len(last) < 3:
         return "-"
     numbers, logarithms = [number for number, _ in last], [log(value) for _, value in last]
@@ -238,14 +238,14 @@ def _transform(points: Sequence[Results]) -> str:
         head,
         [
             [
-                f"{each['components']:,}",
-                f"{each['lines']:,}",
-                f"{each['cpu']:.1f} ({each['wall']:.1f})" if each["finished"] else f"over {each['cpu']:.0f}",
-                f"{each['memory']:.0f}",
-                f"{each['bytes'] / 1e6:.1f} MB",
-                *_each_phase(each),
+                f"{point['components']:,}",
+                f"{point['lines']:,}",
+                f"{point['cpu']:.1f} ({point['wall']:.1f})" if point["finished"] else f"over {point['cpu']:.0f}",
+                f"{point['memory']:.0f}",
+                f"{point['bytes'] / 1e6:.1f} MB",
+                *_each_phase(point),
             ]
-            for each in points
+            for point in points
         ],
     )
 
@@ -264,7 +264,7 @@ def _number(value: int) -> str:
 
 def _table(head: Sequence[str], rows: Sequence[Sequence[str]], align: str = "---:") -> str:
     lines = [head, ["---", *[align] * (len(head) - 1)], *rows]
-    return "".join(f"| {' | '.join(each)} |\n" for each in lines)
+    return "".join(f"| {' | '.join(line)} |\n" for line in lines)
 
 
 def plots(results: Results) -> dict[str, str]:
@@ -278,8 +278,8 @@ def plots(results: Results) -> dict[str, str]:
         axes.set(title=FAMILIES[name].title, xlabel="N", ylabel="s", yscale="log")
         for tool, marker in zip(TOOLS, "os^", strict=True):
             points = _supervised(results["families"], name, tool)
-            seconds = [(_synthesis_seconds if tool == "robosc" else _all_seconds)(each) for each in points]
-            axes.plot([each["n"] for each in points], seconds, marker=marker, markersize=4, label=TOOLS[tool])
+            seconds = [(_synthesis_seconds if tool == "robosc" else _all_seconds)(point) for point in points]
+            axes.plot([point["n"] for point in points], seconds, marker=marker, markersize=4, label=TOOLS[tool])
         _ticked(axes)
     families.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=3)
     transform = Figure((7, 5), layout="constrained")
@@ -287,12 +287,14 @@ def plots(results: Results) -> dict[str, str]:
     axes.set(xlabel="lines", ylabel="s", yscale="log")
     for phase in (*PHASES, *TARGETS):
         points = [each for each in results["transform"] if phase in each["phases"]]
-        seconds = [each["phases"][phase][1] for each in points]
-        axes.plot([each["lines"] for each in points], seconds, marker="o", markersize=3, label=TITLES.get(phase, phase))
+        seconds = [point["phases"][phase][1] for point in points]
+        axes.plot(
+            [point["lines"] for point in points], seconds, marker="o", markersize=3, label=TITLES.get(phase, phase)
+        )
     points = [each for each in results["transform"] if each["finished"]]
     axes.plot(
-        [each["lines"] for each in points],
-        [each["cpu"] for each in points],
+        [point["lines"] for point in points],
+        [point["cpu"] for point in points],
         "k--",
         label="robosc transform",
         linewidth=2,
@@ -303,7 +305,7 @@ def plots(results: Results) -> dict[str, str]:
     for name, figure in (("families", families), ("transform", transform)):
         text = StringIO()
         figure.savefig(text, format="svg", metadata={"Date": None})
-        drawn[f"benchmarks-{name}.svg"] = "".join(f"{each.rstrip()}\n" for each in text.getvalue().splitlines())
+        drawn[f"benchmarks-{name}.svg"] = "".join(f"{line.rstrip()}\n" for line in text.getvalue().splitlines())
     return drawn
 
 

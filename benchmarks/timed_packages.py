@@ -82,7 +82,7 @@ def _timed(scenario: Scenario, version: int, generated: Path, folder: Path) -> P
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     plain = generated / ros / scenario.package
-    texts = {each.relative_to(plain): each.read_text() for each in plain.rglob("*") if each.is_file()}
+    texts = {path.relative_to(plain): path.read_text() for path in plain.rglob("*") if path.is_file()}
     if not scenario.layer:
         node = Path("src") / f"{scenario.package}_node.cpp"
         timed, found = TICK.subn(TIMED, texts[node])

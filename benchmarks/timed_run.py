@@ -21,7 +21,7 @@ def main() -> None:
 
     def noting_close(self: Controller) -> None:
         close(self)
-        Path(os.environ["ROBOSC_TICK_TIMES"]).write_text("".join(f"{each}\n" for each in times))
+        Path(os.environ["ROBOSC_TICK_TIMES"]).write_text("".join(f"{time}\n" for time in times))
 
     Controller.tick, Controller.close = timed_tick, noting_close  # type: ignore[method-assign]
     run()

@@ -111,7 +111,7 @@ def _through(path: Path) -> None:
 
 def exponent(points: list[dict[str, Any]]) -> float:
     """The exponent of the growth, of the sizes that were finished; that of too slow ones is out of sight."""
-    finished = [each for each in points if each["finished"]]
+    finished = [point for point in points if point["finished"]]
     if len(finished) < 2:
         return float("inf")
     slope = linear_regression(
@@ -122,7 +122,7 @@ def exponent(points: list[dict[str, Any]]) -> float:
 
 def page(results: dict[str, Any]) -> str:
     """The page of the documentation."""
-    sizes = sorted({each["n"] for points in results["families"].values() for each in points})
+    sizes = sorted({point["n"] for points in results["families"].values() for point in points})
     lines = [HEAD.format(machine=results["machine"], most=MOST)]
     lines += [
         f"| | {' | '.join(f'N = {size:,}' for size in sizes)} | MB | k | end |",
@@ -134,7 +134,7 @@ def page(results: dict[str, Any]) -> str:
             continue
         title = (FAMILIES[family].__doc__ or family).partition("\n")[0].rstrip(".")
         cells = [_seconds(points.get(size)) for size in sizes]
-        memory = max(each["memory"] for each in points.values())
+        memory = max(point["memory"] for point in points.values())
         measured = [points[size] for size in sizes if size in points]
         steep = [f"{exponent(each):.2f}" for each in (measured, [each for each in measured if each["finished"]][-2:])]
         lines.append(f"| {title} | {' | '.join(cells)} | {memory:.0f} | {' | '.join(steep)} |")

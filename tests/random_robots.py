@@ -52,7 +52,7 @@ class Type:
     @property
     def can_be_sent(self) -> bool:
         parts = [*(each for _, each in self.properties), *([self.element] if self.element else [])]
-        return self.kind != "enum" and all(each.can_be_sent for each in parts)
+        return self.kind != "enum" and all(part.can_be_sent for part in parts)
 
 
 BOOLEAN, DOUBLE, STRING, NONE = (Type(each, each) for each in ("boolean", "double", "string", "none"))
@@ -136,7 +136,7 @@ class Writer:
         types = [self.data_type(number) for number in self.many(5)]
         for number in self.many(3, 1):
             self.declare(number)
-        parts = [self.component(each) for each in self.components if not each.text]
+        parts = [self.component(component) for component in self.components if not component.text]
         self.random.shuffle(parts)
         sent = [(c, m) for c in self.components for m in c.communications if m.kind != "outgoing"]
         parts += [self.requirement(sent) for _ in self.many(4) if sent]
@@ -187,7 +187,7 @@ class Writer:
         base = self.one([self.simple(), *self.objects, *self.objects, self.one(ROS_TYPES)])
         values = tuple(self.name(f"v{number}{index}") for index in self.many(3, 1))
         reads = paths("value", base)
-        rules = [f"{self.expression(BOOLEAN, reads, 2)} -> {each}" for each in values[1:]]
+        rules = [f"{self.expression(BOOLEAN, reads, 2)} -> {value}" for value in values[1:]]
         rules.insert(self.random.randint(0, len(rules)), f"default -> {values[0]}")
         self.enums.append(Type(self.name(f"E{number}"), "enum", values=values, base=base))
         return f"datatype enum {self.enums[-1].text} from {base.text} to {{ {' '.join(rules)} }}"
@@ -198,7 +198,7 @@ class Writer:
         choices = [NONE, self.simple(), *self.enums, *self.enums, *self.objects, *self.objects]
         if kind == "outgoing":
             return self.one([*choices, self.one(ROS_TYPES)])
-        return self.one([each for each in choices if not each.is_of_ros])
+        return self.one([choice for choice in choices if not choice.is_of_ros])
 
     def declare(self, number: int) -> None:
         component = Component(self.name(f"C{number}"))
@@ -214,7 +214,7 @@ class Writer:
                 made.text = f"outgoing message {name}type: {made.data['response'].text}"
             else:
                 choices = [NONE, self.simple(), *self.objects, *(ROS_TYPES[:2] if kind == "incoming" else [])]
-                made.sent = self.one([each for each in choices if each.can_be_sent])
+                made.sent = self.one([choice for choice in choices if choice.can_be_sent])
                 made.data = {each: self.carried(kind) for each in ("response", "feedback") if each in EVENTS[kind]}
                 rest = "".join(f", {event}: {each.text}" for event, each in made.data.items())
                 word = "type" if kind == "incoming" else "request"
@@ -222,7 +222,7 @@ class Writer:
                 made.text = f"{head} {name}{word}: {made.sent.text}{rest}"
             types = [made.sent, *made.data.values()]
             basic = kind in {"incoming", "outgoing"} or (kind == "service" and set(types) == {NONE})
-            if not basic or any(each.needs_link for each in types):
+            if not basic or any(kind.needs_link for kind in types):
                 made.text += " links i"
                 if kind in {"incoming", "outgoing"}:
                     made.text = made.text.replace("/shared", "/shared/i")
@@ -247,15 +247,18 @@ class Writer:
         self.components.append(component)
 
     def component(self, component: Component) -> str:
-        lines = [each.text for each in component.communications]
+        lines = [communication.text for communication in component.communications]
         if not component.states:
             return "\n".join([f"component {component.name} {{", *lines, "}"])
-        body = [f"variable {each.name}: {each.type.text}{self.initial(each.type)}" for each in component.variables]
+        body = [
+            f"variable {variable.name}: {variable.type.text}{self.initial(variable.type)}"
+            for variable in component.variables
+        ]
         free = [(c, m, event) for c in self.components for m in c.communications for event in EVENTS[m.kind]]
         common = [each for each in free if self.random.randrange(6) == 0]
         body += [self.transition(component, *each) for each in common]
         body += [self.silent(component, self.goto(component)) for _ in self.many(1)]
-        marked = [each for each in component.states if self.one([True, False])] or component.states[-1:]
+        marked = [state for state in component.states if self.one([True, False])] or component.states[-1:]
         for index, state in enumerate(component.states):
             own = [each for each in free if each not in common and self.random.randrange(4) == 0]
             inside = [self.transition(component, *each) for each in own]
@@ -290,12 +293,12 @@ class Writer:
 
     def assigned(self, component: Component, data: list[tuple[str, Type]]) -> str:
         done = []
-        for each in component.variables:
+        for variable in component.variables:
             if self.one([True, False]):
-                finite = each.may_be_needed and not self.mistakes
+                finite = variable.may_be_needed and not self.mistakes
                 fitting = [(text, kind) for text, kind in data if not finite or (kind.is_finite and "[" not in text)]
-                value = self.expression(each.type, [*fitting, *self.readable(finite=finite)], 3)
-                done.append(f"{each.name} := {value}")
+                value = self.expression(variable.type, [*fitting, *self.readable(finite=finite)], 3)
+                done.append(f"{variable.name} := {value}")
         return f" do {', '.join(done)}" if done else ""
 
     # Requirements and data
@@ -325,10 +328,10 @@ class Writer:
         """What can be read by its full name."""
         states = [(f"{c.name}.{each}", BOOLEAN) for c in self.components for each in (*c.states, *c.apart)]
         variables = [
-            (f"{c.name}.{each.name}", each.type)
+            (f"{c.name}.{variable.name}", variable.type)
             for c in self.components
-            for each in c.variables
-            if not finite or self.mistakes or each.may_be_needed
+            for variable in c.variables
+            if not finite or self.mistakes or variable.may_be_needed
         ]
         return states + variables
 

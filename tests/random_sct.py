@@ -45,13 +45,13 @@ def sct_models(draw: st.DrawFn, *, data: bool = True) -> sct.SupervisoryControlM
     """
     sketches = [draw(_sketches(f"p{index}")) for index in range(draw(st.integers(1, 3)))]
     scope = _Scope(
-        tuple(f"{each.name}.{location}" for each in sketches for location in each.locations),
-        tuple((f"{each.name}.{name}", kind) for each in sketches for name, kind in each.variables.items()),
+        tuple(f"{sketch.name}.{location}" for sketch in sketches for location in sketch.locations),
+        tuple((f"{sketch.name}.{name}", kind) for sketch in sketches for name, kind in sketch.variables.items()),
     )
-    plants = [_plant(draw, each, sketches, scope) for each in sketches]
+    plants = [_plant(draw, sketch, sketches, scope) for sketch in sketches]
     if data:
         plants += [_data_plant(draw, f"data_{index}", scope) for index in range(draw(st.integers(0, 1)))]
-    events = [f"{each.name}.{event}" for each in sketches for event in each.controllable]
+    events = [f"{sketch.name}.{event}" for sketch in sketches for event in sketch.controllable]
     requirements = [
         draw(st.sampled_from((needs, disables)))(draw(st.sampled_from(events)), _boolean(draw, scope, 3))
         for _ in range(draw(st.integers(0, 3)) if events else 0)
@@ -67,7 +67,7 @@ def _sketches(draw: st.DrawFn, name: str) -> _Sketch:
         tuple(f"l{index}" for index in range(draw(st.sampled_from((1, 2, 2, 3))))),
         tuple(draw(st.lists(st.sampled_from(_CONTROLLABLE), min_size=1, max_size=3, unique=True))),
         {
-            event: tuple(each for each in inputs if draw(st.booleans()))
+            event: tuple(input_ for input_ in inputs if draw(st.booleans()))
             for event in draw(st.lists(st.sampled_from(_UNCONTROLLABLE), max_size=2, unique=True))
         },
         {f"v{index}": draw(_types(5)) for index in range(draw(st.integers(0, 2)))},
@@ -111,7 +111,7 @@ def _plant(draw: st.DrawFn, sketch: _Sketch, sketches: Sequence[_Sketch], scope:
         variables={name: f"{kind} = {_constant(draw, kind)}" for name, kind in sketch.variables.items()},
         inputs=sketch.inputs,
         initial=initial,
-        marked=[each for each in sketch.locations if each not in dead and draw(st.integers(0, 3)) < 3],
+        marked=[location for location in sketch.locations if location not in dead and draw(st.integers(0, 3)) < 3],
         kind=draw(st.sampled_from(_KINDS)),
         topic=draw(st.sampled_from((sketch.name, "shared"))),
     )
@@ -137,8 +137,8 @@ def _data_plant(draw: st.DrawFn, name: str, scope: _Scope):
     conditions = [_boolean(draw, scope, 2) for _ in range(draw(st.integers(1, 2)))]
     locations = ["none", *(f"d{index}" for index, _ in enumerate(conditions, 1))]
     edges = [
-        edge("c_none", to="none", when=" and ".join(f"not ({each})" for each in conditions)),
-        *(edge(f"c_d{index}", to=f"d{index}", when=each) for index, each in enumerate(conditions, 1)),
+        edge("c_none", to="none", when=" and ".join(f"not ({condition})" for condition in conditions)),
+        *(edge(f"c_d{index}", to=f"d{index}", when=condition) for index, condition in enumerate(conditions, 1)),
     ]
     shared = draw(st.booleans())
     return plant(

@@ -167,12 +167,12 @@ def model(
         plants=scope.plants,
         requirements=[
             sct.Requirement(
-                event=scope.event(each.event, None),
-                kind=getattr(sct.RequirementKind, each.kind),
-                condition=scope.expression(each.condition, None),
-                text=each.text,
+                event=scope.event(requirement.event, None),
+                kind=getattr(sct.RequirementKind, requirement.kind),
+                condition=scope.expression(requirement.condition, None),
+                text=requirement.text,
             )
-            for each in requirements
+            for requirement in requirements
         ],
     )
     if guards is not None:
@@ -216,7 +216,8 @@ class _Scope:
             )
         for event in owner.events:
             event.inputs.extend(
-                next(each for each in owner.inputs if each.name == name) for name in given.carries.get(event.name, ())
+                next(input_ for input_ in owner.inputs if input_.name == name)
+                for name in given.carries.get(event.name, ())
             )
         for element in (*owner.locations, *owner.inputs, *owner.variables):
             self.names[f"{owner.name}.{element.name}"] = element
@@ -271,7 +272,9 @@ class _Scope:
         if ".." in text:
             minimum, maximum = text.split("..")
             return ex.IntegerType(minimum=int(minimum), maximum=int(maximum))
-        return ex.EnumerationType(enumeration=next(each for each in self.enumerations if each.name == text))
+        return ex.EnumerationType(
+            enumeration=next(enumeration for enumeration in self.enumerations if enumeration.name == text)
+        )
 
     def event(self, name: str, owner: sct.Plant | None) -> sct.Event:
         wanted, _, bare = name.rpartition(".")

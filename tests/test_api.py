@@ -73,7 +73,7 @@ def test_loading_what_is_broken(door: Path, tmp_path: Path) -> None:
     door.write_text(DOOR.replace("Leaf.closed", "Leaf.x"))
     with pytest.raises(robosc.ModelError) as raised:
         robosc.load(door)
-    assert [each.rule for each in raised.value.diagnostics] == ["unresolved-reference"]
+    assert [diagnostic.rule for diagnostic in raised.value.diagnostics] == ["unresolved-reference"]
     with pytest.raises(FileNotFoundError):
         robosc.load(tmp_path / "missing.rscd")
 
@@ -96,7 +96,7 @@ def test_no_supervisor(door: Path) -> None:
     model = robosc.to_sct(robosc.load(door))
     with pytest.raises(robosc.EmptySupervisorError) as raised:
         robosc.synthesize(model)
-    assert [each.rule for each in raised.value.diagnostics] == ["empty-supervisor"]
+    assert [diagnostic.rule for diagnostic in raised.value.diagnostics] == ["empty-supervisor"]
     assert "request to `Leaf.open`" in str(raised.value)
     assert raised.value.synthesis.reason is not None
     assert model.supervisor is None
@@ -120,5 +120,5 @@ def test_an_action_that_cancels_itself(tmp_path: Path) -> None:
     model = robosc.to_sct(robosc.load(tmp_path / "courier.rscd"))
     with pytest.raises(robosc.ModelError) as raised:
         robosc.synthesize(model)
-    assert [each.rule for each in raised.value.diagnostics] == ["self-cancelling", "shared-topic-conflict"]
+    assert [diagnostic.rule for diagnostic in raised.value.diagnostics] == ["self-cancelling", "shared-topic-conflict"]
     assert model.supervisor is None

@@ -230,7 +230,7 @@ def test_sarif_edits_are_fixes() -> None:
 def test_sarif_describes_the_rules_that_were_broken() -> None:
     only = run(finding(rule="unique-topic"), finding(rule="type"), finding(2, rule="type"), finding(rule="brand-new"))
     rules = only["tool"]["driver"]["rules"]
-    assert [each["id"] for each in rules] == ["brand-new", "type", "unique-topic"]
+    assert [rule["id"] for rule in rules] == ["brand-new", "type", "unique-topic"]
     assert [rules[each["ruleIndex"]]["id"] for each in only["results"]] == [each["ruleId"] for each in only["results"]]
     assert rules[1]["shortDescription"]["text"].startswith("An expression has another type")
     assert rules[1]["help"]["text"].startswith("# type\n")

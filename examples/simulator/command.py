@@ -122,4 +122,4 @@ def _over_ros(simulation, options, until):
 
 
 def _write_lines(path, entries):
-    Path(path).write_text("".join(json.dumps(each) + "\n" for each in entries), encoding="utf-8")
+    Path(path).write_text("".join(json.dumps(entry) + "\n" for entry in entries), encoding="utf-8")

@@ -28,7 +28,7 @@ class Connection(ABC):
 
     def waits_for(self):
         """Topics that nobody listens to yet, the simulation's own devices aside."""
-        needed = (each for each in self.simulation.says if each not in self.simulation.scenario.unheard)
+        needed = (say for say in self.simulation.says if say not in self.simulation.scenario.unheard)
         return [each for each in needed if self.listeners(each) <= (each in self._echoes)]
 
     def send(self, item):

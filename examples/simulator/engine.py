@@ -80,9 +80,12 @@ class Node:
         graph = models.rosgraph
         self._event_loop = EventLoop(lambda: simulation.time)
         self._port = WorldPort(simulation)
-        parameters = {each.name: each.default for each in controller_parameters(graph, configuration, str(log))}
+        parameters = {
+            controller_parameter.name: controller_parameter.default
+            for controller_parameter in controller_parameters(graph, configuration, str(log))
+        }
         self._controller = kind(graph, Settings(parameters, configuration), self._port, self._event_loop)
-        self._subscriptions = {each.topic: each for each in graph.subscriptions}
+        self._subscriptions = {subscription.topic: subscription for subscription in graph.subscriptions}
         self._controller.start()
 
     def take(self, item):
@@ -112,11 +115,14 @@ class SupervisedNode:
         self._world = simulation
         self._controller = Node(self, load(behind), config_beside(behind), "")
         configuration = config_beside(model_of(scenario))
-        parameters = {each.name: each.default for each in layer_parameters(graph, configuration, str(log))}
+        parameters = {
+            layer_parameter.name: layer_parameter.default
+            for layer_parameter in layer_parameters(graph, configuration, str(log))
+        }
         self._event_loop = EventLoop(lambda: simulation.time)
         self._layer = Layer(graph, Settings(parameters, configuration), WorldPort(simulation), self._event_loop)
-        self._subscriptions = {each.topic: each for each in graph.subscriptions}
-        self._sendings = {each.topic: each.sendings[0] for each in graph.publishers}
+        self._subscriptions = {subscription.topic: subscription for subscription in graph.subscriptions}
+        self._sendings = {publisher.topic: publisher.sendings[0] for publisher in graph.publishers}
         self._layer.start()
 
     @property

@@ -42,7 +42,7 @@ class _Drawing:
             yield from way
 
     def elements(self):
-        said = [f"{each.time:5.1f} s  {each.words}" for each in self.simulation.happenings]
+        said = [f"{happening.time:5.1f} s  {happening.words}" for happening in self.simulation.happenings]
         width = max(self.width, 2 * MARGIN + 300)
         height = self.height + LINE * (len(said) + 2)
         title = self.simulation.scenario.name.replace("_", " ")
@@ -100,8 +100,8 @@ class _Drawing:
     def _marks(self):
         """Numbers where something happened; those of one place stand side by side."""
         taken = []
-        for number, each in enumerate(self.simulation.happenings):
-            x, y = self._at(each.x, each.y)
+        for number, happening in enumerate(self.simulation.happenings):
+            x, y = self._at(happening.x, happening.y)
             while any(math.dist((x, y), other) < 17 for other in taken):
                 x += 17
             taken.append((x, y))
@@ -114,7 +114,7 @@ class _Drawing:
 
     def _way(self, points):
         """Points for a polyline; of those that are drawn at the same place only the first."""
-        shown = [f"{x:.1f},{y:.1f}" for x, y in (self._at(*each) for each in points)]
+        shown = [f"{x:.1f},{y:.1f}" for x, y in (self._at(*point) for point in points)]
         kept = [each for before, each in zip([None, *shown], shown) if each != before]  # noqa: B905  # old Pythons, too
         return " ".join(kept)
 

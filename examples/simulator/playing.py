@@ -45,8 +45,8 @@ def play(simulation, connection, speed, until):
 
 def tell(simulation, told):
     """Prints what has happened since so many happenings; how many that are now."""
-    for each in simulation.happenings[told:]:
-        said(f"{each.time:6.1f} s  {each.words}")
+    for happening in simulation.happenings[told:]:
+        said(f"{happening.time:6.1f} s  {happening.words}")
     return len(simulation.happenings)
 
 

@@ -66,8 +66,8 @@ class Ros2(Connection):
 
     def close(self):
         """Ends the connection."""
-        for each in self._servers:
-            each.destroy()
+        for server in self._servers:
+            server.destroy()
         self._node.destroy_node()
         rclpy.try_shutdown()
 
@@ -86,7 +86,7 @@ class Ros2(Connection):
             self._goals.append(_Goal(handle, kind))
 
         def cancel(handle):
-            number = next(number for number, each in enumerate(self._goals) if each.handle is handle)
+            number = next(number for number, goal in enumerate(self._goals) if goal.handle is handle)
             return CancelResponse.ACCEPT if self.simulation.cancel(action, number) else CancelResponse.REJECT
 
         return ActionServer(

@@ -65,11 +65,11 @@ class Simulation:
         noise = Noise(seed, scenario.name)
         self.devices = [Lidar(noise.up_to(0.005)), Odometry(), *scenario.devices(self.world, noise)]
         #: Topics that anything is sent to, and that anything is heard on, with their types; actions likewise.
-        self.says = {topic: kind for each in self.devices for topic, kind in each.says.items()}
+        self.says = {topic: kind for device in self.devices for topic, kind in device.says.items()}
         self.says.update(dict.fromkeys(BUTTONS, EMPTY))
         self.says.update(scenario.people)
-        self.hears = {topic: kind for each in self.devices for topic, kind in each.hears.items()}
-        self.serves = {action: kind for each in self.devices for action, kind in each.serves.items()}
+        self.hears = {topic: kind for device in self.devices for topic, kind in device.hears.items()}
+        self.serves = {action: kind for device in self.devices for action, kind in device.serves.items()}
         self.stopped = False
         self.ended = False
         self.reached_at = None
@@ -98,15 +98,15 @@ class Simulation:
 
     def device(self, kind):
         """The device of that class."""
-        return next(each for each in self.devices if isinstance(each, kind))
+        return next(device for device in self.devices if isinstance(device, kind))
 
     def advance(self):
         """One step of time; the messages and the news of goals that are sent after it."""
-        for each in self.devices:
-            each.act(self.world)
+        for device in self.devices:
+            device.act(self.world)
         self.world.step()
-        for each in self.devices:
-            for words in each.news():
+        for device in self.devices:
+            for words in device.news():
                 self.happens(words)
         self._play()
         news = self._sense()
@@ -119,16 +119,19 @@ class Simulation:
 
     def _sense(self):
         """Lets the devices speak whose turn it is; the news of goals."""
-        for each in self.devices:
-            if self._due(each.period):
-                for topic, data in each.say(self.world):
+        for device in self.devices:
+            if self._due(device.period):
+                for topic, data in device.say(self.world):
                     self.say(topic, data)
         news = [
-            GoalNews(action, *event) for each in self.devices for action in each.serves for event in _taken(each.events)
+            GoalNews(action, *event)
+            for device in self.devices
+            for action in device.serves
+            for event in _taken(device.events)
         ]
-        for each in news:
-            if each.what != "feedback":
-                self._note(each.action, each.what)
+        for new in news:
+            if new.what != "feedback":
+                self._note(new.action, new.what)
         return news
 
     def receive(self, topic, data):
@@ -165,12 +168,12 @@ class Simulation:
         self._note("happening", words)
 
     def _deliver(self, topic, data):
-        for each in self.devices:
-            if topic in each.hears:
-                each.hear(self.world, topic, data)
+        for device in self.devices:
+            if topic in device.hears:
+                device.hear(self.world, topic, data)
 
     def _server(self, action):
-        return next(each for each in self.devices if action in each.serves)
+        return next(device for device in self.devices if action in device.serves)
 
     def _due(self, period):
         return self.world.steps % round(period / STEP) == 0
@@ -193,7 +196,7 @@ class Simulation:
 
     def _trace(self):
         world = self.world
-        self.pillars += [each for each in world.pillars if each not in self.pillars]
+        self.pillars += [pillar for pillar in world.pillars if pillar not in self.pillars]
         self.ways["robot"].append((world.pose.x, world.pose.y))
         for name, thing in (("ball", world.ball), ("person", world.person)):
             if thing:

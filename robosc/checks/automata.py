@@ -29,12 +29,12 @@ def behaviours(base: rsc.Base) -> Iterator[tuple[rsc.Component, rsc.ComponentBeh
 
 def states(automaton: rsc.Automaton) -> list[rsc.State]:
     """Its states, in the order of the text."""
-    return [each for each in automaton.definitions if isinstance(each, rsc.State)]
+    return [definition for definition in automaton.definitions if isinstance(definition, rsc.State)]
 
 
 def common_transitions(automaton: rsc.Automaton) -> list[rsc.Transition]:
     """The transitions that every state has, in the order of the text."""
-    return [each for each in automaton.definitions if isinstance(each, rsc.Transition)]
+    return [definition for definition in automaton.definitions if isinstance(definition, rsc.Transition)]
 
 
 def transitions(automaton: rsc.Automaton) -> Iterator[rsc.Transition]:

@@ -42,7 +42,7 @@ def carried_types(communication: rsc.CommunicationType) -> list[rsc.DataType]:
             types = [communication.requestType, communication.responseType]
         case rsc.Action():
             types = [communication.requestType, communication.responseType, communication.feedbackType]
-    return [each for each in types if each is not None]
+    return [kind for kind in types if kind is not None]
 
 
 def sent_type(communication: rsc.CommunicationType | None) -> rsc.DataType | None:

@@ -43,7 +43,7 @@ def enum_state_overlap(base: rsc.Base) -> Iterator[Finding]:
 
 def _overlaps(library: rsc.Library) -> set[tuple[rsc.EnumValue, rsc.State]]:
     values = [value for home in [library, *reachable(library, has_enum_values)] for value in enum_values(home)]
-    found = [each for instance in instances(library) if instance.automaton for each in states(instance.automaton)]
+    found = [state for instance in instances(library) if instance.automaton for state in states(instance.automaton)]
     return {(value, state) for value in values for state in found if value.name == state.name}
 
 

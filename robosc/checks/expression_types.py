@@ -127,7 +127,7 @@ class ExpressionCheck:
         symbol = SYMBOLS[type(operator)]
         operands = (operator.left, operator.right)
         comparable = [
-            each in {BOOLEAN, INTEGER, DOUBLE, STRING, UNKNOWN} or isinstance(each, EnumType) for each in types
+            kind in {BOOLEAN, INTEGER, DOUBLE, STRING, UNKNOWN} or isinstance(kind, EnumType) for kind in types
         ]
         for operand, found, fits in zip(operands, types, comparable, strict=True):
             if not fits:
@@ -177,7 +177,7 @@ class ExpressionCheck:
                 "store it in a variable by `on response from … do variable := value`, and read the variable",
             )
         if isinstance(item, rsc.Component):
-            members = [f"`{written(item.name)}.{written(each)}`" for each in _members(item)]
+            members = [f"`{written(item.name)}.{written(member)}`" for member in _members(item)]
             return (
                 f"component `{item.name}` has no value of its own, expected one of its states or variables",
                 f"write {' or '.join(members[:3])}" if members else f"`{item.name}` has neither: leave it out",
@@ -215,4 +215,8 @@ def _describe(access: rsc.Access) -> str:
 def _members(component: rsc.Component) -> list[str]:
     instance = instances(component.eContainer()).instance(component, None)
     automaton = instance.automaton if instance else None
-    return [each.name for each in (automaton.definitions if automaton else ()) if isinstance(each, rsc.AccessibleItem)]
+    return [
+        definition.name
+        for definition in (automaton.definitions if automaton else ())
+        if isinstance(definition, rsc.AccessibleItem)
+    ]

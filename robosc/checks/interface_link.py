@@ -20,7 +20,7 @@ def interface_link(base: rsc.Base) -> Iterator[Finding]:
     """What has no wire type of its own links an interface: objects, actions, services that carry data."""
     for _, communication in communications(base):
         if communication.interface is None:
-            types = [_wire_type(each) for each in carried_types(communication)]
+            types = [_wire_type(carried_kind) for carried_kind in carried_types(communication)]
             reason = _reason(communication, types)
             if reason:
                 yield Finding(
@@ -39,12 +39,12 @@ def _wire_type(declared: rsc.DataType) -> Type:
 
 
 def _reason(communication: rsc.CommunicationType, types: list[Type]) -> str | None:
-    named = next((each for each in types if isinstance(each, ObjectType)), None)
+    named = next((kind for kind in types if isinstance(kind, ObjectType)), None)
     if named is not None:
         return f"its data is {named}, and only an interface says which ROS type that is"
     if isinstance(communication, rsc.Action):
         return "no ROS action type is meant by itself"
-    if isinstance(communication, rsc.Service) and any(each not in {NONE, UNKNOWN} for each in types):
+    if isinstance(communication, rsc.Service) and any(kind not in {NONE, UNKNOWN} for kind in types):
         return "only a service whose request and response are `none` has a ROS type of its own, `std_srvs/Empty`"
     return None
 
@@ -52,8 +52,8 @@ def _reason(communication: rsc.CommunicationType, types: list[Type]) -> str | No
 def _repair(communication: rsc.CommunicationType, base: rsc.Base, types: list[Type]) -> str:
     """An interface that exists where there is one that fits by name, or is at least the only one."""
     homes = dict.fromkeys([base, *(library for _, library in imports(base))])
-    known = [each for home in homes for each in home.definitions if isinstance(each, rsc.Interface)]
-    objects = [each.definition.name for each in types if isinstance(each, ObjectType)]
+    known = [definition for home in homes for definition in home.definitions if isinstance(definition, rsc.Interface)]
+    objects = [kind.definition.name for kind in types if isinstance(kind, ObjectType)]
     fitting = [each for each in known if any(name.startswith(each.type or each.name) for name in objects)]
     if fitting:
         return f"add `links {written(fitting[0].name)}` after its types"

@@ -93,7 +93,7 @@ def _place(base: rsc.Base, data: Carried, fault: Fault, uses: Uses) -> ex.Locate
     """The property, else what uses it, else the data that it is a part of: the first that is in the base's text."""
     use = None if fault.property is None else uses.get(fault.property)
     candidates: list[ex.Located | None] = [fault.property, use, data.declared]
-    return next((each for each in candidates if each is not None and _root(each) is base), None)
+    return next((candidate for candidate in candidates if candidate is not None and _root(candidate) is base), None)
 
 
 def _root(element: Any) -> Any:

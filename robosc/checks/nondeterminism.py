@@ -21,12 +21,14 @@ def nondeterminism(base: rsc.Base) -> Iterator[Finding]:
     """A state reacts to an event in one way; the transitions that all states have are among its own."""
     for component, behaviour in behaviours(base):
         automaton = behaviour.automaton
-        order = {each: number for number, each in enumerate(automaton.definitions)}
+        order = {definition: number for number, definition in enumerate(automaton.definitions)}
         common = common_transitions(automaton)
         reported: set[rsc.Transition] = set()
         yield from _repeated([(each, None) for each in common], component, reported)
         for state in states(automaton):
-            own: list[tuple[rsc.Transition, rsc.State | None]] = [(each, state) for each in state.transitions]
+            own: list[tuple[rsc.Transition, rsc.State | None]] = [
+                (transition, state) for transition in state.transitions
+            ]
             before = [(each, None) for each in common if order[each] < order[state]]
             after = [(each, None) for each in common if order[each] > order[state]]
             yield from _repeated([*before, *own, *after], component, reported)

@@ -39,5 +39,5 @@ def _preposition(event: str) -> str:
 
 
 def _enumeration(words: list[str] | tuple[str, ...]) -> str:
-    *others, last = (f"`{each}`" for each in words)
+    *others, last = (f"`{word}`" for word in words)
     return f"{', '.join(others)} or {last}" if others else last

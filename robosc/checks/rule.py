@@ -36,12 +36,12 @@ class Finding:
         """Whether what reading the text found makes it doubtful."""
         if isinstance(self.element, ex.Expression):
             expression = place(self.element)[1]
-            if any(each.rule == "syntax" and _goes_on(expression, each.span) for each in findings):
+            if any(finding.rule == "syntax" and _goes_on(expression, finding.span) for finding in findings):
                 return True
         if self.relies_on is None:
             return False
         span = place(self.relies_on)[1]
-        within = [each for each in findings if span.contains(each.span)]
+        within = [finding for finding in findings if span.contains(finding.span)]
         return any(
             each.rule == "syntax" or isinstance(_innermost(self.relies_on, each.span), self.relies_on_names)
             for each in within

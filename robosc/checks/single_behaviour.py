@@ -12,7 +12,7 @@ from robosc.metamodel import robosc as rsc
 def single_behaviour(base: rsc.Base) -> Iterator[Finding]:
     """A component has at most one behaviour."""
     for component, local in components(base):
-        every = [each for each in local.definitions if isinstance(each, rsc.ComponentBehaviour)]
+        every = [definition for definition in local.definitions if isinstance(definition, rsc.ComponentBehaviour)]
         for other in every[1:]:
             yield Finding(
                 other,

@@ -43,7 +43,7 @@ def supervised_faults(base: rsc.Base, search: Search) -> Iterator[Finding]:
     of_libraries: set[ex.Located] | None = None
     for fault in search(instances(base), result):
         if of_libraries is None:
-            of_libraries = {each.element for library in reachable(base) for each in _faults(library, search)}
+            of_libraries = {fault.element for library in reachable(base) for fault in _faults(library, search)}
         if fault.element in of_libraries:
             continue
         home = _root(fault.element)

@@ -79,7 +79,7 @@ def _too_many(
         if variable is not None:
             ranges[variable] = _size(variable.variable.type)
         elif access.value and assigned is not None:
-            path = tuple(each.property for each in access.segments if isinstance(each, rsc.PropertySegment))
+            path = tuple(segment.property for segment in access.segments if isinstance(segment, rsc.PropertySegment))
             ranges[path] = _size(read_type(assigned, access))
     count = 1
     for size in ranges.values():

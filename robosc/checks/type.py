@@ -43,10 +43,10 @@ def types(base: rsc.Base) -> Iterator[Finding]:
             case rsc.ProvideStatement():
                 yield from _provide(definition)
     for _, behaviour in behaviours(base):
-        for each in behaviour.automaton.definitions:
-            if isinstance(each, rsc.Variable) and each.initial:
+        for declared in behaviour.automaton.definitions:
+            if isinstance(declared, rsc.Variable) and declared.initial:
                 check = ExpressionCheck(CONSTANT)
-                check.expect(each.initial, _variable_type(each), f"the initial value of `{each.name}`")
+                check.expect(declared.initial, _variable_type(declared), f"the initial value of `{declared.name}`")
                 yield from check.findings
         for transition in transitions(behaviour.automaton):
             yield from _transition(transition)

@@ -147,11 +147,11 @@ def _conversion(expression: ex.Expression, found: Type, wanted: Type) -> str:
 
 
 def _alternatives(enum: EnumType) -> str:
-    return ", ".join(f"`{written(each)}`" for each in _values(enum))
+    return ", ".join(f"`{written(value)}`" for value in _values(enum))
 
 
 def _values(enum: EnumType) -> list[str]:
-    return list(dict.fromkeys(each.value.name for each in enum.definition.rules if each.value))
+    return list(dict.fromkeys(rule.value.name for rule in enum.definition.rules if rule.value))
 
 
 def _text(expression: ex.Expression) -> str:

@@ -28,7 +28,7 @@ def unique_communication(base: rsc.Base) -> Iterator[Finding]:
 
 
 def _communications(base: rsc.Base) -> set[rsc.CommunicationType]:
-    return {each.communication for each in instances(base).occurrences()}
+    return {occurrence.communication for occurrence in instances(base).occurrences()}
 
 
 def _describe(occurrence: Occurrence) -> str:

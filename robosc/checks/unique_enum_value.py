@@ -11,7 +11,7 @@ from robosc.metamodel import robosc as rsc
 def unique_enum_value(base: rsc.Base) -> Iterator[Finding]:
     """No two enum values of a robot or library and its imports have one name."""
     firsts: dict[str, rsc.EnumValue] = {}
-    for value in (each for library in reachable(base, has_enum_values) for each in enum_values(library)):
+    for value in (enum_value for library in reachable(base, has_enum_values) for enum_value in enum_values(library)):
         firsts.setdefault(value.name, value)
     for value in enum_values(base):
         first = firsts.setdefault(value.name, value)

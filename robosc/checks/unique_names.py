@@ -17,14 +17,18 @@ if TYPE_CHECKING:
 @rule("unique-component")
 def unique_component(base: rsc.Base) -> Iterator[Finding]:
     """No two components have one name, defined here or imported."""
-    for second, first in repeated(each for each in base.definitions if isinstance(each, rsc.Component)):
+    for second, first in repeated(
+        definition for definition in base.definitions if isinstance(definition, rsc.Component)
+    ):
         yield declared_again("component", second, first, f"`{base.name}`")
 
 
 @rule("unique-datatype")
 def unique_datatype(base: rsc.Base) -> Iterator[Finding]:
     """No two objects or enums of one file have one name."""
-    for second, first in repeated(each for each in base.definitions if isinstance(each, rsc.ComplexDataType)):
+    for second, first in repeated(
+        definition for definition in base.definitions if isinstance(definition, rsc.ComplexDataType)
+    ):
         yield declared_again("data type", second, first, f"`{base.name}`")
 
 
@@ -32,7 +36,7 @@ def unique_datatype(base: rsc.Base) -> Iterator[Finding]:
 def unique_state(base: rsc.Base) -> Iterator[Finding]:
     """No two states of a component have one name."""
     for component, behaviour in behaviours(base):
-        states = (each for each in behaviour.automaton.definitions if isinstance(each, rsc.State))
+        states = (definition for definition in behaviour.automaton.definitions if isinstance(definition, rsc.State))
         for second, first in repeated(states):
             yield declared_again("state", second, first, f"component `{component.name}`")
 
@@ -44,15 +48,15 @@ def unique_variable(base: rsc.Base) -> Iterator[Finding]:
         where = f"component `{component.name}`"
         first: dict[str, rsc.AccessibleItem] = {}
         states = set()
-        for each in behaviour.automaton.definitions:
-            if isinstance(each, rsc.Variable) and each.name in first:
-                yield declared_again("variable", each, first[each.name], where)
-            elif isinstance(each, rsc.State) and each.name not in states:
-                states.add(each.name)
-                if each.name in first:
-                    yield declared_again("state", each, first[each.name], where)
-            if isinstance(each, (rsc.Variable, rsc.State)):
-                first.setdefault(each.name, each)
+        for definition in behaviour.automaton.definitions:
+            if isinstance(definition, rsc.Variable) and definition.name in first:
+                yield declared_again("variable", definition, first[definition.name], where)
+            elif isinstance(definition, rsc.State) and definition.name not in states:
+                states.add(definition.name)
+                if definition.name in first:
+                    yield declared_again("state", definition, first[definition.name], where)
+            if isinstance(definition, (rsc.Variable, rsc.State)):
+                first.setdefault(definition.name, definition)
 
 
 @rule("unique-property")
@@ -84,9 +88,9 @@ def _provided_again(value: ex.Expression) -> Iterator[Finding]:
 def repeated(elements: Iterable[ex.NamedElement]) -> Iterator[tuple[ex.NamedElement, ex.NamedElement]]:
     """Each element whose name an earlier one has, with the first that has it."""
     first: dict[str, ex.NamedElement] = {}
-    for each in elements:
-        if each.name and first.setdefault(each.name, each) is not each:
-            yield each, first[each.name]
+    for element in elements:
+        if element.name and first.setdefault(element.name, element) is not element:
+            yield element, first[element.name]
 
 
 def declared_again(kind: str, second: ex.NamedElement, first: ex.NamedElement, where: str) -> Finding:

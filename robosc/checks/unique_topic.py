@@ -54,7 +54,9 @@ def _place(occurrence: Occurrence, base: rsc.Base) -> ex.Located:
         return occurrence.communication
     component = occurrence.instance.component
     assert isinstance(component.type, rsc.ImportedComponent)
-    remapped = (each for each in component.type.remappings if each.communicationType is occurrence.communication)
+    remapped = (
+        remapping for remapping in component.type.remappings if remapping.communicationType is occurrence.communication
+    )
     return next(remapped, component)
 
 

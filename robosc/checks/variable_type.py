@@ -49,7 +49,7 @@ def _faults(_: Instances, result: Needed) -> Iterator[Fault]:
             )
     for assigned, access in data_reads(result):
         types = access_types(access, value_type(access))
-        is_array = any(isinstance(each, ArrayType) for each in types)
+        is_array = any(isinstance(kind, ArrayType) for kind in types)
         if is_array or types[-1] in {DOUBLE, STRING}:
             assert assigned.variable is not None
             kind = "array data" if is_array else f"a {types[-1]}"

@@ -122,7 +122,7 @@ class UsedData:
         touched = self._touched.setdefault(source, [])
         for access in accesses(expression):
             if access.value:
-                touched += [each for each in access.segments if isinstance(each, rsc.PropertySegment)]
+                touched += [segment for segment in access.segments if isinstance(segment, rsc.PropertySegment)]
 
 
 def _enums(declared: rsc.DataType | None) -> list[rsc.EnumDataType]:

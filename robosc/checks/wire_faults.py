@@ -65,7 +65,7 @@ def faults(data: Carried, interfaces: RosTypes, uses: Uses) -> list[Fault] | Unk
         answers = []
     if not answers:
         return Unknown(*why_unknown(interfaces, data.ros_type.package, data.ros_type.name, data.part))
-    return min(answers, key=lambda each: (sum(fault.is_used(uses) for fault in each), len(each)))
+    return min(answers, key=lambda answer: (sum(fault.is_used(uses) for fault in answer), len(answer)))
 
 
 def misfits(data: Carried, interfaces: RosTypes, uses: Uses) -> dict[str, str]:
@@ -206,7 +206,7 @@ def _text(declared: rsc.DataType) -> str:
 
 
 def _listed(fields: Fields) -> str:
-    return f"it has {', '.join(f'`{each}`' for each in fields)}" if fields else "it has none"
+    return f"it has {', '.join(f'`{field}`' for field in fields)}" if fields else "it has none"
 
 
 def _lone(fields: Fields) -> str:

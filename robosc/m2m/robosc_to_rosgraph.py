@@ -306,10 +306,12 @@ class _Transformation:
                 locations=list(places) if state is None else [self.trace.locations[instance, state]],
                 source=transition.source,
             )
-            for owned, each in assignments.items():
+            for owned, assignment in assignments.items():
                 variable = self.variables[owned]
-                value = self.expressions(each.value, instance, data)
-                reaction.assignments.append(rosgraph.NodeAssignment(variable=variable, value=value, source=each.source))
+                value = self.expressions(assignment.value, instance, data)
+                reaction.assignments.append(
+                    rosgraph.NodeAssignment(variable=variable, value=value, source=assignment.source)
+                )
             self.graph.reactions.append(reaction)
 
     def event_and_data(

@@ -214,7 +214,11 @@ class _Transformation:
 
     def needed_variables(self, instance: Instance) -> list[InstanceVariable]:
         definitions = instance.automaton.definitions if instance.automaton else ()
-        declared = (InstanceVariable(instance, each) for each in definitions if isinstance(each, robosc.Variable))
+        declared = (
+            InstanceVariable(instance, definition)
+            for definition in definitions
+            if isinstance(definition, robosc.Variable)
+        )
         return [each for each in declared if each in self.trace.needed.variables]
 
     def initial(self, owned: InstanceVariable) -> None:
@@ -297,17 +301,19 @@ class _Transformation:
         return None if statement.condition is None else self.expressions.condition(statement.condition, None)
 
     def none_holds(self, statements: list[robosc.ProvideStatement]) -> ex.Expression | None:
-        conditions = [self.holds(each) for each in statements]
+        conditions = [self.holds(statement) for statement in statements]
         if None in conditions:
             return ex.BooleanLiteral(value=False)
-        return conjunction(ex.Negation(operand=each) for each in conditions if each is not None)
+        return conjunction(ex.Negation(operand=condition) for condition in conditions if condition is not None)
 
     # Requirements
 
     def requirements(self) -> None:
         """Section 5.2.2: one for each communication named, on its trigger; and the cancelling of actions."""
         on_action: dict[Occurrence, list[robosc.Requirement]] = {
-            each: [] for each in self.instances.occurrences() if isinstance(each.communication, robosc.Action)
+            occurrence: []
+            for occurrence in self.instances.occurrences()
+            if isinstance(occurrence.communication, robosc.Action)
         }
         for requirement in self.robot.definitions:
             if not isinstance(requirement, robosc.Requirement):
@@ -360,7 +366,7 @@ class _Transformation:
 
 def _states(instance: Instance) -> list[robosc.State]:
     definitions = instance.automaton.definitions if instance.automaton else ()
-    return [each for each in definitions if isinstance(each, robosc.State)]
+    return [definition for definition in definitions if isinstance(definition, robosc.State)]
 
 
 def _location(plant: sct.Plant, name: str, *, initial: bool = False, marked: bool = False) -> sct.Location:

@@ -76,9 +76,9 @@ class SctExpressions:
         return sct.VariableReference(variable=self._trace.variables[owned])
 
     def _tabulate(self, comparison: ex.Expression, original: ex.Expression) -> ex.Expression:
-        references = list({_declaration(each): each for each in _references(comparison)}.values())
+        references = list({_declaration(reference): reference for reference in _references(comparison)}.values())
         try:
-            return tabulate(comparison, references, [_range(each) for each in references], _copy)
+            return tabulate(comparison, references, [_range(reference) for reference in references], _copy)
         except TooLargeError as error:
             file, span = place(original)
             raise ModelError(

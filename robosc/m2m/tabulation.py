@@ -40,7 +40,7 @@ def tabulate(
         count *= len(each)
     if count > LARGEST_TABLE:
         raise TooLargeError(count)
-    keys = [_key(each) for each in references]
+    keys = [_key(reference) for reference in references]
 
     def table(depth: int, values: Mapping[object, int]) -> ex.Expression:
         if depth == len(keys):

@@ -127,9 +127,9 @@ def accesses(expression: ex.Expression | None) -> Iterator[robosc.Access]:
 def property_path(access: robosc.Access) -> tuple[robosc.ObjectProperty, ...] | None:
     """The properties that an access to `value` follows; None where it reads an array or is not resolved."""
     segments = list(access.segments)
-    if not all(isinstance(each, robosc.PropertySegment) and each.property is not None for each in segments):
+    if not all(isinstance(segment, robosc.PropertySegment) and segment.property is not None for segment in segments):
         return None
-    return tuple(each.property for each in segments if isinstance(each, robosc.PropertySegment))
+    return tuple(segment.property for segment in segments if isinstance(segment, robosc.PropertySegment))
 
 
 def read_type(assigned: Assigned, access: robosc.Access) -> robosc.DataType | None:

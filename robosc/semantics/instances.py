@@ -33,13 +33,15 @@ class Instance:
     @property
     def communications(self) -> list[robosc.CommunicationType]:
         """Its messages, services and actions, in the order of the text."""
-        return [each for each in self.local.definitions if isinstance(each, robosc.CommunicationType)]
+        return [definition for definition in self.local.definitions if isinstance(definition, robosc.CommunicationType)]
 
     @property
     def automaton(self) -> robosc.Automaton | None:
         """Its behaviour, if it has one."""
-        behaviours = (each for each in self.local.definitions if isinstance(each, robosc.ComponentBehaviour))
-        return next((each.automaton for each in behaviours), None)
+        behaviours = (
+            definition for definition in self.local.definitions if isinstance(definition, robosc.ComponentBehaviour)
+        )
+        return next((behaviour.automaton for behaviour in behaviours), None)
 
     def topic(self, communication: robosc.CommunicationType) -> str:
         """The ROS name of one of its communications: re-mapped, given, or the communication's own name."""
@@ -122,21 +124,25 @@ class Instances:
 
     def assignments(self, transition: robosc.Transition, within: Instance) -> dict[InstanceVariable, robosc.Assignment]:
         """What a transition of an instance assigns to which variable; of several to one variable the last counts."""
-        owned = ((self.variable(each.item, within), each) for each in transition.assignments if each.item)
+        owned = (
+            (self.variable(assignment.item, within), assignment)
+            for assignment in transition.assignments
+            if assignment.item
+        )
         return {variable: each for variable, each in owned if variable is not None}
 
     @cached_property
     def _names(self) -> Counter[str]:
-        return Counter(each.communication.name for each in self.occurrences())
+        return Counter(occurrence.communication.name for occurrence in self.occurrences())
 
     @cached_property
     def _provided(self) -> dict[Occurrence, list[robosc.ProvideStatement]]:
         provided: dict[Occurrence, list[robosc.ProvideStatement]] = {}
-        for each in self.base.definitions:
-            if isinstance(each, robosc.ProvideStatement):
-                occurrence = self.occurrence(each.communicationType, None)
+        for definition in self.base.definitions:
+            if isinstance(definition, robosc.ProvideStatement):
+                occurrence = self.occurrence(definition.communicationType, None)
                 if occurrence is not None:
-                    provided.setdefault(occurrence, []).append(each)
+                    provided.setdefault(occurrence, []).append(definition)
         return provided
 
 

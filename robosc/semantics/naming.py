@@ -50,7 +50,7 @@ def escape(name: str, keywords: Collection[str]) -> str:
     gives `if__`. Everything else stays as it is.
     """
     stem = name.rstrip("_")
-    longest = max((len(each) for each in keywords if each.rstrip("_") == stem), default=None)
+    longest = max((len(keyword) for keyword in keywords if keyword.rstrip("_") == stem), default=None)
     return name if longest is None else name + "_" * (longest - len(stem) + 1)
 
 

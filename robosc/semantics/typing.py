@@ -61,7 +61,7 @@ class ObjectType:
             return self.definition
         owner = home.eContainer()
         parts = ("requestType", "responseType", "feedbackType")
-        return home.package, home.rosType, next((each for each in parts if getattr(owner, each, None) is home), "")
+        return home.package, home.rosType, next((part for part in parts if getattr(owner, part, None) is home), "")
 
     def __str__(self) -> str:
         return f"object {self.definition.name}"

@@ -35,7 +35,7 @@ def found(folder: Path, robot: str, **libraries: str) -> list[Diagnostic]:
 
 
 def places(findings: list[Diagnostic]) -> list[tuple[str, int, str]]:
-    return [(Path(each.file).name, each.span.line, each.rule) for each in findings]
+    return [(Path(finding.file).name, finding.span.line, finding.rule) for finding in findings]
 
 
 def test_library_is_checked_once_as_itself(tmp_path: Path) -> None:
@@ -120,7 +120,7 @@ def test_a_librarys_component_mentions_itself_only(tmp_path: Path) -> None:
     """
     findings = found(tmp_path, robot, doors=doors)
     assert places(findings) == [("doors.rscd", line, "unresolved-reference") for line in (10, 11, 12)]
-    assert {each.hint for each in findings} == {"a library's component speaks of its own members only"}
+    assert {finding.hint for finding in findings} == {"a library's component speaks of its own members only"}
 
 
 def test_repairs_escape_keywords(tmp_path: Path) -> None:
@@ -268,7 +268,7 @@ def test_unresolved_topics_are_not_one_and_the_same(tmp_path: Path, imported: st
         }
     """
     findings = found(tmp_path, f"robot House {{\n  component {imported}\n}}\n", safety=safety)
-    assert {each.rule for each in findings} == {"unresolved-reference"}
+    assert {finding.rule for finding in findings} == {"unresolved-reference"}
 
 
 @pytest.mark.parametrize(

@@ -54,7 +54,7 @@ def test_accepted_model_draws_nothing(model: Path) -> None:
 
 @pytest.mark.parametrize("rule", sorted(RULES))
 def test_every_rule_has_enough_models(rule: str) -> None:
-    rejected, accepted = (Counter(each.parent.name for each in models) for models in (REJECTED, ACCEPTED))
+    rejected, accepted = (Counter(model.parent.name for model in models) for models in (REJECTED, ACCEPTED))
     assert rejected[rule] >= 3
     assert accepted[rule] >= 2
 

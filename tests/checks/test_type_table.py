@@ -69,8 +69,8 @@ def faults(expression: ex.Expression) -> list[ex.Located]:
     """Where the findings in an expression stand."""
     check = ExpressionCheck(Place(None))
     check.type(expression)
-    assert all(each.message and each.hint for each in check.findings)
-    return [each.element for each in check.findings]
+    assert all(finding.message and finding.hint for finding in check.findings)
+    return [finding.element for finding in check.findings]
 
 
 @pytest.mark.parametrize("operator", ACCEPTED)
@@ -127,7 +127,7 @@ def test_types_of_one_name_are_told_apart() -> None:
     rsc.Library(name="Paints", definitions=[theirs])
     check = ExpressionCheck(Place(None))
     check.expect(operand(EnumType(theirs)), EnumType(ours), "it")
-    assert [each.message for each in check.findings] == [
+    assert [finding.message for finding in check.findings] == [
         "it must be enum Colour of robot House, found enum Colour of library Paints"
     ]
 
@@ -152,7 +152,7 @@ def test_types_of_one_name_are_told_apart() -> None:
 def test_repair_of_a_literal(literal: ex.Expression, wanted: Type, repair: str) -> None:
     check = ExpressionCheck(Place(None))
     check.expect(literal, wanted, "it")
-    assert [each.hint for each in check.findings] == [repair]
+    assert [finding.hint for finding in check.findings] == [repair]
 
 
 @pytest.mark.parametrize(

@@ -47,7 +47,7 @@ def test_one_broken_model_among_others(run: Run, broken: Path, door: Path, tmp_p
     damaged.write_text("<robot")
     answer = run("check", damaged, door, broken, "--format", "json")
     assert answer.exit_code == 1
-    assert {Path(each["file"]).name for each in json.loads(answer.stdout)} == {"damaged.xmi", "broken.rscd"}
+    assert {Path(load["file"]).name for load in json.loads(answer.stdout)} == {"damaged.xmi", "broken.rscd"}
 
 
 def test_a_warning_is_no_error(run: Run, tmp_path: Path) -> None:

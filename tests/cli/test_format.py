@@ -27,7 +27,7 @@ def test_a_file_is_written_in_place(run: Run, messy: Path) -> None:
     assert (answer.exit_code, answer.output) == (0, "")
     assert messy.read_text() == DOOR
     assert messy.stat().st_mode & 0o777 == 0o640
-    assert [each.name for each in messy.parent.iterdir()] == ["messy.rscd"]
+    assert [path.name for path in messy.parent.iterdir()] == ["messy.rscd"]
 
 
 def test_a_file_that_has_the_layout_is_not_touched(run: Run, door: Path) -> None:

@@ -43,7 +43,7 @@ def test_an_interrupt_that_comes_out_otherwise(door: Path, hiding: str) -> None:
         check=False,
     )
     assert (done.returncode, done.stderr) == (130, "")
-    assert [each.name for each in door.parent.iterdir()] == [door.name]
+    assert [path.name for path in door.parent.iterdir()] == [door.name]
 
 
 def test_an_ignored_interrupt_stays_ignored(door: Path) -> None:

@@ -170,15 +170,15 @@ def test_names_of_files_are_the_same_everywhere(run: Run, tmp_path: Path, monkey
         other = LAMPS.replace("library Lamps", "library Other").replace("light", "glow").replace("dark", "gloom")
         (shelf / "lamps.rscd").write_text(other)
         found = read(folder / "robot.rscd", [folder / "sub", shelf])
-        assert [each for each in found.findings if each.severity == "error"] == []
+        assert [finding for finding in found.findings if finding.severity == "error"] == []
         assert found.base is not None
-        names = [each.type.library.file for each in found.base.definitions if hasattr(each, "type")]
+        names = [definition.type.library.file for definition in found.base.definitions if hasattr(definition, "type")]
         assert names[:2] == ["sub/lamps.rscd", "lamps.rscd"]
         assert "/" not in names[2]
         monkeypatch.chdir(folder)
         answer = run("transform", "robot.rscd", "-I", "sub", "-I", shelf, "--to", "xmi,supervisor", "-o", "out")
         assert answer.exit_code == 0, answer.output
-        texts.append({each.name: each.read_bytes() for each in Path("out").rglob("*") if each.is_file()})
+        texts.append({path.name: path.read_bytes() for path in Path("out").rglob("*") if path.is_file()})
     assert texts[0] == texts[1]
 
 
@@ -264,7 +264,7 @@ def test_a_folder_outside_of_the_models_is_confirmed(
     assert run("transform", model, "--to", "ros1", "-o", "out").exit_code == 0  # nothing would be written there
     answer = run(*call, "--confirm", KEY)
     assert answer.exit_code == 0, answer.output
-    count = sum(each.is_file() for each in outside.rglob("*"))
+    count = sum(path.is_file() for path in outside.rglob("*"))
     assert f"outside: {count} files, {count} written\n" in answer.stderr or f"link: {count} files" in answer.stderr
 
 

@@ -221,7 +221,7 @@ def test_silent_events_with_one_source_and_target_are_told_apart(run: Run, tmp_p
 }
 """
     )
-    headings = [each for each in run("synthesize", file).stdout.splitlines() if each.startswith("Bulb")]
+    headings = [line for line in run("synthesize", file).stdout.splitlines() if line.startswith("Bulb")]
     assert headings == [
         "Bulb changes by itself: off to on (line 6, column 9)",
         "Bulb changes by itself: off to on (line 6, column 42)",
@@ -288,7 +288,7 @@ def test_events_that_come_from_the_robot_are_listed_too(run: Run, tmp_path: Path
 """
     )
     events = json.loads(run("synthesize", path, "--json").stdout)["events"]
-    assert [(each["name"], each["controllable"], each["ever_enabled"]) for each in events] == [
+    assert [(event["name"], event["controllable"], event["ever_enabled"]) for event in events] == [
         ("message_full.u_response", False, True),
         ("message_drained.u_response", False, True),
         ("message_drain.c_trigger", True, True),

@@ -68,7 +68,7 @@ def test_only_what_changed_is_written(run: Run, door: Path) -> None:
 
 @pytest.mark.parametrize("start", ["robosc", "sct", "rosgraph"])
 def test_saved_models_give_the_same(run: Run, door: Path, start: str) -> None:
-    targets = [each.name for each in TARGETS.values() if start != "sct" or not each.needs_graph]
+    targets = [target.name for target in TARGETS.values() if start != "sct" or not target.needs_graph]
     assert run("transform", door, "--to", ALL, "-o", "out").exit_code == 0
     answer = run("transform", f"out/Door.{start}.xmi", "--to", ",".join(targets), "-o", "again")
     assert answer.exit_code == 0, answer.output

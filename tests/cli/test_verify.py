@@ -95,7 +95,7 @@ def test_transitions_in_one_line_are_told_apart(run: Run, lock: Path) -> None:
     lock.write_text(" ".join(lock.read_text().split()))
     told = run("verify", lock).stdout.partition("\nconfluence: ")[2]
     columns = [lock.read_text().index(f"transition goto {each}") + 1 for each in ("out", "in")]
-    assert all(f"    1. transition of `Bolt` in line 1, column {each}\n" in told for each in columns)
+    assert all(f"    1. transition of `Bolt` in line 1, column {column}\n" in told for column in columns)
 
 
 def test_as_json(run: Run, lock: Path) -> None:
@@ -126,7 +126,7 @@ def test_as_junit(run: Run, lock: Path, tmp_path: Path) -> None:
     assert (root.tag, suite.get("name"), suite.get("errors")) == ("testsuites", "Lock", "0")
     assert (suite.get("tests"), suite.get("failures"), suite.get("skipped")) == (str(len(cases)), "1", "1")
     assert {each.get("classname") for each in suite} == {"Lock"}
-    failed = [name for name, each in cases.items() if each.find("failure") is not None]
+    failed = [name for name, case in cases.items() if case.find("failure") is not None]
     assert failed == ["confluence"]
     assert "1. response from `Bolt.seen`" in cases["confluence"].find("failure").text
     assert cases["c-translation"].find("skipped").get("message") == "no C compiler is here"

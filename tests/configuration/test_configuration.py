@@ -99,7 +99,7 @@ def test_all_is_optional(tmp_path: Path) -> None:
 def test_a_fault_is_located_and_names_its_key(tmp_path: Path, text: str, line: int, column: int, message: str) -> None:
     with pytest.raises(ModelError) as raised:
         read(tmp_path, text)
-    found = [each for each in raised.value.diagnostics if message in each.message]
+    found = [diagnostic for diagnostic in raised.value.diagnostics if message in diagnostic.message]
     assert [(each.span.line, each.span.column) for each in found] == [(line, column)]
     assert found[0].file == str(tmp_path / config.FILE_NAME)
     assert found[0].rule == config.RULE
@@ -113,7 +113,7 @@ def test_a_number_without_end_is_an_error(tmp_path: Path) -> None:
 def test_all_faults_at_once(tmp_path: Path) -> None:
     with pytest.raises(ModelError) as raised:
         read(tmp_path, '{"retryMs": 1, "retryMs": "x", "colour": 1, "periodMs": 5, "package": {"versoin": "1"}}')
-    messages = {each.message: each.hint for each in raised.value.diagnostics}
+    messages = {diagnostic.message: diagnostic.hint for diagnostic in raised.value.diagnostics}
     assert messages == {
         'the key "retryMs" stands twice': None,
         '"retryMs" must be a valid integer': None,
@@ -149,7 +149,7 @@ def test_settings_for_what_the_robot_does_not_have(tmp_path: Path) -> None:
         ("warning", 51, '"qos": the robot has no odom', "known here: scan, stop"),
     ]
     # What the node does not send on shutdown is an error of the generators.
-    assert {each.hint for each in configuration.unknown_names([])} == {None}
+    assert {unknown_name.hint for unknown_name in configuration.unknown_names([])} == {None}
 
 
 def test_found_beside_the_model_or_below(tmp_path: Path) -> None:

@@ -23,7 +23,9 @@ from robosc.language import read
 YARD = Path(__file__).with_name("yard")
 ENDINGS = {"mermaid": "mmd", "dot": "dot", "svg": "svg"}
 KINDS = ("behaviour", "ros-graph", "plants")
-EACH = pytest.mark.parametrize(("kind", "notation"), [(kind, each) for kind in KINDS for each in GRAPH_NOTATIONS])
+EACH = pytest.mark.parametrize(
+    ("kind", "notation"), [(kind, graph_notation) for kind in KINDS for graph_notation in GRAPH_NOTATIONS]
+)
 
 
 @cache
@@ -56,7 +58,7 @@ def test_behaviour() -> None:
     assert (resting.initial, resting.marked, swinging.initial, swinging.marked) == (True, True, False, False)
     assert resting.rows == [("on request to lift",), ("on response from lift", "do lifted := value")]
     guard = "transition if lifted and part < 4"
-    arrows = {(each.source, each.target): each.labels for each in crane.arrows}
+    arrows = {(arrow.source, arrow.target): arrow.labels for arrow in crane.arrows}
     assert arrows == {
         (everywhere.key, resting.key): (("on response from Rear.stop",),),
         (resting.key, swinging.key): ((guard, "do part := part + 1,", "lifted := false"),),
@@ -70,18 +72,18 @@ def test_behaviour_of_a_library() -> None:
     library = read(str(Path(robosc.__file__).parent / "stdlib" / "emergency_stop.rscd")).base
     assert library is not None
     (group,) = behaviour_graph(library).groups
-    assert [each.title for each in group.nodes] == ["in_service", "stopped"]
+    assert [node.title for node in group.nodes] == ["in_service", "stopped"]
 
 
 def test_ros_graph() -> None:
     (group,) = graph("ros-graph").groups
-    shown = {each.title: (each.kind, each.rows) for each in group.nodes}
+    shown = {node.title: (node.kind, node.rows) for node in group.nodes}
     assert shown["/echo"] == ("topic", [("std_msgs/String",), ("Crane.heard",), ("Crane.echo",)])
     assert shown["lift"] == ("service", [("crane_msgs/Lift",), ("Crane.lift",)])
     assert shown["/crane/swing"] == ("action", [("crane_msgs/Swing",), ("Crane.swing",)])
     assert shown["yard_controller"] == ("controller", ())
-    names = {each.key: each.title for each in group.nodes}
-    ways = {(names[each.source], names[each.target], each.both) for each in group.arrows}
+    names = {node.key: node.title for node in group.nodes}
+    ways = {(names[arrow.source], names[arrow.target], arrow.both) for arrow in group.arrows}
     assert ways == {
         ("/echo", "yard_controller", True),
         *((topic, "yard_controller", False) for topic in ("/stop", "/continue", "/rear/stop", "/rear/continue")),
@@ -91,21 +93,21 @@ def test_ros_graph() -> None:
 
 
 def test_plants() -> None:
-    groups = {each.title: each for each in graph("plants").groups}
+    groups = {group.title: group for group in graph("plants").groups}
     crane, data = groups["component_Crane"], groups["data_swing"]
     assert crane.remarks == ["lifted: boolean = false", "part: integer(0..4) = 0"]
     assert crane.nodes[0].rows == [("message_heard.u_response",)]
     assert (("c_tau1", "if lifted and part < 4", "part := part + 1", "lifted := false"),) in [
-        each.labels for each in crane.arrows
+        arrow.labels for arrow in crane.arrows
     ]
-    assert [each.labels for each in data.arrows] == [
+    assert [arrow.labels for arrow in data.arrows] == [
         (("c_d1", "if component_Crane.part < 2"),),
         (("c_d2",),),
         (("c_none", "if false"),),
     ]
-    assert {each.source for each in data.arrows} == {data.nodes[0].key}
+    assert {arrow.source for arrow in data.arrows} == {data.nodes[0].key}
     # Two states and what leads from each to the other are no matter of "everywhere".
-    assert [each.kind for each in groups["component_Front"].nodes] == ["state", "state"]
+    assert [node.kind for node in groups["component_Front"].nodes] == ["state", "state"]
 
 
 # Whatever stands in a model
@@ -198,7 +200,7 @@ def groups(draw: st.DrawFn, *, downwards: bool) -> Group:
 def test_nothing_overlaps_and_arrows_join_their_nodes(data: st.DataObject, downwards: bool) -> None:
     group = data.draw(groups(downwards=downwards))
     layout = lay_out(group, downwards=downwards)
-    boxes = [layout.nodes[each.key] for each in group.nodes]
+    boxes = [layout.nodes[node.key] for node in group.nodes]
     for one, other in combinations(boxes, 2):
         apart_x = one.x + one.width < other.x or other.x + other.width < one.x
         assert apart_x or one.y + one.height < other.y or other.y + other.height < one.y
@@ -211,12 +213,12 @@ def test_nothing_overlaps_and_arrows_join_their_nodes(data: st.DataObject, downw
             assert box.x - 0.01 <= x <= box.x + box.width + 0.01
             assert box.y - 0.01 <= y <= box.y + box.height + 0.01
             along, ends = (y, (box.y, box.y + box.height)) if downwards else (x, (box.x, box.x + box.width))
-            assert min(abs(along - each) for each in ends) < 0.01
+            assert min(abs(along - end) for end in ends) < 0.01
 
 
 def test_frames_are_inside_the_picture() -> None:
     picture = draw(graph("plants"))
-    frames = [each for each in picture.boxes if each.kind == "frame"]
+    frames = [box for box in picture.boxes if box.kind == "frame"]
     assert len(frames) == len(graph("plants").groups)
     for box in picture.boxes:
         assert box.x + box.width <= picture.width

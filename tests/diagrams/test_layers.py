@@ -68,12 +68,12 @@ def test_ranking_links_run_to_the_right() -> None:
     ]
     arranged = arrange(sizes, links)
     assert [arranged.places[each][0] for each in "abcd"] == [0, 114, 228, 114]
-    assert [each.leaves for each in arranged.routes] == [1, 1, -1, 1]
+    assert [route.leaves for route in arranged.routes] == [1, 1, -1, 1]
 
 
 def test_many_ranks_are_folded() -> None:
     names = [f"b{index}" for index in range(15)]
     links = [Link(one, other, 5, 5, True) for one, other in pairwise(names)]
     arranged = arrange(dict.fromkeys(names, (50.0, 20.0)), links)
-    columns = [round(arranged.places[each][0] / 114) for each in names]
+    columns = [round(arranged.places[name][0] / 114) for name in names]
     assert columns == [0, 1, 2, 3, 4, 5, 6, 7, 6, 5, 4, 3, 2, 1, 0]

@@ -10,7 +10,9 @@ from robosc.metamodel.reflection import metamodel
 
 DOCS = Path(__file__).parents[2] / "docs" / "metamodels"
 ENDINGS = {"mermaid": "mmd", "plantuml": "puml", "svg": "svg"}
-EACH = pytest.mark.parametrize(("name", "notation"), [(name, each) for name in METAMODELS for each in NOTATIONS])
+EACH = pytest.mark.parametrize(
+    ("name", "notation"), [(name, notation) for name in METAMODELS for notation in NOTATIONS]
+)
 
 
 @EACH

@@ -141,13 +141,13 @@ def _action():
 
 
 def _data(name: str, conditions: list[str]):
-    steps = [edge(f"c_d{number}", to=f"d{number}", when=each) for number, each in enumerate(conditions, 1)]
-    steps.append(edge("c_none", to="none", when=" and ".join(f"not ({each})" for each in conditions)))
+    steps = [edge(f"c_d{number}", to=f"d{number}", when=condition) for number, condition in enumerate(conditions, 1)]
+    steps.append(edge("c_none", to="none", when=" and ".join(f"not ({condition})" for condition in conditions)))
     locations = ["none", *(f"d{number}" for number, _ in enumerate(conditions, 1))]
     return plant(
         f"data_{name}",
         dict.fromkeys(locations, steps),
-        controllable=[each.event for each in steps],
+        controllable=[step.event for step in steps],
         marked=locations,
         kind="data",
         origin=f"Base.{name}",

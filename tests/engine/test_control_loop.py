@@ -52,7 +52,7 @@ def switch(name="switch", states=("off", "on"), **more):
     """Goes to a state when `u_feedback…` of its number happens."""
     events = [f"u_response{number}" for number, _ in enumerate(states)]
     return plant(
-        name, {each: [edge(event, to=to) for event, to in zip(events, states, strict=True)] for each in states},
+        name, {state: [edge(event, to=to) for event, to in zip(events, states, strict=True)] for state in states},
         uncontrollable=events, **more,
     )  # fmt: skip
 
@@ -76,8 +76,8 @@ def data(origin, **conditions):
     steps = [edge(f"c_{name}", to=name, when=condition) for name, condition in conditions.items()]
     return plant(
         f"data_{origin}",
-        {"none": steps, **dict.fromkeys([each for each in conditions if each != "none"], steps)},
-        controllable=[each.event for each in steps],
+        {"none": steps, **dict.fromkeys([condition for condition in conditions if condition != "none"], steps)},
+        controllable=[step.event for step in steps],
         kind="data",
         origin=origin,
     )
@@ -134,7 +134,7 @@ def test_a_guard_is_asked_when_its_turn_comes() -> None:
 def test_one_message_on_a_topic_is_sent_in_a_round_and_all_get_their_turn(topic: str) -> None:
     made = model([message("a", "/cmd"), message("b", topic), message("c", "/cmd"), message("d", "/other")], guards={})
     ticks = Recorded(made).ticks(4)
-    assert [sorted(each) for each in ticks] == [
+    assert [sorted(tick) for tick in ticks] == [
         ["a.c_trigger", "d.c_trigger"],
         ["b.c_trigger", "d.c_trigger"],
         ["c.c_trigger", "d.c_trigger"],

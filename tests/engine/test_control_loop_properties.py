@@ -30,7 +30,7 @@ class Observed:
         self.roles = self.loop.engine.roles
         self.queued = [event_name(each) for each in (*self.roles.cancels, *self.roles.triggers)]
         self.silent = {event_name(each) for each in self.roles.silent}
-        self.data = {event_name(each) for events in self.roles.data for each in events}
+        self.data = {event_name(event) for events in self.roles.data for event in events}
         self.operations: list[tuple[str, list[str]]] = []
         #: Of each moment: the operation, what happened, and which cancels and triggers are enabled then.
         self.moments = [(0, "", {each for each in self.queued if self.loop.enabled(each)})]
@@ -48,7 +48,7 @@ class Observed:
         self.performed = []
         self.operations.append(("batch", []))
         for event in random.choices(possible, k=random.randint(0, 3)) if possible else ():
-            data = {each.name: self._value(each.type, random) for each in event.inputs}
+            data = {input_.name: self._value(input_.type, random) for input_ in event.inputs}
             if self.loop.perform(event_name(event), data):
                 self.performed.append(event_name(event))
         assert self.operations[-1][1] == self.performed, "nothing else happens inside a batch"
@@ -72,7 +72,7 @@ class Observed:
     def _value(kind: ex.Type, random: Random) -> bool | int | str:
         match kind:
             case ex.EnumerationType():
-                return random.choice([each.name for each in kind.enumeration.literals])
+                return random.choice([literal.name for literal in kind.enumeration.literals])
             case ex.IntegerType():
                 return random.choice((kind.minimum, kind.maximum, random.randint(kind.minimum, min(kind.maximum, 9))))
         return random.random() < 0.5
@@ -102,9 +102,9 @@ _some = settings(
 @given(_observed)
 def test_rounds(seen: Observed) -> None:
     topics = {
-        event_name(each): plant_of(each).topic.strip("/")
-        for each in seen.roles.triggers
-        if plant_of(each).kind == sct.PlantKind.message
+        event_name(trigger): plant_of(trigger).topic.strip("/")
+        for trigger in seen.roles.triggers
+        if plant_of(trigger).kind == sct.PlantKind.message
     }
     for sent in seen.rounds("tick", "end"):
         assert len(sent) == len(set(sent)), "each event at most once"
@@ -155,7 +155,7 @@ def test_what_a_batch_makes_possible_waits_for_no_other_topic(seen: Observed) ->
         elif operation == "end" and ticked and seen.settings.react_immediately:
             reactions[seen.source(number)] += len(sent)
             if reactions[seen.source(number)] < seen.settings.reactions_per_tick:
-                moments = [each for each in seen.moments if each[0] <= number + 1]
+                moments = [moment for moment in seen.moments if moment[0] <= number + 1]
                 ran = [at for at, (place, event, _) in enumerate(moments) if place == number + 1 and event in sent]
                 settled = ran[0] - 1 if ran else len(moments) - 1
                 waiting = set.intersection(*(enabled for _, _, enabled in moments[settled:]))
@@ -182,7 +182,7 @@ def test_data_rests_at_the_first_statement_whose_condition_holds(seen: Observed)
     engine = seen.loop.engine
     for events in seen.roles.data:
         plant = plant_of(events[0])
-        wanted = next(each for each in events if engine.enabled(event_name(each)))
+        wanted = next(event for event in events if engine.enabled(event_name(event)))
         assert engine.state[plant.name] == wanted.name.removeprefix("c_")
 
 

@@ -29,7 +29,7 @@ def test_the_eight_scenarios_are_there() -> None:
 def test_nothing_is_wrong(name: str) -> None:
     answer = CliRunner().invoke(main, ["check", "--format", "json", str(MODELS[name])])
     assert answer.exit_code == 0
-    assert {each["rule"] for each in json.loads(answer.stdout)} <= EXPECTED
+    assert {load["rule"] for load in json.loads(answer.stdout)} <= EXPECTED
 
 
 @EACH
@@ -53,7 +53,7 @@ def test_everything_can_be_generated(name: str, tmp_path: Path) -> None:
     targets = ALL if graph.serviceClients or graph.actionClients else MESSAGES
     answer = CliRunner().invoke(main, ["transform", str(MODELS[name]), "--to", targets, "-o", str(tmp_path)])
     assert answer.exit_code == 0, answer.output
-    assert {each.name for each in tmp_path.iterdir()} > {"supervisor"} | {"ros1", "ros2"} & {*targets.split(",")}
+    assert {path.name for path in tmp_path.iterdir()} > {"supervisor"} | {"ros1", "ros2"} & {*targets.split(",")}
 
 
 @pytest.mark.parametrize("name", SCENARIOS)
@@ -65,24 +65,28 @@ def test_pictures_are_up_to_date(name: str, golden) -> None:
         assert f"]({picture}.svg)" in page
 
 
-@pytest.mark.parametrize("name", [each for each in SCENARIOS if each != "line_follower"])
+@pytest.mark.parametrize("name", [scenario for scenario in SCENARIOS if scenario != "line_follower"])
 def test_the_page_names_every_topic(name: str) -> None:
     graph = models_of(name).rosgraph
     rows = [row.strip("| ").split(" | ") for row in (EXAMPLES / name / "README.md").read_text().splitlines()]
     said = {(row[0], *(each.strip("`") for each in row[1:3])) for row in rows if len(row) == 4 and row[1][:2] == "`/"}
     ways = [
-        (way, getattr(each, "topic", None) or each.identifier, f"{each.interface.package}/{each.interface.type}")
+        (
+            way,
+            getattr(connection, "topic", None) or connection.identifier,
+            f"{connection.interface.package}/{connection.interface.type}",
+        )
         for way, connections in [
             ("outgoing", graph.subscriptions),
             ("incoming", graph.publishers),
             ("service", graph.serviceClients),
             ("action", graph.actionClients),
         ]
-        for each in connections
+        for connection in connections
     ]
     assert said == {*ways}
 
 
 def test_the_list_of_examples_is_complete() -> None:
     page = (EXAMPLES / "README.md").read_text()
-    assert [each for each in SCENARIOS if f"[{each}]({each})" not in page] == []
+    assert [scenario for scenario in SCENARIOS if f"[{scenario}]({scenario})" not in page] == []

@@ -14,7 +14,7 @@ from .conftest import MODELS, models_of
 
 EACH = pytest.mark.parametrize("name", MODELS)
 STOP = "component_EmergencyStop"
-STOPPABLE = pytest.mark.parametrize("name", [each for each in MODELS if each != "line_stepper"])
+STOPPABLE = pytest.mark.parametrize("name", [model for model in MODELS if model != "line_stepper"])
 #: While this plant is in one of these locations, somebody else drives the wheels.
 TURNING = {
     "maze_solver": ("component_Platform", {"turning_left", "turning_right"}),
@@ -27,7 +27,7 @@ HALTING = pytest.mark.parametrize(
 
 def states(engine: Engine) -> Iterator[State]:
     """Every state that can be reached under the supervisor, whatever comes in; the engine is in it meanwhile."""
-    data = {event_name(each): [*inputs(each)] for each in engine.roles.events}
+    data = {event_name(event): [*inputs(event)] for event in engine.roles.events}
     found, pending = {engine.state}, [engine.state]
     while pending:
         state = pending.pop()
@@ -42,14 +42,14 @@ def states(engine: Engine) -> Iterator[State]:
 
 
 def inputs(event) -> Iterator[dict]:
-    values = [[(each.name, value) for value in values_of(each.type)] for each in event.inputs]
+    values = [[(input_.name, value) for value in values_of(input_.type)] for input_ in event.inputs]
     return map(dict, product(*values))
 
 
 def values_of(kind: ex.Type) -> list:
     match kind:
         case ex.EnumerationType():
-            return [each.name for each in kind.enumeration.literals]
+            return [literal.name for literal in kind.enumeration.literals]
         case ex.IntegerType():
             return [*range(kind.minimum, kind.maximum + 1)]
     return [False, True]
@@ -58,7 +58,9 @@ def values_of(kind: ex.Type) -> list:
 @STOPPABLE
 def test_nothing_moves_while_the_button_is_pressed(name: str) -> None:
     engine = Engine(models_of(name).sct)
-    moving = [event_name(each) for each in engine.roles.triggers if event_name(each) != "message_halt.c_trigger"]
+    moving = [
+        event_name(trigger) for trigger in engine.roles.triggers if event_name(trigger) != "message_halt.c_trigger"
+    ]
     seen = [[each for each in moving if engine.enabled(each)] for state in states(engine) if state[STOP] == "stopped"]
     assert moving
     assert seen
@@ -102,7 +104,7 @@ class Robot(ControlLoop):
     def __init__(self, name: str) -> None:
         self.sent: list[str] = []
         super().__init__(models_of(name).sct, hooks=Hooks(after=self.note))
-        self.inputs = {event_name(each): [data.name for data in each.inputs] for each in self.engine.roles.events}
+        self.inputs = {event_name(event): [data.name for data in event.inputs] for event in self.engine.roles.events}
         self.tick()
         self.sent.clear()
 

@@ -17,7 +17,7 @@ from .conftest import MODELS, SCENARIOS
 ROOT = Path(__file__).parents[2]
 LISTINGS = ROOT.parent / "shared" / "thesis" / "models"
 #: All but the one that has its faults on purpose.
-LISTED = [each for each in sorted(LISTINGS.glob("*.rscd")) if each.stem != "language-concepts"]
+LISTED = [path for path in sorted(LISTINGS.glob("*.rscd")) if path.stem != "language-concepts"]
 
 
 @cache

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 #: Everything that some reader takes for the end of a line, and everything that nobody sees.
-WICKED = "".join(chr(each) for bounds in HIDDEN for each in bounds) + "\n\r\x0b\x0c\x1c\x1d\x1e\x85\u2028\u2029"
+WICKED = "".join(chr(bound) for bounds in HIDDEN for bound in bounds) + "\n\r\x0b\x0c\x1c\x1d\x1e\x85\u2028\u2029"
 UNREADABLE = {
     "[" * 200_000: "nested too deeply",
     '{"value": ' * 101 + "1" + "}" * 101: "nested too deeply",
@@ -47,8 +47,8 @@ def test_a_node_s_log_is_read_as_it_was_written(tmp_path: Path, raw: bool) -> No
     assert [each.data for each in read_trace(str(path))] == [{"value": WICKED}] * 3
     steps, findings = read_script("log", path.read_text(encoding="utf-8"), ["message_name.u_response"])
     assert findings == []
-    assert [each.data for each in steps] == [{"value": WICKED}] * 3
-    assert [each.line for each in steps] == [1, 2, 3]
+    assert [step.data for step in steps] == [{"value": WICKED}] * 3
+    assert [step.line for step in steps] == [1, 2, 3]
 
 
 @each_unreadable
@@ -60,7 +60,7 @@ def test_what_can_not_be_read_is_said(text: str, why: str) -> None:
 @each_unreadable
 def test_scripts_say_where(text: str, why: str) -> None:
     _, findings = read_script("script", f"e {{}}\ne {text}\n", ["e"])
-    assert [(each.span.line, why in each.message) for each in findings] == [(2, True)]
+    assert [(finding.span.line, why in finding.message) for finding in findings] == [(2, True)]
 
 
 @each_unreadable

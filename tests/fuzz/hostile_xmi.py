@@ -36,8 +36,8 @@ class Node:
     def all(self) -> Iterator[Node]:
         """This and all below it."""
         yield self
-        for each in self.children:
-            yield from each.all()
+        for child in self.children:
+            yield from child.all()
 
 
 def parsed(text: str) -> Node:
@@ -78,11 +78,11 @@ def edits(texts: Mapping[str, str], name: str, choose: int | None = None) -> Ite
         for file, tree in trees.items()
         for each in tree.all()
     ]
-    kinds = sorted({each.kind for each in elements if ":" in each.kind})
-    for each in elements:
-        for attribute, (start, end) in each.attributes.items():
+    kinds = sorted({element.kind for element in elements if ":" in element.kind})
+    for element in elements:
+        for attribute, (start, end) in element.attributes.items():
             value = text[start:end]
-            at = f"{each.path} {attribute}"
+            at = f"{element.path} {attribute}"
             if attribute == "xsi:type":
                 yield from ((f"{at} = {kind}", text[:start] + kind + text[end:]) for kind in kinds if kind != value)
             elif _REFERENCE.match(value):
@@ -97,15 +97,15 @@ def edits(texts: Mapping[str, str], name: str, choose: int | None = None) -> Ite
                 )
             left = text.rindex(attribute, 0, start)
             yield f"{at} dropped", text[:left] + text[end + 1 :]
-        if each.path == "/":
+        if element.path == "/":
             continue
-        own = text[each.start : each.end]
-        yield f"{each.path} doubled", text[: each.end] + own + text[each.end :]
-        yield f"{each.path} dropped", text[: each.start] + text[each.end :]
-        others = [one for one in elements if one.tag == each.tag and one.path != each.path]
+        own = text[element.start : element.end]
+        yield f"{element.path} doubled", text[: element.end] + own + text[element.end :]
+        yield f"{element.path} dropped", text[: element.start] + text[element.end :]
+        others = [one for one in elements if one.tag == element.tag and one.path != element.path]
         for one in _spread(others, choose):
             moved = text[one.start : one.end]
-            yield f"{each.path} replaced by {one.path}", text[: each.start] + moved + text[each.end :]
+            yield f"{element.path} replaced by {one.path}", text[: element.start] + moved + text[element.end :]
 
 
 def _redirected(

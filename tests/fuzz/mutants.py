@@ -68,11 +68,11 @@ def words(text: str) -> list[str]:
 @cache
 def sources(*, rejected: bool = True) -> list[list[str]]:
     """The words of each model that is there, with those that show faults or without."""
-    files = [each for folder in _FOLDERS for each in sorted((ROOT / folder).rglob("*.rscd"))]
-    texts = [each.read_text(encoding="utf-8") for each in files if rejected or "rejected" not in each.parts]
+    files = [path for folder in _FOLDERS for path in sorted((ROOT / folder).rglob("*.rscd"))]
+    texts = [file.read_text(encoding="utf-8") for file in files if rejected or "rejected" not in file.parts]
     for module in sorted((ROOT / "tests" / "m2m").glob("test_robosc_*.py")):
         texts += re.findall(r'"""\n(robot R \{.*?\n\})\n', module.read_text(encoding="utf-8"), flags=re.DOTALL)
-    return [words(each) for each in texts]
+    return [words(text) for text in texts]
 
 
 def mutant(seed: int) -> str:
@@ -87,7 +87,7 @@ def mutant(seed: int) -> str:
 
 def _kind(word: str) -> int:
     bare = _bare(word)
-    return next((number for number, each in enumerate(_KINDS) if each.match(bare)), len(_KINDS))
+    return next((number for number, kind in enumerate(_KINDS) if kind.match(bare)), len(_KINDS))
 
 
 def _bare(word: str) -> str:

@@ -68,5 +68,5 @@ def test_valid_robots(tmp_path: Path) -> None:
     robots = [robot for seed in range(VALID) for _, robot in [checked(seed, tmp_path / "robot.rscd")] if robot]
     assert len(robots) > VALID / 2
     built = compiled(robots, tmp_path, FLAGS)
-    for each in robots:
-        compared(each, built)
+    for robot in robots:
+        compared(robot, built)

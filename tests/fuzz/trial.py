@@ -101,8 +101,8 @@ def _generated(robot: rsc.Robot, found: list[Diagnostic], texts: dict[str, str],
         raise ModelError(supervision.findings)
     configuration = robosc.Configuration()
     if graph.serviceClients or graph.actionClients:
-        targets = [each for each in targets if not TARGETS[each].needs_graph]  # They know of messages only.
-    refused = [each for target in targets for each in TARGETS[target].findings(models, configuration)]
+        targets = [target for target in targets if not TARGETS[target].needs_graph]  # They know of messages only.
+    refused = [finding for target in targets for finding in TARGETS[target].findings(models, configuration)]
     _located(refused, texts)
     if has_errors(refused):
         raise ModelError(refused)
@@ -123,7 +123,7 @@ def called(path: Path, seed: int) -> int:
         "transform", str(path), "-I", str(LIBRARIES), "--to", "cif", "-o", str(path.parent / "generated")
     )
     assert transforming == outcome.status, f"transform ends with {transforming}, not {outcome.status}"
-    if "cif" not in {each.rule for each in outcome.findings}:
+    if "cif" not in {finding.rule for finding in outcome.findings}:
         assert synthesizing == outcome.status, f"synthesize ends with {synthesizing}, not {outcome.status}"
     return transforming
 
@@ -194,10 +194,10 @@ def _located(findings: Sequence[Diagnostic], texts: dict[str, str]) -> None:
     """Findings stand in their texts, say something, and can be shown in each form."""
     # Of the configuration there is no text: what is said of it is what it lacks.
     by_name = {FILE_NAME: "", **{each.rpartition("/")[2]: text for each, text in texts.items()}}
-    for each in findings:
-        text = texts[each.file] if each.file in texts else by_name[each.file]
-        assert each.message, each
-        assert each.span == START or _inside(each, text.split("\n")), each
+    for finding in findings:
+        text = texts[finding.file] if finding.file in texts else by_name[finding.file]
+        assert finding.message, finding
+        assert finding.span == START or _inside(finding, text.split("\n")), finding
     if findings:
         assert as_text.render(findings, texts)
         assert as_json.render(findings)

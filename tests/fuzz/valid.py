@@ -58,9 +58,9 @@ def checked(seed: int, path: Path) -> tuple[Outcome, Robot | None]:
     """
     path.write_text(random_robot(seed, f"R{seed}", mistakes=False), encoding="utf-8")
     outcome = tried(path, TARGETS)
-    errors = [each for each in outcome.findings if has_errors([each]) and each.rule not in _ALLOWED]
+    errors = [finding for finding in outcome.findings if has_errors([finding]) and finding.rule not in _ALLOWED]
     # A robot without a plant is none for CIF.
-    errors = [each for each in errors if not (each.rule == "cif" and each.message.endswith("without a plant"))]
+    errors = [error for error in errors if not (error.rule == "cif" and error.message.endswith("without a plant"))]
     assert not errors, errors
     if outcome.models is None:
         return outcome, None
@@ -105,7 +105,7 @@ def _named(model: sct.SupervisoryControlModel) -> list[NamedElement]:
     owners = [*model.enumerations, *model.plants]
     members = ("literals", "events", "inputs", "variables")
     named = owners + [each for owner in owners for member in members for each in getattr(owner, member, ())]
-    return named + [each for plant in model.plants if not is_numbered(plant) for each in plant.locations]
+    return named + [location for plant in model.plants if not is_numbered(plant) for location in plant.locations]
 
 
 def _counts(synthesis: Synthesis) -> tuple[int, int]:
@@ -129,24 +129,24 @@ def _saves_the_same(models: Models, folder: Path) -> None:
 def compiled(robots: Sequence[Robot], folder: Path, flags: Sequence[str]) -> Path:
     """One program with the engines of all the robots; its argument says which of them runs."""
     sources = []
-    for each in robots:
-        loop = each.settings
+    for robot in robots:
+        loop = robot.settings
         chosen = config.ControlLoop(
             events_per_tick=loop.events_per_tick,
             reactions_per_tick=loop.reactions_per_tick,
             react_immediately=loop.react_immediately,
         )
-        sources.append(write(each.models.sct, folder, chosen).name)
-        text = program(each.models.sct)
-        (folder / f"main{each.seed}.c").write_text(f"#define main main{each.seed}\n{text}")
-    declared = "".join(f"int main{each.seed}(void);\n" for each in robots)
-    cases = "".join(f"    case {each.seed}: return main{each.seed}();\n" for each in robots)
+        sources.append(write(robot.models.sct, folder, chosen).name)
+        text = program(robot.models.sct)
+        (folder / f"main{robot.seed}.c").write_text(f"#define main main{robot.seed}\n{text}")
+    declared = "".join(f"int main{robot.seed}(void);\n" for robot in robots)
+    cases = "".join(f"    case {robot.seed}: return main{robot.seed}();\n" for robot in robots)
     (folder / "all.c").write_text(
         f"#include <stdlib.h>\n{declared}int main(int count, char **words)\n{{\n"
         f"    switch (count > 1 ? atoi(words[1]) : -1) {{\n{cases}    default: return 1;\n    }}\n}}\n"
     )
-    mains = ["all.c", *(f"main{each.seed}.c" for each in robots)]
-    objects = [each.replace(".c", ".o") for each in sources]
+    mains = ["all.c", *(f"main{robot.seed}.c" for robot in robots)]
+    objects = [source.replace(".c", ".o") for source in sources]
     for arguments in ([*STRICT, "-c", *sources], ["-std=gnu99", *mains, *objects, "-o", "all"]):
         done = subprocess.run(["gcc", *flags, *arguments], cwd=folder, capture_output=True, text=True, check=False)
         assert done.returncode == 0, done.stderr

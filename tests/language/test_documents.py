@@ -142,7 +142,7 @@ def test_a_property_of_what_looked_like_a_component() -> None:
 def test_of_a_broken_text_what_can_be_read_is_a_model() -> None:
     found = in_memory("robot Cart {\n  component A { }\n  component { }\n  requirement A.b c\n  component D { }\n}")
     assert isinstance(found.base, rsc.Robot)
-    assert [each.name for each in found.base.definitions] == ["A", "D"]
+    assert [definition.name for definition in found.base.definitions] == ["A", "D"]
     file = found.files["/nowhere/model.rscd"]
     skipped = [file.text.content[start:end] for start, end in file.skipped]
     assert skipped == ["component { }", "requirement A.b c"]

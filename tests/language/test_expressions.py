@@ -63,8 +63,8 @@ def shape(expression: Any, names: Any = None) -> Any:
     match expression:
         case rsc.Access():
             segments = [
-                each.index if isinstance(each, rsc.IndexSegment) else name(each, "property")
-                for each in expression.segments
+                segment.index if isinstance(segment, rsc.IndexSegment) else name(segment, "property")
+                for segment in expression.segments
             ]
             return kind, expression.value, name(expression, "component"), name(expression, "item"), segments
         case ex.BinaryExpression():
@@ -120,7 +120,7 @@ def test_the_levels_of_the_language_reference() -> None:
     by_level: dict[int, set[str]] = {}
     for kind, level in PRECEDENCE.items():
         by_level.setdefault(level, set()).add(symbols[kind])
-    assert [by_level[level] for level in sorted(by_level)] == [*(set(each.split()) for each in levels), {"!", "-"}]
+    assert [by_level[level] for level in sorted(by_level)] == [*(set(level.split()) for level in levels), {"!", "-"}]
 
 
 def test_parentheses_belong_to_an_operator_and_not_to_its_operand() -> None:

@@ -60,8 +60,12 @@ def model(text: str) -> tuple[Any, Any]:
     def values(element: Any) -> tuple[Any, ...]:
         features = [each for each in element.eClass.eAllStructuralFeatures() if each.name != "source"]
         names = {feature: name.text for feature, name in parsed.references.get(element, {}).items()}
-        contained = [each for each in features if getattr(each, "containment", False)]
-        plain = [(each.name, getattr(element, each.name)) for each in features if not hasattr(each, "containment")]
+        contained = [feature for feature in features if getattr(feature, "containment", False)]
+        plain = [
+            (feature.name, getattr(element, feature.name))
+            for feature in features
+            if not hasattr(feature, "containment")
+        ]
         inner = [(each.name, [values(child) for child in _listed(getattr(element, each.name))]) for each in contained]
         return element.eClass.name, plain, names, inner
 
@@ -79,8 +83,8 @@ def words(path: Path) -> list[tuple[str, str]]:
     """The words of a file, each with what stands before it."""
     text = path.read_text(encoding="utf-8")
     tokens = list(Tokens(text))
-    ends = [0, *(each.end for each in tokens)]
-    return [(text[end : each.start], each.text) for end, each in zip(ends, tokens, strict=False)]
+    ends = [0, *(token.end for token in tokens)]
+    return [(text[end : token.start], token.text) for end, token in zip(ends, tokens, strict=False)]
 
 
 def signs(path: Path) -> Iterator[bool]:
@@ -400,7 +404,7 @@ def test_line_breaks_of_all_systems() -> None:
 def test_a_text_with_syntax_errors_has_no_layout(text: str) -> None:
     result, findings = format_text(Text("model.rscd", text))
     assert result is None
-    assert {each.rule for each in findings} == {"syntax"}
+    assert {finding.rule for finding in findings} == {"syntax"}
 
 
 def test_deep_and_long_expressions() -> None:

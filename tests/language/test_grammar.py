@@ -35,8 +35,8 @@ def classifier(name: str) -> Any:
 CLASSES = [
     name
     for module in (rsc, ex)
-    for name, each in vars(module).items()
-    if isinstance(each, type) and hasattr(each, "eClass") and name not in MADE_BY_TRANSFORMATIONS
+    for name, var in vars(module).items()
+    if isinstance(var, type) and hasattr(var, "eClass") and name not in MADE_BY_TRANSFORMATIONS
 ]
 
 
@@ -61,7 +61,7 @@ def is_a(name: str, ancestor: str) -> bool:
 
 def test_there_is_a_class_for_each_rule() -> None:
     enumerations = {"MessageDirection", "ResultType"}
-    assert set(RULES) == {each for each in RULES if each in CLASSES} | enumerations | WORDS | {"Operand"}
+    assert set(RULES) == {rule for rule in RULES if rule in CLASSES} | enumerations | WORDS | {"Operand"}
 
 
 def test_there_is_a_rule_for_each_class_that_has_elements() -> None:
@@ -96,8 +96,8 @@ def test_a_rule_assigns_what_its_class_wants(rule: str) -> None:
 def test_the_alternatives_of_an_abstract_rule_are_kinds_of_its_class(rule: str) -> None:
     alternatives = re.findall(r"\w+", body(rule))
     assert alternatives
-    for each in alternatives:
-        assert each == "Operand" or is_a(each, rule)
+    for alternative in alternatives:
+        assert alternative == "Operand" or is_a(alternative, rule)
         assert element_class(rule) is None
 
 
@@ -109,7 +109,7 @@ def test_an_enumeration_has_the_words_of_its_rule(rule: str) -> None:
 def test_every_word_of_the_grammar_is_reserved_and_no_other() -> None:
     words = set(re.findall(r"'([a-z]+)'", TEXT))
     assert words == ROBOSC_KEYWORDS
-    assert {each for each in words if not is_reserved(each)} == set()
+    assert {word for word in words if not is_reserved(word)} == set()
     assert not any(is_reserved(each) for each in ("continue", "states", "valued", "^state", "Robot"))
 
 

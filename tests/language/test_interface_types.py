@@ -111,7 +111,7 @@ def test_communication_has_the_interface_of_its_data(tmp_path: Path, interfaces:
     assert isinstance(base, rsc.Robot)
     _, trace = robosc_to_sct.transform(base)
     graph = robosc_to_rosgraph.transform(trace, interfaces)
-    assert [(each.package, each.type, each.kind.name) for each in graph.interfaces] == [
+    assert [(interface.package, interface.type, interface.kind.name) for interface in graph.interfaces] == [
         ("geometry_msgs", "Twist", "message"),
         ("sensor_msgs", "LaserScan", "message"),
         ("std_msgs", "Int8", "message"),
@@ -120,7 +120,7 @@ def test_communication_has_the_interface_of_its_data(tmp_path: Path, interfaces:
         ("arm_msgs", "Lift", "action"),
     ]
     (go,) = graph.publishers[0].sendings
-    assert [list(each.path) for each in go.alternatives[0].fields] == [["linear", "x"], ["linear", "y"]]
+    assert [list(field.path) for field in go.alternatives[0].fields] == [["linear", "x"], ["linear", "y"]]
 
 
 def test_objects_may_contain_ros_types(tmp_path: Path, interfaces: RosTypes) -> None:
@@ -176,19 +176,19 @@ def test_library_with_ros_types(tmp_path: Path, interfaces: RosTypes) -> None:
 )
 def test_unknown_type_draws_nothing_further(tmp_path: Path, interfaces: RosTypes, declared: str, message: str) -> None:
     text = with_message(declared, "provide m with { linear: { x: 1.0 } }")
-    assert [each[:2] for each in findings(tmp_path, interfaces, text)] == [("unresolved-reference", message)]
+    assert [finding[:2] for finding in findings(tmp_path, interfaces, text)] == [("unresolved-reference", message)]
 
 
 @pytest.mark.parametrize("name", ["thing", "text", "nothing"])
 def test_fields_that_no_model_can_use(tmp_path: Path, interfaces: RosTypes, name: str) -> None:
     text = with_message("arm_msgs/Pair", f"provide m with {{ {name}: 1 }}")
     message = f"the ROS type `Pair` has no field that a model can use named `{name}`"
-    assert [each[:2] for each in findings(tmp_path, interfaces, text)] == [("unresolved-reference", message)]
+    assert [finding[:2] for finding in findings(tmp_path, interfaces, text)] == [("unresolved-reference", message)]
 
 
 def test_types_of_fields_count(tmp_path: Path, interfaces: RosTypes) -> None:
     text = with_message("arm_msgs/Pair", "provide m with { small: 0.5 } provide m with { small: 300 }")
-    assert [each[0] for each in findings(tmp_path, interfaces, text)] == ["type", "integer-range"]
+    assert [finding[0] for finding in findings(tmp_path, interfaces, text)] == ["type", "integer-range"]
 
 
 @pytest.mark.parametrize(
@@ -201,7 +201,7 @@ def test_types_of_fields_count(tmp_path: Path, interfaces: RosTypes) -> None:
 def test_one_communication_has_one_type(tmp_path: Path, interfaces: RosTypes, parts: str) -> None:
     direction = "" if parts.startswith("service") else "incoming "
     text = f"robot R {{ interface twist use Twist from geometry_msgs component C {{ {direction}{parts} }} }}"
-    assert [each[0] for each in findings(tmp_path, interfaces, text)] == ["interface-type"]
+    assert [finding[0] for finding in findings(tmp_path, interfaces, text)] == ["interface-type"]
 
 
 def test_needed_integers_without_range(tmp_path: Path, interfaces: RosTypes) -> None:

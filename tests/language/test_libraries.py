@@ -25,16 +25,16 @@ def message_of(base: rsc.Base | None) -> str:
 
 def test_folders_are_searched_in_order(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     names = ("beside", "first", "second", "environment")
-    for each in names:
-        (tmp_path / each).mkdir()
-        (tmp_path / each / f"some_{each}.rscd").write_text(library(each))
+    for name in names:
+        (tmp_path / name).mkdir()
+        (tmp_path / name / f"some_{name}.rscd").write_text(library(name))
     robot = tmp_path / "beside" / "robot.rscd"
     robot.write_text(ROBOT)
     monkeypatch.setenv("ROBOSC_PATH", os.pathsep.join(["", str(tmp_path / "nowhere"), str(tmp_path / "environment")]))
     given = [tmp_path / "first", str(tmp_path / "second")]
-    for each in names:
-        assert message_of(read(robot, given).base) == each
-        (tmp_path / each / f"some_{each}.rscd").unlink()
+    for name in names:
+        assert message_of(read(robot, given).base) == name
+        (tmp_path / name / f"some_{name}.rscd").unlink()
     assert underlined(read(robot, given)) == [("unresolved-reference", "L")]
 
 
@@ -47,7 +47,7 @@ def test_the_standard_library_is_searched_last(tmp_path: Path) -> None:
 
 def test_the_standard_library_holds_no_fault() -> None:
     files = sorted(locate("stdlib").glob("*.rscd"))
-    readings = [read(each) for each in files]
+    readings = [read(file) for file in files]
     assert [each.findings for each in readings] == [[]] * len(files)
     names = {each.base.name for each in readings if each.base}
     assert names >= {"EmergencyStopLibrary", "TurtlebotLibrary"}
@@ -78,7 +78,7 @@ def test_unrelated_files_are_never_reported(tmp_path: Path) -> None:
         empty="",
     )
     assert found.findings == []
-    assert [Path(each).name for each in found.texts] == ["model.rscd", "right.rscd"]
+    assert [Path(text).name for text in found.texts] == ["model.rscd", "right.rscd"]
 
 
 def test_two_files_of_one_folder_with_one_library_are_an_error(tmp_path: Path) -> None:
@@ -144,7 +144,7 @@ def test_a_library_is_looked_for_beside_the_library_that_imports_it(tmp_path: Pa
     (tmp_path / "robot.rscd").write_text(ROBOT)
     found = read(tmp_path / "robot.rscd", [tmp_path / "shelf"])
     assert found.findings == []
-    assert [Path(each).name for each in found.texts] == ["robot.rscd", "outer.rscd", "inner.rscd"]
+    assert [Path(text).name for text in found.texts] == ["robot.rscd", "outer.rscd", "inner.rscd"]
 
 
 def test_a_library_that_several_import_is_one_library(tmp_path: Path) -> None:
@@ -153,7 +153,7 @@ def test_a_library_that_several_import_is_one_library(tmp_path: Path) -> None:
     found = reading(tmp_path, robot, one=forward.format("One"), two=forward.format("Two"), l=library("m"))
     assert found.findings == []
     assert found.base is not None
-    one, two, direct = (each.type for each in found.base.definitions)
+    one, two, direct = (definition.type for definition in found.base.definitions)
     assert one.definition.type.library is two.definition.type.library is direct.library
 
 
@@ -167,8 +167,8 @@ def test_a_library_that_several_import_is_one_library(tmp_path: Path) -> None:
 )
 def test_a_circle_of_imports_is_printed(tmp_path: Path, files: dict[str, str], file: str, circle: str) -> None:
     texts = {
-        each: f"library {name} {{\n  component C from {imported} import C\n}}"
-        for (each, imported), name in zip(files.items(), "LMN", strict=False)
+        item: f"library {name} {{\n  component C from {imported} import C\n}}"
+        for (item, imported), name in zip(files.items(), "LMN", strict=False)
     }
     found = reading(tmp_path, ROBOT, **texts)
     assert places(found) == [(file, 2, "import-cycle")]
@@ -192,10 +192,10 @@ def test_paths_are_as_the_user_gave_them(tmp_path: Path, monkeypatch: pytest.Mon
     found = read("robots/r.rscd")
     assert found.base is not None
     assert (place(found.base)[0], found.base.file) == ("robots/r.rscd", "r.rscd")
-    assert [each.file for each in found.findings] == ["robots/l.rscd"]
+    assert [finding.file for finding in found.findings] == ["robots/l.rscd"]
     monkeypatch.chdir(tmp_path / "robots")
     found = read("r.rscd")
-    assert [each.file for each in found.findings] == ["l.rscd"]
+    assert [finding.file for finding in found.findings] == ["l.rscd"]
     assert place(rsc.Robot(file="saved.rscd"))[0] == "saved.rscd"
 
 

@@ -85,7 +85,7 @@ def test_another_component_needs_its_name(tmp_path: Path) -> None:
         """,
     )
     assert underlined(found) == [("unresolved-reference", each) for each in ("s", "not_there", "t", "v")]
-    assert [each.hint for each in found.findings] == ["write `A.s`", None, "write `B.t`", "there is `s`"]
+    assert [finding.hint for finding in found.findings] == ["write `A.s`", None, "write `B.t`", "there is `s`"]
 
 
 def test_every_unresolved_name_is_a_finding_with_what_may_be_meant(tmp_path: Path) -> None:
@@ -118,7 +118,7 @@ def test_every_unresolved_name_is_a_finding_with_what_may_be_meant(tmp_path: Pat
             *("movee", "idel", "Motro", "trun", "lenght"),
         )
     ]
-    assert {each.hint for each in found.findings} == {
+    assert {finding.hint for finding in found.findings} == {
         f"did you mean `{each}`?" for each in ("Vector", "twist", "move", "idle", "Motor", "turn", "length")
     }
 
@@ -138,7 +138,7 @@ def test_the_few_names_that_there_are_are_listed(tmp_path: Path) -> None:
         """,
         l="library L { component Wheel { } }",
     )
-    assert [each.hint for each in found.findings] == [
+    assert [finding.hint for finding in found.findings] == [
         "there is `idle` or `^state`",
         "there is `move`",
         "there is `idle` or `^state`",
@@ -188,11 +188,11 @@ def test_properties_are_looked_up_in_the_type_before_them(tmp_path: Path) -> Non
         """,
     )
     assert underlined(found) == [("unresolved-reference", each) for each in ("x", "x", "x", "x", "y")]
-    assert [each.message.rpartition(" is ")[2] for each in found.findings] == [
+    assert [finding.message.rpartition(" is ")[2] for finding in found.findings] == [
         *("an array", "of type double", "an enum", "of type double", "of type boolean"),
     ]
     assert found.findings[0].hint == "write an index before it: `[0].x`"
-    segments = [each.property and each.property.name for each in elements(found, rsc.PropertySegment)]
+    segments = [element.property and element.property.name for element in elements(found, rsc.PropertySegment)]
     assert segments == ["points", "x", "points", None, "length", None, None, None, None, None]
 
 
@@ -207,7 +207,9 @@ def test_an_enum_sees_values_literals_and_enum_values(tmp_path: Path) -> None:
         """,
     )
     assert underlined(found) == [("unresolved-reference", "C"), ("unresolved-reference", "s")]
-    assert {each.hint for each in found.findings} == {"an enum's rules see only `value`, literals and enum values"}
+    assert {finding.hint for finding in found.findings} == {
+        "an enum's rules see only `value`, literals and enum values"
+    }
 
 
 def test_a_communication_may_be_that_of_any_component(tmp_path: Path) -> None:
@@ -226,9 +228,12 @@ def test_a_communication_may_be_that_of_any_component(tmp_path: Path) -> None:
         safety=STOP,
     )
     assert found.findings == []
-    named = {each.communicationType.name: each.component.name for each in elements(found, rsc.CommunicationReference)}
+    named = {
+        element.communicationType.name: element.component.name
+        for element in elements(found, rsc.CommunicationReference)
+    }
     assert named == {"stop": "Stop", "go": "Stop", "m": "C"}
-    read = {each.item.name: each.component and each.component.name for each in elements(found, rsc.Access)}
+    read = {element.item.name: element.component and element.component.name for element in elements(found, rsc.Access)}
     assert read == {"running": "Stop", "level": "Stop", "low": None}
 
 
@@ -249,7 +254,9 @@ def test_two_instances_share_names_that_need_qualification(tmp_path: Path) -> No
     first, second = elements(found, rsc.CommunicationReference)
     assert (first.component, first.communicationType) == (None, None)
     assert (second.component.name, second.communicationType.name) == ("Rear", "stop")
-    assert [each.communicationType and each.communicationType.name for each in elements(found, rsc.TopicRemapping)] == [
+    assert [
+        element.communicationType and element.communicationType.name for element in elements(found, rsc.TopicRemapping)
+    ] == [
         "stop",
         None,
     ]
@@ -272,7 +279,7 @@ def test_definitions_of_an_imported_library_are_usable_by_name(tmp_path: Path) -
     )
     assert found.findings == []
     assert found.base is not None
-    own, level = (each.type for each in elements(found, rsc.ComplexDataTypeReference))
+    own, level = (element.type for element in elements(found, rsc.ComplexDataTypeReference))
     assert own.eContainer() is found.base
     assert level.eContainer().name == "Safety"
 
@@ -297,7 +304,7 @@ def test_a_name_that_two_imported_libraries_share_is_ambiguous(tmp_path: Path) -
         tmp_path, robot, safety=STOP, danger=other.replace("message go", "message went").replace("from go", "from went")
     )
     assert underlined(found) == [("unresolved-reference", each) for each in ("Info", "flag", "high", "high")]
-    assert all("the libraries `Safety` and `Danger`" in each.message for each in found.findings)
+    assert all("the libraries `Safety` and `Danger`" in finding.message for finding in found.findings)
 
 
 def test_names_in_a_library_mean_what_is_in_the_library(tmp_path: Path) -> None:

@@ -163,15 +163,15 @@ def test_what_has_no_fault_is_read(tmp_path: Path) -> None:
     text = changed(text, "service reset with request", "service reset with rquest")
     base = reading(tmp_path, changed(text, "distance = free goto", "distance == free goto")).base
     assert isinstance(base, rsc.Robot)
-    kinds = [each.eClass.name for each in base.definitions]
+    kinds = [definition.eClass.name for definition in base.definitions]
     assert kinds == [
         *("Interface", "ObjectDataType", "EnumDataType", "Component", "Component", "Component"),
         *("DisablesRequirement", "ProvideStatement"),
     ]
     motor = base.definitions[4].type
-    assert [each.name for each in motor.definitions] == ["move", "turn"]
+    assert [definition.name for definition in motor.definitions] == ["move", "turn"]
     states = [each for each in base.eAllContents() if isinstance(each, rsc.State)]
-    assert [(each.name, len(each.transitions)) for each in states[:2]] == [("waiting", 0), ("driving", 1)]
+    assert [(state.name, len(state.transitions)) for state in states[:2]] == [("waiting", 0), ("driving", 1)]
 
 
 def test_a_missing_brace_keeps_definitions_in_their_places(tmp_path: Path) -> None:
@@ -179,7 +179,7 @@ def test_a_missing_brace_keeps_definitions_in_their_places(tmp_path: Path) -> No
     found = reading(tmp_path, text)
     assert underlined(found) == [("syntax", "component")]
     assert found.base is not None
-    assert [each.name for each in found.base.definitions if isinstance(each, rsc.Component)] == [
+    assert [definition.name for definition in found.base.definitions if isinstance(definition, rsc.Component)] == [
         *("Scanner", "Motor", "EmergencyStop"),
     ]
 
@@ -188,7 +188,7 @@ def test_a_name_that_is_missing_is_not_taken_from_the_next_line(tmp_path: Path) 
     text = changed(changed(MODEL, "1.0 -> free", "1.0 ->"), "goto waiting", "goto\n        on response from scan")
     found = reading(tmp_path, text)
     assert places(found) == [("model.rscd", 10, "syntax"), ("model.rscd", 27, "syntax")]
-    assert {each.message.rpartition(", ")[2] for each in found.findings} == {"expected a name"}
+    assert {finding.message.rpartition(", ")[2] for finding in found.findings} == {"expected a name"}
 
 
 def test_without_a_first_line_the_definitions_are_still_checked(tmp_path: Path) -> None:
@@ -210,7 +210,9 @@ def test_a_library_holds_no_statements(tmp_path: Path, statement: str) -> None:
 @pytest.mark.parametrize("text", ["", " \n", "// nothing\n", "/* nothing */"])
 def test_an_empty_file_is_one_finding(tmp_path: Path, text: str) -> None:
     found = reading(tmp_path, text)
-    assert [each.message for each in found.findings] == ["found the end of the file, expected `robot` or `library`"]
+    assert [finding.message for finding in found.findings] == [
+        "found the end of the file, expected `robot` or `library`"
+    ]
     assert found.base is None
 
 
@@ -274,7 +276,7 @@ def test_no_damage_is_too_bad(tmp_path: Path, damages: list[tuple[int, str | Non
     path.write_bytes(" ".join(pieces).encode("utf-8", "surrogatepass"))
     found = read(path)
     last = found.texts[str(path)].count("\n") + 1
-    assert all(1 <= each.span.line <= each.span.end_line <= last for each in found.findings)
+    assert all(1 <= finding.span.line <= finding.span.end_line <= last for finding in found.findings)
     # Whatever is left has the shape of the metamodel: each element stands in a feature that takes its kind.
     for each in found.base.eAllContents() if found.base else ():
         assert each.source is not None
@@ -322,7 +324,7 @@ def test_a_nameless_declaration_may_be_the_missing_one_of_its_definition(tmp_pat
           provide A.go with { b: 1 }
         }
     """
-    assert {each.rule for each in reading(tmp_path, text).findings} == {"syntax"}
+    assert {finding.rule for finding in reading(tmp_path, text).findings} == {"syntax"}
 
 
 #: What is written in other languages, and what the hint says of it.

@@ -124,7 +124,7 @@ def test_ranges(tmp_path: Path, bounds: str) -> None:
     assert found.findings == []
     assert found.base is not None
     with_range, without = (each.type for each in found.base.definitions[0].properties)
-    lower, upper = (int(each.replace(" ", "")) for each in bounds.split(".."))
+    lower, upper = (int(part.replace(" ", "")) for part in bounds.split(".."))
     assert (with_range.minimum, with_range.maximum) == (lower, upper)
     assert (without.minimum, without.maximum) == (None, None)
 
@@ -154,7 +154,7 @@ def test_blanks_and_comments_may_stand_anywhere_between_words(tmp_path: Path) ->
     )
     assert underlined(found) == [("unresolved-reference", "c")]
     assert found.base is not None
-    assert [type(each).__name__ for each in found.base.definitions] == [
+    assert [type(definition).__name__ for definition in found.base.definitions] == [
         "Component",
         "NeedsRequirement",
         "ProvideStatement",
@@ -171,7 +171,7 @@ def test_places_are_counted_in_code_points_from_one(tmp_path: Path) -> None:
     )
     path = tmp_path / "model.rscd"
     path.write_bytes(text.encode())
-    spans = {each.message: each.span for each in read(path).findings}
+    spans = {finding.message: finding.span for finding in read(path).findings}
     assert sorted(spans.values()) == [Span(2, 22, 2, 23), Span(3, 23, 3, 30), Span(3, 43, 3, 44)]
 
 

@@ -15,14 +15,16 @@ def reading(folder: Path, text: str, **libraries: str) -> Reading:
 
 def places(found: Reading) -> list[tuple[str, int, str]]:
     """File, line and rule of each finding."""
-    return [(Path(each.file).name, each.span.line, each.rule) for each in found.findings]
+    return [(Path(finding.file).name, finding.span.line, finding.rule) for finding in found.findings]
 
 
 def underlined(found: Reading) -> list[tuple[str, str]]:
     """The rule of each finding and the text that it stands at."""
     texts = []
-    for each in found.findings:
-        lines = found.texts[each.file].split("\n")
-        assert each.span.line == each.span.end_line
-        texts.append((each.rule, lines[each.span.line - 1][each.span.column - 1 : each.span.end_column - 1]))
+    for finding in found.findings:
+        lines = found.texts[finding.file].split("\n")
+        assert finding.span.line == finding.span.end_line
+        texts.append(
+            (finding.rule, lines[finding.span.line - 1][finding.span.column - 1 : finding.span.end_column - 1])
+        )
     return texts

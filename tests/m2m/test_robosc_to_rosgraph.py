@@ -58,7 +58,10 @@ def graph(robot: Callable) -> rosgraph.RosGraph:
 
 
 def test_one_topic_of_one_type_is_one_subscription_with_a_slash_or_without(graph):
-    shown = [(each.topic, each.interface.type, [part.name for part in each.receptions]) for each in graph.subscriptions]
+    shown = [
+        (subscription.topic, subscription.interface.type, [part.name for part in subscription.receptions])
+        for subscription in graph.subscriptions
+    ]
     assert shown == [
         ("/scan", "LaserScan", ["front", "side"]),
         ("battery", "Float32", ["battery"]),
@@ -67,12 +70,15 @@ def test_one_topic_of_one_type_is_one_subscription_with_a_slash_or_without(graph
 
 
 def test_messages_to_one_topic_share_a_publisher(graph):
-    shown = [(each.topic, each.interface.type, [part.name for part in each.sendings]) for each in graph.publishers]
+    shown = [
+        (publisher.topic, publisher.interface.type, [part.name for part in publisher.sendings])
+        for publisher in graph.publishers
+    ]
     assert shown == [("cmd_vel", "Twist", ["go", "stop"]), ("blink", "Int16", ["blink"])]
 
 
 def test_an_interface_stands_once(graph):
-    assert [(each.package, each.type) for each in graph.interfaces] == [
+    assert [(interface.package, interface.type) for interface in graph.interfaces] == [
         ("sensor_msgs", "LaserScan"),
         ("std_msgs", "Float32"),
         ("geometry_msgs", "Twist"),
@@ -81,18 +87,18 @@ def test_an_interface_stands_once(graph):
 
 
 def test_what_the_supervisor_does_not_need_lives_in_the_node(graph):
-    assert [(each.component, each.name) for each in graph.variables] == [
+    assert [(variable.component, variable.name) for variable in graph.variables] == [
         ("Lidar", "s"),
         ("Lidar", "battery_level"),
         ("Lidar", "last"),
         ("Lidar", "scaled"),
     ]
-    assert [each.name for each in graph.enumerations] == ["Side", "Level"]
+    assert [enumeration.name for enumeration in graph.enumerations] == ["Side", "Level"]
 
 
 def test_only_needed_data_becomes_an_input(graph):
-    inputs = {part.name: list(part.inputs) for each in graph.subscriptions for part in each.receptions}
-    assert {name: len(each) for name, each in inputs.items()} == {"front": 1, "side": 0, "battery": 0, "offset": 0}
+    inputs = {part.name: list(part.inputs) for subscription in graph.subscriptions for part in subscription.receptions}
+    assert {name: len(input_) for name, input_ in inputs.items()} == {"front": 1, "side": 0, "battery": 0, "offset": 0}
     call = inputs["front"][0].value
     assert isinstance(call, rosgraph.ConversionCall)
     assert call.conversion.name == "Front"
@@ -102,7 +108,7 @@ def test_only_needed_data_becomes_an_input(graph):
 
 
 def test_a_conversion_reads_the_message_and_divides_doubles(graph):
-    rule = next(each for each in graph.conversions if each.name == "Front").rules[0]
+    rule = next(conversion for conversion in graph.conversions if conversion.name == "Front").rules[0]
     near, many = rule.condition.left, rule.condition.right
     field, index = near.left.steps
     assert (field.name, index.index) == ("ranges", 0)
@@ -114,16 +120,20 @@ def test_a_conversion_reads_the_message_and_divides_doubles(graph):
 
 
 def test_a_basic_value_is_in_the_field_data(graph):
-    level = next(each for each in graph.reactions if each.assignments[0].variable.name == "battery_level")
+    level = next(reaction for reaction in graph.reactions if reaction.assignments[0].variable.name == "battery_level")
     argument = level.assignments[0].value.argument
-    assert [each.name for each in argument.steps] == ["data"]
+    assert [step.name for step in argument.steps] == ["data"]
     assert isinstance(argument.type, ex.DoubleType)
 
 
 def test_reactions_stand_where_their_transitions_do(graph):
     shown = [
-        (each.event.eContainer().name, [at.name for at in each.locations], [a.variable.name for a in each.assignments])
-        for each in graph.reactions
+        (
+            reaction.event.eContainer().name,
+            [at.name for at in reaction.locations],
+            [a.variable.name for a in reaction.assignments],
+        )
+        for reaction in graph.reactions
     ]
     assert shown == [
         ("message_battery", ["a", "b"], ["battery_level"]),
@@ -135,12 +145,12 @@ def test_reactions_stand_where_their_transitions_do(graph):
 
 def test_provided_data_is_flattened_to_fields(graph):
     go = graph.publishers[0].sendings[0]
-    assert [each.location.name for each in go.alternatives] == ["d1", "d2"]
-    assert [list(each.path) for each in go.alternatives[0].fields] == [["linear", "x"], ["angular", "z"]]
+    assert [alternative.location.name for alternative in go.alternatives] == ["d1", "d2"]
+    assert [list(field.path) for field in go.alternatives[0].fields] == [["linear", "x"], ["angular", "z"]]
     assert isinstance(go.alternatives[0].fields[1].value, ex.Division)
     assert not graph.publishers[0].sendings[1].alternatives
     (blink,) = graph.publishers[1].sendings[0].alternatives
-    assert [list(each.path) for each in blink.fields] == [["data"]]
+    assert [list(field.path) for field in blink.fields] == [["data"]]
 
 
 def test_node_expressions_may_read_the_state(robot):
@@ -185,7 +195,7 @@ def test_an_initial_value_may_be_no_number(robot):
             }"""
         )
     )
-    initial = [each.initial for each in robosc_to_rosgraph.transform(trace).variables]
+    initial = [variable.initial for variable in robosc_to_rosgraph.transform(trace).variables]
     assert all(isinstance(each, ex.Division) and each.right.value == 0.0 for each in initial)
     assert (initial[0].left.operand.value, initial[1].left.value) == (1.0, 0.0)
 
@@ -222,7 +232,7 @@ def test_services_and_actions_have_their_events(robot):
     ]
     assert [action.feedback.event.name, action.cancel.name] == ["u_feedback", "c_cancel"]
     (reaction,) = graph.reactions
-    assert [each.name for each in reaction.assignments[0].value.steps] == ["success"]
+    assert [step.name for step in reaction.assignments[0].value.steps] == ["success"]
 
 
 def test_linked_basic_data_goes_to_the_only_field(robot: Callable, tmp_path: Path) -> None:
@@ -264,11 +274,11 @@ def test_linked_basic_data_goes_to_the_only_field(robot: Callable, tmp_path: Pat
     """)
     _, trace = robosc_to_sct.transform(model)
     graph = robosc_to_rosgraph.transform(trace, RosTypes([tmp_path]))
-    sent = [*(each for topic in graph.publishers for each in topic.sendings)]
+    sent = [*(sending for topic in graph.publishers for sending in topic.sendings)]
     sent += [each.request for each in (*graph.serviceClients, *graph.actionClients)]
     assert [list(each.alternatives[0].fields[0].path) for each in sent] == [["level"], ["data"], ["height"], ["goal"]]
-    read = [[step.name for step in each.assignments[0].value.steps] for each in graph.reactions]
+    read = [[step.name for step in reaction.assignments[0].value.steps] for reaction in graph.reactions]
     assert read == [["level"], ["done"], ["reached"], ["height"]]
     # Without the definitions it is a guess.
     unknown = robosc_to_rosgraph.transform(trace, RosTypes())
-    assert {step.name for each in unknown.reactions for step in each.assignments[0].value.steps} == {"data"}
+    assert {step.name for reaction in unknown.reactions for step in reaction.assignments[0].value.steps} == {"data"}

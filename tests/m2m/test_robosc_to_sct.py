@@ -111,7 +111,7 @@ def test_an_action_is_listing_5_3(to_sct):
         ("ready", "c_reset", "idle"),
         ("error", "c_reset", "idle"),
     }
-    assert [each.name for each in plant(model, "action_grab").locations if each.marked] == ["idle"]
+    assert [location.name for location in plant(model, "action_grab").locations if location.marked] == ["idle"]
 
 
 def test_a_service_is_listing_5_2(to_sct):
@@ -127,11 +127,14 @@ def test_a_service_is_listing_5_2(to_sct):
 
 def test_each_requirement_restricts_the_trigger(to_sct):
     model, _ = to_sct(MESSAGES)
-    assert [(each.event.name, each.kind.name, show(each.condition)) for each in model.requirements] == [
+    assert [
+        (requirement.event.name, requirement.kind.name, show(requirement.condition))
+        for requirement in model.requirements
+    ] == [
         ("c_trigger", "needs", "component_Sensor.clear"),
         ("c_trigger", "disables", "component_Sensor.blocked"),
     ]
-    assert [each.text for each in model.requirements] == [
+    assert [requirement.text for requirement in model.requirements] == [
         "requirement go needs Sensor.clear",
         "requirement Sensor.blocked disables go",
     ]
@@ -140,14 +143,14 @@ def test_each_requirement_restricts_the_trigger(to_sct):
 def test_an_action_is_cancelled_exactly_when_a_requirement_no_longer_holds(to_sct):
     requirements = "requirement grab needs Arm.free requirement Arm.percent > 10 disables grab"
     model, _ = to_sct(ACTION.replace("REQUIREMENTS", requirements))
-    cancel = next(each for each in model.requirements if each.event.name == "c_cancel")
+    cancel = next(requirement for requirement in model.requirements if requirement.event.name == "c_cancel")
     assert cancel.kind.name == "needs"
     assert show(cancel.condition) == "!component_Arm.free or component_Arm.percent > 10"
 
 
 def test_an_action_without_requirement_is_never_cancelled(to_sct):
     model, _ = to_sct(ACTION.replace("REQUIREMENTS", ""))
-    assert [show(each.condition) for each in model.requirements] == ["false"]
+    assert [show(requirement.condition) for requirement in model.requirements] == ["false"]
 
 
 def test_only_needed_data_is_in_a_plant(to_sct):
@@ -155,9 +158,9 @@ def test_only_needed_data_is_in_a_plant(to_sct):
     assert not plant(model, "component_Arm").variables
     assert not plant(model, "action_grab").inputs
     model, _ = to_sct(ACTION.replace("REQUIREMENTS", "requirement grab needs Arm.percent = 0"))
-    assert [each.name for each in plant(model, "component_Arm").variables] == ["percent"]
-    assert [each.name for each in plant(model, "action_grab").inputs] == ["i_feedback_percent"]
-    feedback = next(each for each in plant(model, "action_grab").events if each.name == "u_feedback")
+    assert [variable.name for variable in plant(model, "component_Arm").variables] == ["percent"]
+    assert [input_.name for input_ in plant(model, "action_grab").inputs] == ["i_feedback_percent"]
+    feedback = next(event for event in plant(model, "action_grab").events if event.name == "u_feedback")
     assert list(feedback.inputs) == list(plant(model, "action_grab").inputs)
 
 
@@ -176,10 +179,10 @@ def test_data_elimination_is_transitive(to_sct):
         }"""
     )
     component = plant(model, "component_C")
-    assert [each.name for each in component.variables] == ["a", "b"]
-    assert [show(each.initial) for each in component.variables] == ["0", "2"]
+    assert [variable.name for variable in component.variables] == ["a", "b"]
+    assert [show(variable.initial) for variable in component.variables] == ["0", "2"]
     (edge,) = component.locations[0].edges
-    assert [(each.variable.name, show(each.value)) for each in edge.updates] == [
+    assert [(update.variable.name, show(update.value)) for update in edge.updates] == [
         ("a", "message_m.i_response"),
         ("b", "component_C.a"),
     ]
@@ -199,7 +202,7 @@ def test_a_variable_without_initial_value_starts_at_the_default_of_its_type(to_s
           requirement n needs C.b or C.i = 4 or C.j = 4 or C.e = high
         }"""
     )
-    shown = {each.name: show(each.initial) for each in plant(model, "component_C").variables}
+    shown = {variable.name: show(variable.initial) for variable in plant(model, "component_C").variables}
     assert shown == {"b": "false", "i": "3", "j": "-3", "e": "low"}
 
 
@@ -221,7 +224,7 @@ def test_provided_data_becomes_a_data_plant(to_sct):
         "c_d2": None,
         "c_none": "false",
     }
-    assert all(each.marked for each in plant(model, "data_go").locations)
+    assert all(location.marked for location in plant(model, "data_go").locations)
 
 
 def test_two_instances_of_one_component_are_independent(to_sct):
@@ -257,7 +260,7 @@ def test_a_generated_name_gives_way_to_the_authors(to_sct):
           state other { transition goto c_tau1 }
         } } }"""
     )
-    assert [each.name for each in plant(model, "component_C").events] == ["c_tau1_", "c_tau2"]
+    assert [event.name for event in plant(model, "component_C").events] == ["c_tau1_", "c_tau2"]
 
 
 def test_a_comparison_of_doubles_becomes_one_of_integers(to_sct):
@@ -271,7 +274,7 @@ def test_a_comparison_of_doubles_becomes_one_of_integers(to_sct):
           requirement n needs C.level * 0.5 != 2.0
         }"""
     )
-    assert [show(each.condition) for each in model.requirements] == [
+    assert [show(requirement.condition) for requirement in model.requirements] == [
         "component_C.level >= 3",
         "component_C.level <= 3 or component_C.level >= 5",
     ]
@@ -283,7 +286,7 @@ def test_every_element_says_where_it_comes_from(to_sct):
     assert trace.origins[plant(model, "component_Sensor")].name == "Sensor"
     assert plant(model, "component_Sensor").origin == "Sensor"
     assert plant(model, "message_near").origin == "Sensor.near"
-    assert all(isinstance(each, ex.Located) for each in trace.origins.values())
+    assert all(isinstance(origin, ex.Located) for origin in trace.origins.values())
 
 
 def test_of_two_assignments_to_one_variable_the_last_counts(to_sct):
@@ -313,4 +316,4 @@ def test_a_comparison_of_strings_is_a_constant(to_sct):
           requirement "a" != "a" disables m
         }"""
     )
-    assert [show(each.condition) for each in model.requirements] == ["component_C.s and true", "false"]
+    assert [show(requirement.condition) for requirement in model.requirements] == ["component_C.s and true", "false"]

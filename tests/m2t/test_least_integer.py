@@ -75,7 +75,7 @@ def test_c_compiles_it(models: Models, tmp_path: Path) -> None:
     files = robosc.generate("supervisor", models)
     for name, text in files.items():
         (tmp_path / name).write_text(text, encoding="utf-8")
-    sources = [tmp_path / each for each in files if each.endswith(".c")]
+    sources = [tmp_path / file for file in files if file.endswith(".c")]
     options = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror", "-c"]
     subprocess.run(["gcc", *options, *sources], cwd=tmp_path, check=True)
 

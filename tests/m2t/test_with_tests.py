@@ -66,7 +66,7 @@ def test_nothing_is_added_to_other_targets(porter: robosc.Models, porter_setting
 def test_the_package_lists_what_the_test_needs(target: str, plain: dict[str, str], files: dict[str, str]) -> None:
     with_tests, without = (parse_package_string(each["package.xml"]) for each in (files, plain))
     with_tests.validate()
-    assert {each.name for each in with_tests.test_depends} == TEST_DEPENDS[target]
+    assert {test_depend.name for test_depend in with_tests.test_depends} == TEST_DEPENDS[target]
     for kind in ("build_depends", "exec_depends", "buildtool_depends"):
         assert [each.name for each in getattr(with_tests, kind)] == [each.name for each in getattr(without, kind)]
 

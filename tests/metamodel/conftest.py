@@ -19,15 +19,15 @@ def roots() -> dict[str, Any]:
     robot = reading.base
     model, trace = robosc_to_sct.transform(robot)
     libraries = [
-        each.type.library
-        for each in robot.definitions
-        if isinstance(each, robosc.Component) and isinstance(each.type, robosc.ImportedComponent)
+        definition.type.library
+        for definition in robot.definitions
+        if isinstance(definition, robosc.Component) and isinstance(definition.type, robosc.ImportedComponent)
     ]
     return {
         "Warehouse.robosc.xmi": robot,
         "Warehouse.sct.xmi": model,
         "Warehouse.rosgraph.xmi": robosc_to_rosgraph.transform(trace),
-    } | {f"{each.name}.robosc.xmi": each for each in libraries}
+    } | {f"{library.name}.robosc.xmi": library for library in libraries}
 
 
 @pytest.fixture(scope="session")

@@ -26,7 +26,7 @@ METAMODELS = [locate(f"metamodel/{name}.ecore") for name in ("expression", "robo
 def java(tmp_path_factory: pytest.TempPathFactory) -> Any:
     """Runs a program of ours in Java: gives its exit status and what it says."""
     absent = [each for each in ("javac", "java") if shutil.which(each) is None]
-    absent += [each.name for each in JARS if not each.exists()]
+    absent += [jar.name for jar in JARS if not jar.exists()]
     if absent:
         message = f"no {', '.join(absent)}: install openjdk-17-jdk-headless and libeclipse-emf-ecore-xmi-java"
         if os.environ.get("CI"):
@@ -79,12 +79,12 @@ def test_a_supervisor_and_odd_texts_are_valid(emf: Any, tmp_path: Path) -> None:
 def test_what_emf_saves_is_the_same_model(java: Any, folder: Path, texts: dict[str, str]) -> None:
     paths = [folder / name for name in texts]
     assert java("EmfSave", *METAMODELS, *paths) == (0, "")
-    assert [each.read_text() for each in paths] != list(texts.values())
+    assert [path.read_text() for path in paths] != list(texts.values())
     graph, robot = load(folder / "Warehouse.rosgraph.xmi"), load(folder / "Warehouse.robosc.xmi")
     [library] = {
-        each.type.library
-        for each in robot.definitions
-        if isinstance(getattr(each, "type", None), robosc.ImportedComponent)
+        definition.type.library
+        for definition in robot.definitions
+        if isinstance(getattr(definition, "type", None), robosc.ImportedComponent)
     }
     roots = {
         "Warehouse.robosc.xmi": robot,
@@ -116,9 +116,9 @@ def test_emf_does_complain(emf: Any, folder: Path, fault: tuple[str, str, str, s
 
 
 def test_emf_does_complain_about_metamodels(emf: Any, tmp_path: Path) -> None:
-    for each in METAMODELS:
-        text = each.read_text()
-        (tmp_path / each.name).write_text(text.replace('eType="#//Location"', 'eType="#//Place"'))
-    status, said = emf(metamodels=[tmp_path / each.name for each in METAMODELS])
+    for metamodel in METAMODELS:
+        text = metamodel.read_text()
+        (tmp_path / metamodel.name).write_text(text.replace('eType="#//Location"', 'eType="#//Place"'))
+    status, said = emf(metamodels=[tmp_path / metamodel.name for metamodel in METAMODELS])
     assert status == 1
     assert "Place" in said

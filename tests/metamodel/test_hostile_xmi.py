@@ -137,8 +137,8 @@ def test_what_no_text_could_say_is_said(
     (folder / file).write_text(changed, encoding="utf-8")
     with pytest.raises(ModelError) as error:
         used(folder / file, None)
-    assert any(message in each.message for each in error.value.diagnostics), error.value
-    assert {each.rule for each in error.value.diagnostics} == {"xmi"}
+    assert any(message in diagnostic.message for diagnostic in error.value.diagnostics), error.value
+    assert {diagnostic.rule for diagnostic in error.value.diagnostics} == {"xmi"}
 
 
 @pytest.mark.parametrize("file", [ROBOT, GRAPH, "LineFollower.sct.xmi"])

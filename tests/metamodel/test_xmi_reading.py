@@ -40,7 +40,7 @@ def findings(path: Path) -> list[Diagnostic]:
 
 def shown(path: Path) -> list[str]:
     """The findings as `line:column: message`."""
-    return [f"{each.span.line}:{each.span.column}: {each.message}" for each in findings(path)]
+    return [f"{finding.span.line}:{finding.span.column}: {finding.message}" for finding in findings(path)]
 
 
 @pytest.fixture
@@ -62,7 +62,9 @@ def test_saved_loaded_and_saved_again_is_the_same(folder: Path, texts: dict[str,
     again = to_texts({"Warehouse.rosgraph.xmi": graph, "Warehouse.sct.xmi": graph.model})
     assert again == {name: texts[name] for name in again}
     robot = load(folder / "Warehouse.robosc.xmi")
-    library = next(each.type.library for each in robot.definitions if getattr(each, "name", "") == "Rear")
+    library = next(
+        definition.type.library for definition in robot.definitions if getattr(definition, "name", "") == "Rear"
+    )
     again = to_texts({"Warehouse.robosc.xmi": robot, "EmergencyStopLibrary.robosc.xmi": library})
     assert again == {name: texts[name] for name in again}
 
@@ -148,7 +150,7 @@ def test_damage_is_located(write: Any, old: str, new: str, wanted: list[str]) ->
     assert old in PLANT
     path = write(HEAD + PLANT.replace(old, new, 1) + TAIL)
     assert shown(path) == wanted
-    assert {each.rule for each in findings(path)} == {"xmi"}
+    assert {finding.rule for finding in findings(path)} == {"xmi"}
 
 
 def test_all_findings_come_at_once(write: Any) -> None:
@@ -157,7 +159,7 @@ def test_all_findings_come_at_once(write: Any) -> None:
         .replace('initial="true"', 'initial="1"')
         .replace("events.0", "events.1")
     )
-    assert [each.span.line for each in findings(write(HEAD + text + text + TAIL))] == [3, 6, 7, 10, 13, 14]
+    assert [finding.span.line for finding in findings(write(HEAD + text + text + TAIL))] == [3, 6, 7, 10, 13, 14]
 
 
 @pytest.mark.parametrize(
@@ -263,7 +265,7 @@ def test_nothing_outside_the_folder_is_read(folder: Path, texts: dict[str, str],
 
 def test_what_is_referred_to_must_be_a_file(folder: Path) -> None:
     (folder / "Warehouse.sct.xmi").unlink()
-    assert [each.message for each in findings(folder / "Warehouse.rosgraph.xmi")] == [
+    assert [finding.message for finding in findings(folder / "Warehouse.rosgraph.xmi")] == [
         "there is no file 'Warehouse.sct.xmi'"
     ]
     os.mkfifo(folder / "Warehouse.sct.xmi")
@@ -272,7 +274,7 @@ def test_what_is_referred_to_must_be_a_file(folder: Path) -> None:
 
 def test_a_file_of_another_model_is_found_out(folder: Path, texts: dict[str, str]) -> None:
     (folder / "Warehouse.sct.xmi").write_text(texts["EmergencyStopLibrary.robosc.xmi"])
-    messages = {each.message for each in findings(folder / "Warehouse.rosgraph.xmi")}
+    messages = {finding.message for finding in findings(folder / "Warehouse.rosgraph.xmi")}
     assert "'model' refers to a Library, but wants a SupervisoryControlModel" in messages
 
 
@@ -295,7 +297,7 @@ def test_a_truncated_file_is_a_finding(folder: Path, texts: dict[str, str], name
     data = texts[name].encode().rstrip()
     for end in range(0, len(data), max(1, len(data) // 60)):
         (folder / name).write_bytes(data[:end])
-        assert [each.rule for each in findings(folder / name)] == ["syntax"]
+        assert [finding.rule for finding in findings(folder / name)] == ["syntax"]
 
 
 @settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
@@ -311,9 +313,9 @@ def test_no_damage_makes_anything_but_findings(folder: Path, texts: dict[str, st
     try:
         load(folder / name)
     except ModelError as error:
-        for each in error.diagnostics:
-            lines = Path(each.file).read_text().split("\n")
-            assert 1 <= each.span.column <= len(lines[each.span.line - 1]) + 1
+        for diagnostic in error.diagnostics:
+            lines = Path(diagnostic.file).read_text().split("\n")
+            assert 1 <= diagnostic.span.column <= len(lines[diagnostic.span.line - 1]) + 1
     (folder / name).write_text(texts[name])
 
 
@@ -325,6 +327,6 @@ def test_the_page_of_the_rule(write: Any, heading: str, rules: list[str]) -> Non
     assert example
     path = write(example.group(1))
     if rules:
-        assert [each.rule for each in findings(path)] == rules
+        assert [finding.rule for finding in findings(path)] == rules
     else:
         assert load(path).name == "Lamp"

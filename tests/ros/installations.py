@@ -86,8 +86,8 @@ def find_ros2() -> Found:
     """The ROS 2 that this environment names (AMENT_PREFIX_PATH), or one below /opt/ros, if it has rclcpp."""
     found = Found()
     environment = dict(os.environ)
-    prefixes = [Path(each) for each in environment.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if each]
-    if not any((each / "share/rclcpp/package.xml").exists() for each in prefixes):
+    prefixes = [Path(part) for part in environment.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if part]
+    if not any((prefix / "share/rclcpp/package.xml").exists() for prefix in prefixes):
         sourced = _sourced("rclcpp")
         if sourced is None:
             found.missing.append("no rclcpp in AMENT_PREFIX_PATH or /opt/ros")
@@ -129,6 +129,6 @@ def _sourced(package: str) -> tuple[dict[str, str], Path] | None:
             shown = subprocess.run(
                 ["bash", "-c", script], env=_plain_environment(), capture_output=True, text=True, check=True
             )
-            pairs = (each.split("=", 1) for each in shown.stdout.split("\0") if "=" in each)
+            pairs = (part.split("=", 1) for part in shown.stdout.split("\0") if "=" in part)
             return dict(pairs), setup.parent
     return None

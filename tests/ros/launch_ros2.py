@@ -17,7 +17,7 @@ def main(file, how, *arguments):
         "pushed": [PushRosNamespace("hall")],
         "simulated": [SetParameter("use_sim_time", value=True)],
     }
-    pairs = [tuple(each.split("=", 1)) for each in arguments]
+    pairs = [tuple(argument.split("=", 1)) for argument in arguments]
     include = IncludeLaunchDescription(AnyLaunchDescriptionSource(file), launch_arguments=pairs)
     service = LaunchService()
     service.include_launch_description(LaunchDescription([GroupAction([*around[how], include])]))

@@ -38,7 +38,7 @@ class Launched:
 
     def of(self, kind: str) -> list[Made]:
         """The actions of a kind, such as `Node`."""
-        return [each for each in self.actions if each.kind == kind]
+        return [action for action in self.actions if action.kind == kind]
 
 
 _MODULES = {
@@ -69,7 +69,7 @@ def launched(text: str, **arguments: str) -> Launched:
     with patch.dict(sys.modules, modules):
         exec(compile(text, "launch", "exec"), file)  # noqa: S102  # our own text
         entities = file["generate_launch_description"]().positional[0]
-    declared = [each for each in entities if each.kind == "DeclareLaunchArgument"]
+    declared = [entity for entity in entities if entity.kind == "DeclareLaunchArgument"]
     values = {each.positional[0]: each.named["default_value"] for each in declared} | arguments
     return Launched(values, [each for entity in entities for each in _unfolded(entity, values)])
 

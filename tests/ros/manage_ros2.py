@@ -57,8 +57,11 @@ def describe(node, *names):
     """Each parameter's description, and its range."""
     found = call(DescribeParameters, f"{node}/describe_parameters", DescribeParameters.Request(names=names))
     return {
-        each.name: [each.description, [[bounds.from_value, bounds.to_value] for bounds in each.integer_range]]
-        for each in found.descriptors
+        descriptor.name: [
+            descriptor.description,
+            [[bounds.from_value, bounds.to_value] for bounds in descriptor.integer_range],
+        ]
+        for descriptor in found.descriptors
     }
 
 

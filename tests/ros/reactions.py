@@ -23,7 +23,7 @@ def one_process(nodes: Workspace | Runner, package: str, *parameters: str) -> li
     """The command that starts a node, and nothing beside it, with parameters (`name:=value`)."""
     if isinstance(nodes, Workspace) and nodes.ros.version == 1:
         executable = nodes.folder / f"devel/lib/{package}/{package}"
-        return [executable, f"__name:={package}", *(f"_{each}" for each in parameters)]
+        return [executable, f"__name:={package}", *(f"_{parameter}" for parameter in parameters)]
     return [*nodes.node(package, *parameters)]
 
 

@@ -48,10 +48,10 @@ class Runner:
         options = ["--layer"] if layer else []
         options += ["--config", str(configuration)] if configuration else []
         if self.ros.version == 1:
-            arguments = [*(f"_{each}" for each in parameters), *remappings]
+            arguments = [*(f"_{parameter}" for parameter in parameters), *remappings]
         else:
-            arguments = ["--ros-args", *(word for each in parameters for word in ("-p", each))]
-            arguments += [word for each in remappings for word in ("-r", each)]
+            arguments = ["--ros-args", *(word for parameter in parameters for word in ("-p", parameter))]
+            arguments += [word for remapping in remappings for word in ("-r", remapping)]
         return [self.robosc, "-m", "robosc", "run", str(model), f"--ros{self.ros.version}", *options, *arguments]
 
     def node(self, package: str, *parameters: str) -> list[str]:

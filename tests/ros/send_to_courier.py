@@ -88,7 +88,7 @@ class Session:
         start = len(self.reports)
         event = f"message_{EVENTS[topic]}.u_response"
         self.senders[topic](**fields)
-        self.wait(lambda: any(event in each["transitions"] for each in self.reports[start:]))
+        self.wait(lambda: any(event in report["transitions"] for report in self.reports[start:]))
         return self.rest()
 
 

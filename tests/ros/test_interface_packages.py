@@ -23,8 +23,8 @@ NEEDED = {"ros1": ["actionlib_msgs", "message_generation"], "ros2": ["action_msg
 def test_packages_build(version: str, tmp_path: Path) -> None:
     found = find_ros1() if version == "ros1" else find_ros2()
     environment = found.ros.environment if found.ros else {}
-    folders = [Path(each) for each in environment.get("ROS_PACKAGE_PATH", "").split(os.pathsep) if each]
-    folders += [Path(each) / "share" for each in environment.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if each]
+    folders = [Path(part) for part in environment.get("ROS_PACKAGE_PATH", "").split(os.pathsep) if part]
+    folders += [Path(part) / "share" for part in environment.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if part]
     there = {each for each in NEEDED[version] for folder in folders if (folder / each / "package.xml").exists()}
     missing = [*found.missing, *(f"no {each}" for each in NEEDED[version] if each not in there)]
     if found.ros is None or missing:
@@ -34,7 +34,7 @@ def test_packages_build(version: str, tmp_path: Path) -> None:
         pytest.skip(reason)
     shutil.copytree(PACKAGES / version, tmp_path / "src")
     found.ros.built(tmp_path)
-    headers = {each.name for each in tmp_path.rglob("*.h*")}
+    headers = {path.name for path in tmp_path.rglob("*.h*")}
     expected = {
         "ros1": {"BoundingBoxes.h", "ObjectCount.h", "NavigateToPoseAction.h", "LightBulbService.h"},
         "ros2": {"bounding_boxes.hpp", "object_count.hpp", "navigate_to_pose.hpp", "light_bulb_service.hpp"},

@@ -232,7 +232,7 @@ def test_what_goes_on_is_reliable_however_it_was_heard(trial: Trial) -> None:
 
 
 def test_everything_fits_its_schema(trial: Trial) -> None:
-    steps = [each for each in trial.steps.values() if "states" in each]
+    steps = [step for step in trial.steps.values() if "states" in step]
     told = {
         "blocked": [each for step in steps for each in step["blocked"]],
         "state": [each for step in steps for each in step["states"]],
@@ -241,7 +241,7 @@ def test_everything_fits_its_schema(trial: Trial) -> None:
     for name, lines in told.items():
         validator = Draft202012Validator(json.loads(locate(f"schemas/{name}.schema.json").read_text()))
         assert lines
-        assert not [error for each in lines for error in validator.iter_errors(each)]
+        assert not [error for line in lines for error in validator.iter_errors(line)]
     # Provided data is none of the layer's business.
     assert not [each for each in trial.log if each["event"].startswith("data_")]
 

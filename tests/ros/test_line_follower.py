@@ -32,8 +32,8 @@ def test_follows_the_line(drive: Drive) -> None:
     until = drive.when(OBSTACLE)
     poses = drive.poses(end=until)
     assert len(poses) > 45
-    assert max(each["off_line"] for each in drive.poses()) < 0.1
-    assert max(each["off_line"] for each in drive.poses(4.0)) < 0.06
+    assert max(pose["off_line"] for pose in drive.poses()) < 0.1
+    assert max(pose["off_line"] for pose in drive.poses(4.0)) < 0.06
     assert poses[-1]["travelled"] > 0.2 * until * 0.9
     assert all(linear == 0.2 for _, linear, _ in drive.commands(1.0, until))
 
@@ -43,7 +43,7 @@ def test_halts_for_the_obstacle_and_goes_on_when_it_is_gone(drive: Drive) -> Non
     waiting = drive.commands(start + 4.0, end)
     assert waiting
     assert all(command[1:] == (0.0, 0.0) for command in waiting)
-    gaps = [each["gap"] for each in drive.poses(start + 0.1, end)]
+    gaps = [pose["gap"] for pose in drive.poses(start + 0.1, end)]
     assert 0.15 < min(gaps) < 0.4
     assert moves(drive, end + TRANSPORT, drive.when(STOP))
 
@@ -78,23 +78,23 @@ def test_what_is_received_is_what_was_decided(drive: Drive) -> None:
 def test_answers_in_every_tick(drive: Drive) -> None:
     sent = {each["event"] for each in drive.log if each["direction"] == "out"}
     # A report is the end of a tick.
-    ticks = [each["data"] for each in drive.reports if each["topic"] == "state"]
-    assert all(sent & set(each["transitions"]) for each in ticks[1:])
+    ticks = [report["data"] for report in drive.reports if report["topic"] == "state"]
+    assert all(sent & set(tick["transitions"]) for tick in ticks[1:])
     periods = [later["time"] - earlier["time"] for earlier, later in pairwise(ticks)]
     assert median(periods) == pytest.approx(0.1, abs=0.03)
 
 
 def test_reports_state_and_definition(drive: Drive) -> None:
-    definitions = [each["data"] for each in drive.reports if each["topic"] == "definition"]
-    states = [each["data"] for each in drive.reports if each["topic"] == "state"]
+    definitions = [report["data"] for report in drive.reports if report["topic"] == "definition"]
+    states = [report["data"] for report in drive.reports if report["topic"] == "state"]
     assert len(definitions) == 1
     assert [each["name"] for each in definitions[0]["components"]] == ["LineDetector", "Lidar", "EmergencyStop"]
-    seen = {(name, component["state"]) for each in states for name, component in each["components"].items()}
+    seen = {(name, component["state"]) for state in states for name, component in state["components"].items()}
     declared = {(each["name"], state["name"]) for each in definitions[0]["components"] for state in each["states"]}
     assert seen == declared
-    assert sum(event == "message_stop.u_response" for each in states for event in each["transitions"]) == 1
-    assert all(each["transitions"] for each in states[1:])
-    told = [event for each in states for event in each["transitions"]]
+    assert sum(event == "message_stop.u_response" for state in states for event in state["transitions"]) == 1
+    assert all(state["transitions"] for state in states[1:])
+    told = [event for state in states for event in state["transitions"]]
     happened = [each["event"] for each in drive.log]
     first = next((at for at in range(len(happened)) if happened[at : at + len(told)] == told), None)
     assert first is not None, "from the first report on each event is told, once, in its order"
@@ -107,7 +107,7 @@ def test_reports_state_and_definition(drive: Drive) -> None:
 
 def test_what_it_tells_fits_the_schemas(drive: Drive) -> None:
     for name in ("state", "definition"):
-        told = [each["data"] for each in drive.reports if each["topic"] == name]
+        told = [report["data"] for report in drive.reports if report["topic"] == name]
         assert told
         validate(told, name)
     validate(drive.log, "event-log")
@@ -121,8 +121,8 @@ def test_ends_cleanly_and_without_complaint(drive: Drive) -> None:
 
 def validate(instances: list[Any], schema: str) -> None:
     validator = Draft202012Validator(json.loads(locate(f"schemas/{schema}.schema.json").read_text()))
-    for each in instances:
-        validator.validate(each)
+    for instance in instances:
+        validator.validate(instance)
 
 
 def moves(drive: Drive, start: float, end: float) -> bool:

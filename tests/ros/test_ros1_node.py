@@ -93,7 +93,7 @@ def test_arguments_of_the_launch_file(graph: Graph) -> None:
     assert graph.connections(0, "/travel/goal") == ""
     assert graph.connections(1, "/hall/order") == ""
     names = ("period_ms", "retry_ms", "watchdog_ms/order")
-    assert [graph.python(f"print(param('/hall/carrier/{each}'))") for each in names] == ["30", "700", "300"]
+    assert [graph.python(f"print(param('/hall/carrier/{name}'))") for name in names] == ["30", "700", "300"]
     graph.processes.wait_until(lambda: "order: silent for 300 ms" in graph.output("launched"), "the watchdog reports")
     graph.processes.stop(node)
     assert "DEBUG" in graph.output("launched")

@@ -71,8 +71,8 @@ def started(ros: Ros, prefix: Path, how: str, *arguments: str) -> dict[str, str]
         check=False,
     )
     assert done.returncode == 0, done.stdout + done.stderr
-    lines = [re.match(r"\[(\w+)-\d+\] (.*)", each) for each in done.stdout.splitlines()]
-    said = {name: "\n".join(each[2] for each in lines if each and each[1] == name) for name in (LAYER, CONTROLLER)}
+    lines = [re.match(r"\[(\w+)-\d+\] (.*)", line) for line in done.stdout.splitlines()]
+    said = {name: "\n".join(line[2] for line in lines if line and line[1] == name) for name in (LAYER, CONTROLLER)}
     assert all(said.values()), done.stdout + done.stderr
     return said
 

@@ -77,7 +77,7 @@ def run(kind: Workspace | Runner, name: str, tmp_path_factory: pytest.TempPathFa
         command = [kind.ros.python, EXAMPLES / "simulator", "--scenario", name, "--ros", str(kind.ros.version)]
         world = processes.start("world", [*command, "--speed", str(SPEED), "--record", record])
         processes.wait_until(lambda: world.poll() is not None, "the scenario has ended", seconds=240)
-        statuses = [processes.stop(each) for each in nodes]
+        statuses = [processes.stop(node) for node in nodes]
     said = (folder / "world.log").read_text()
     output = "\n".join((folder / f"node{number}.log").read_text() for number in range(len(nodes)))
     return LiveRun(world.returncode, said, lines(record), lines(events), max(map(abs, statuses)), output)
@@ -101,7 +101,7 @@ def node_commands(kind: Workspace | Runner, name: str, log: str) -> list[list[st
     if kind.ros.version == 1:
         # The layer's launch file starts the controller, too.
         return [kind.node(layer, log)]
-    remapped = [word for each in remappings for word in ("-r", each)]
+    remapped = [word for remapping in remappings for word in ("-r", remapping)]
     return [kind.node(layer, log, *clock), [*kind.node(controller, *clock), *remapped]]
 
 
@@ -128,7 +128,7 @@ def test_stands_while_stop_is_pressed(run: LiveRun) -> None:
 
 
 def test_touches_nothing(run: LiveRun) -> None:
-    assert min(each["gap"] for each in poses(run.record)) >= 0
+    assert min(pose["gap"] for pose in poses(run.record)) >= 0
 
 
 def test_the_node_ends_cleanly(run: LiveRun) -> None:

@@ -116,7 +116,7 @@ def test_launch_testing_fails_where_the_node_leaves_the_trace(ros2_workspace: Wo
 @pytest.mark.parametrize("package", MODELS)
 def test_colcon_knows_the_tests(ros2_workspace: Workspace, package: str, tmp_path: Path) -> None:
     with_launch_testing(ros2_workspace)
-    messages = ";".join(str(each) for each in (ros2_workspace.folder / "install").iterdir())
+    messages = ";".join(str(path) for path in (ros2_workspace.folder / "install").iterdir())
     package_folder = (ros2_workspace.folder / "src" / package).resolve()
     cmake = ["cmake", "-DBUILD_TESTING=ON", f"-DCMAKE_PREFIX_PATH={messages}", package_folder]
     environment = ros2_workspace.environment()

@@ -30,7 +30,7 @@ def plain(value):
     """A message as nested dicts."""
     if hasattr(value, "__slots__"):
         names = (each.lstrip("_") for each in value.__slots__ if each != "_check_fields")
-        return {each: plain(getattr(value, each)) for each in names}
+        return {name: plain(getattr(value, name)) for name in names}
     return value if isinstance(value, (bool, int, float, str)) else str(value)
 
 
@@ -51,7 +51,7 @@ class Ros1:
         return lambda **fields: publisher.publish(fill(type_of(kind)(), fields))
 
     def heard(self):
-        return all(each.get_num_connections() > 0 for each in self.publishers)
+        return all(publisher.get_num_connections() > 0 for publisher in self.publishers)
 
     def receive(self, seconds):
         time.sleep(seconds)
@@ -78,7 +78,7 @@ class Ros2:
         return lambda **fields: publisher.publish(fill(type_of(kind)(), fields))
 
     def heard(self):
-        return all(each.get_subscription_count() > 0 for each in self.publishers)
+        return all(publisher.get_subscription_count() > 0 for publisher in self.publishers)
 
     def receive(self, seconds):
         until = time.monotonic() + seconds

@@ -197,7 +197,7 @@ class Trial:
 
     def happened(self, event):
         """Waits until the layer has told of an event."""
-        self.wait(lambda: any(event in each["transitions"] for each in self.states), f"{event} happens")
+        self.wait(lambda: any(event in state["transitions"] for state in self.states), f"{event} happens")
 
     def ask(self, what, value=True):
         self.do(data=json.dumps([what, value]))

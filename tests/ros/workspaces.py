@@ -118,7 +118,7 @@ class Workspace:
                 "CMAKE_PREFIX_PATH": f"{self.folder / 'devel'}:{environment.get('CMAKE_PREFIX_PATH', '')}",
                 "PYTHONPATH": f"{self.folder / 'devel/lib/python3/dist-packages'}:{environment.get('PYTHONPATH', '')}",
             }
-        installed = sorted(each for each in (self.folder / "install").iterdir() if each.is_dir())
+        installed = sorted(path for path in (self.folder / "install").iterdir() if path.is_dir())
         found = {
             "AMENT_PREFIX_PATH": installed,
             "LD_LIBRARY_PATH": [each / "lib" for each in installed],

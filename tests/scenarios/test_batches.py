@@ -32,7 +32,7 @@ class HalfSeeing(Controller):
 
 def on_half(log: list[dict[str, Any]]) -> list[str]:
     """The violations that say that something was sent while only a part of a scan had been heard."""
-    return [each for each in BOOKS["maze_solver"]().violations(log) if "half of a scan" in each]
+    return [violation for violation in BOOKS["maze_solver"]().violations(log) if "half of a scan" in violation]
 
 
 def test_nothing_is_sent_between_the_events_of_a_scan() -> None:
@@ -67,6 +67,6 @@ def test_a_corner_that_comes_up_together_with_a_wall_ahead(kind: type[Controller
     node.work()
     node.flush()
     events = [json.loads(line)["event"] for line in log.read_text().splitlines()]
-    assert [each for each in events if "rotate" in each and each.startswith("message_")] == [
+    assert [event for event in events if "rotate" in event and event.startswith("message_")] == [
         f"message_rotate_{turn}.c_trigger"
     ]

@@ -60,19 +60,19 @@ def test_a_run_is_always_the_same(name: str) -> None:
 
 def test_the_line_is_followed_closely_and_left_by_nobody() -> None:
     record = run_of("line_follower").record
-    assert max(each["off_line"] for each in poses(record)) < 0.1
-    assert max(each["off_line"] for each in poses(record, 4.0)) < 0.06
+    assert max(pose["off_line"] for pose in poses(record)) < 0.1
+    assert max(pose["off_line"] for pose in poses(record, 4.0)) < 0.06
     assert poses(record)[-1]["travelled"] > 4.5
 
 
 def test_the_line_follower_halts_before_the_obstacle() -> None:
-    assert 0.15 < min(each["gap"] for each in poses(run_of("line_follower").record)) < 0.4
+    assert 0.15 < min(pose["gap"] for pose in poses(run_of("line_follower").record)) < 0.4
 
 
 def test_the_navigators_get_around_what_is_on_no_map() -> None:
     run = run_of("obstacle_navigation")
     # Nearer than Nav2 keeps only to what was moved before the robot.
-    assert min(each["gap"] for each in poses(run.record)) > 0.02
+    assert min(pose["gap"] for pose in poses(run.record)) > 0.02
     feedback = [each["data"]["value"] for each in run.log if each["event"] == "action_navigate.u_feedback"]
     assert {each["number_of_recoveries"] if isinstance(each, dict) else each for each in feedback} == {0, 1}
 
@@ -85,13 +85,13 @@ def test_a_click_before_the_robot_is_located_starts_nothing() -> None:
 
 def test_the_object_finder_sees_other_things_before_the_sign() -> None:
     events = [each for each in run_of("object_finder").log if each["event"] == "message_objects.u_response"]
-    assert next(each["data"]["value"] for each in events) == "something_else"
-    assert [each["data"]["value"] for each in events][-1] == "stop_sign"
+    assert next(event["data"]["value"] for event in events) == "something_else"
+    assert [event["data"]["value"] for event in events][-1] == "stop_sign"
 
 
 def test_the_maze_has_turns_to_both_sides_and_a_dead_end() -> None:
     events = [each["event"].removesuffix(".c_trigger") for each in run_of("maze_solver").log]
-    turns = [each.rpartition("_")[2] for each in events if each in ("message_rotate_left", "message_rotate_right")]
+    turns = [event.rpartition("_")[2] for event in events if event in ("message_rotate_left", "message_rotate_right")]
     assert ("left", "left") in pairwise(turns)
     assert ("right", "right") in pairwise(turns)
 
@@ -99,13 +99,13 @@ def test_the_maze_has_turns_to_both_sides_and_a_dead_end() -> None:
 def test_the_ball_slips_aside_and_is_caught_again() -> None:
     run = run_of("push_ball")
     assert sum(each["event"] == "message_needs_adjustment.u_response" for each in run.log) > 10
-    ways = [each["ball"] for each in poses(run.record)]
+    ways = [pose["ball"] for pose in poses(run.record)]
     assert ways[-1][0] - ways[0][0] > 2.0
 
 
 def test_the_person_is_followed_at_a_distance() -> None:
     run = run_of("person_follower")
-    away = [each["person"] for each in poses(run.record)]
+    away = [pose["person"] for pose in poses(run.record)]
     assert min(away) > 0.9
     assert max(away) < 2.6
     assert sum(abs(later - earlier) for earlier, later in pairwise(away)) > 1.0
@@ -117,6 +117,6 @@ def test_the_layer_blocks_steps_of_a_controller_that_knows_no_danger() -> None:
     (stop,), (go,) = times_of(run.record, "/stop"), times_of(run.record, "/continue")
     assert sum(stop < each < go for each in blocked) > 10
     # Before the obstacle, too: where the robot stood for seconds.
-    waiting = [each["travelled"] for each in poses(run.record, 8.0, 11.0)]
+    waiting = [pose["travelled"] for pose in poses(run.record, 8.0, 11.0)]
     assert max(waiting) - min(waiting) < 0.01
     assert sum(8.0 < each < 11.0 for each in blocked) > 20

@@ -27,5 +27,7 @@ def test_a_picture_shows_all_that_happened(name: str) -> None:
     run = run_of(name)
     drawing = ElementTree.fromstring(picture(run.simulation))  # noqa: S314  # our own
     texts = [each.text or "" for each in drawing.iter("{http://www.w3.org/2000/svg}text")]
-    assert [each.words for each in run.simulation.happenings if not any(each.words in text for text in texts)] == []
+    assert [
+        happening.words for happening in run.simulation.happenings if not any(happening.words in text for text in texts)
+    ] == []
     assert len(list(drawing.iter("{http://www.w3.org/2000/svg}line"))) == len(run.simulation.world.walls) + 1

@@ -14,8 +14,8 @@ def test_every_topic_is_there(name: str) -> None:
     simulation = Simulation(SCENARIOS[name])
     graph = load(model_of(SCENARIOS[name])).rosgraph
     wanted = [
-        (simulation.says, [(each.topic, each.interface) for each in graph.subscriptions]),
-        (simulation.hears, [(each.topic, each.interface) for each in graph.publishers]),
+        (simulation.says, [(subscription.topic, subscription.interface) for subscription in graph.subscriptions]),
+        (simulation.hears, [(publisher.topic, publisher.interface) for publisher in graph.publishers]),
         (simulation.serves, [(each.identifier, each.interface) for each in graph.actionClients]),
     ]
     assert sum(len(connections) for _, connections in wanted) >= 5

@@ -246,7 +246,10 @@ def test_readers_are_those_of_what_an_event_writes() -> None:
 
 def test_the_state_is_stored_as_small_as_it_can_be() -> None:
     made = transform(machine())
-    assert [(each.name, each.bits, each.signed, each.minimum, each.maximum) for each in made.variables] == [
+    assert [
+        (variable.name, variable.bits, variable.signed, variable.minimum, variable.maximum)
+        for variable in made.variables
+    ] == [
         ("p", 8, False, 0, 2),
         ("p.n", 8, False, 0, 9),
         ("p.m", 8, True, -5, 5),

@@ -35,4 +35,4 @@ def test_a_string_is_what_it_was(tmp_path_factory, texts: list[str]) -> None:
     strict = ["-std=c99", "-Wall", "-Wextra", "-Werror"]
     subprocess.run(["gcc", *strict, folder / "main.c", "-o", folder / "main"], check=True)
     said = subprocess.run([folder / "main"], capture_output=True, check=True).stdout
-    assert said == b"".join(each.encode() + b"\0" for each in texts)
+    assert said == b"".join(text.encode() + b"\0" for text in texts)

@@ -15,11 +15,11 @@ _words = st.sampled_from(["a", "b", "a_b", "b_a", "a_b_a", "int", "event", "name
 def _all(names: CNames, made: sct.SupervisoryControlModel) -> tuple[list[str], list[str], list[str]]:
     """Names at file level, members of the state, members of the inputs."""
     enumerators = [names.enumerator(each) for owner in made.plants for each in (*owner.events, *owner.locations)] + [
-        names.enumerator(each) for owner in made.enumerations for each in owner.literals
+        names.enumerator(literal) for owner in made.enumerations for literal in owner.literals
     ]
     functions = [names.lookup(each) for each in (*made.plants, *made.enumerations)]
     members = [names.member(each) for owner in made.plants for each in (owner, *owner.variables)]
-    return enumerators + functions, members, [names.member(each) for owner in made.plants for each in owner.inputs]
+    return enumerators + functions, members, [names.member(input_) for owner in made.plants for input_ in owner.inputs]
 
 
 @settings(max_examples=60)

@@ -24,4 +24,4 @@ def test_the_page_of_the_rule(heading: str, lines: set[int], tmp_path: Path) -> 
     assert check(robot) == []
     model, _ = robosc_to_sct.transform(robot)
     model.supervisor = synthesize(model).supervisor
-    assert {each.span.line for each in preconditions(model)} == lines
+    assert {precondition.span.line for precondition in preconditions(model)} == lines

@@ -49,7 +49,7 @@ class _Comparison:
         if not supervised:
             yield from self.requirements()
         if supervised:
-            guards = [each for each in self.one.supervisor.guards if each.event not in self.absent]
+            guards = [guard for guard in self.one.supervisor.guards if guard.event not in self.absent]
             for mine, yours in zip_longest(guards, self.other.supervisor.guards):
                 if _name(mine.event) != _name(yours.event):
                     yield f"guard of {_name(mine.event)} is of {_name(yours.event)}"
@@ -69,7 +69,7 @@ class _Comparison:
             yield from self.expression("requirement", each.condition, other.condition)
 
     def names(self, what: str, mine: Any, yours: Any) -> Iterator[str]:
-        first, second = [each.name for each in mine], [each.name for each in yours]
+        first, second = [each.name for each in mine], [your.name for your in yours]
         if first != second:
             yield f"{what} {first} are {second}"
 
@@ -79,7 +79,7 @@ class _Comparison:
                 continue  # its only location has no name in CIF
             there = [each for each in getattr(mine, members) if each not in self.absent]
             yield from self.names(f"{members} of {mine.name}", there, getattr(yours, members))
-        events = [each for each in mine.events if each not in self.absent]
+        events = [event for event in mine.events if event not in self.absent]
         for one, other in zip(events, yours.events, strict=False):
             if one.controllable != other.controllable:
                 yield f"{_name(one)} is controllable or not"
@@ -94,7 +94,7 @@ class _Comparison:
     def location(self, mine: sct.Location, yours: sct.Location) -> Iterator[str]:
         if (mine.initial, mine.marked) != (yours.initial, yours.marked):
             yield f"location {_name(mine)} is marked or initial or not"
-        present = [each for each in edges_from(mine) if each.event not in self.absent]
+        present = [edge for edge in edges_from(mine) if edge.event not in self.absent]
         for one, other in zip_longest(present, edges_from(yours)):
             where = f"{_name(mine)} -{_name(one.event)}->"
             if _name(one.event) != _name(other.event) or _index(one.target) != _index(other.target):
@@ -148,7 +148,7 @@ def _domain(kind: Any) -> list[Any]:
             low, high = kind.minimum, kind.maximum
             values = range(low, high + 1)
             return list(values) if len(values) < 30 else [*values[:10], values[len(values) // 2], *values[-10:]]
-    return [each.name for each in kind.enumeration.literals]
+    return [literal.name for literal in kind.enumeration.literals]
 
 
 def _cells(expression: Any) -> dict[str, list[Any]]:

@@ -26,13 +26,13 @@ def rebuild(text: str) -> sct.SupervisoryControlModel:
     for plant in model.plants:
         _name_kinds(plant)
     if specification.supervisor is not None:
-        kept = {each.event: each.condition for each in specification.invariants}
+        kept = {invariant.event: invariant.condition for invariant in specification.invariants}
         edges = list(specification.supervisor.locations[0].edges)
-        assert specification.alphabet == [each.event for each in edges]
+        assert specification.alphabet == [edge.event for edge in edges]
         model.supervisor = sct.Supervisor(
             guards=[
-                sct.EventGuard(event=each.event, requirement=kept.get(each.event), synthesis=each.guard)
-                for each in edges
+                sct.EventGuard(event=edge.event, requirement=kept.get(edge.event), synthesis=edge.guard)
+                for edge in edges
             ]
         )
     _give_locations(model)
@@ -44,12 +44,12 @@ def _give_locations(model: sct.SupervisoryControlModel) -> None:
     """Gives data plants that have the numbers of locations in a variable locations, and edges that leave all."""
     numbers = {}
     for plant in model.plants:
-        if plant.name.startswith("data_") and [each.name for each in plant.locations] == [""]:
+        if plant.name.startswith("data_") and [location.name for location in plant.locations] == [""]:
             number = plant.variables[-1]
             assert number.name.startswith("choice")
             (only,) = plant.locations
             names = ["none", *(f"d{each}" for each in range(1, number.type.maximum + 1))]
-            plant.locations.extend(sct.Location(name=each, marked=only.marked) for each in names)
+            plant.locations.extend(sct.Location(name=name, marked=only.marked) for name in names)
             plant.locations.remove(only)
             plant.locations[number.initial.value].initial = True
             for edge in list(only.edges):
@@ -74,7 +74,7 @@ def _name_kinds(plant: sct.Plant) -> None:
         kind = "data" if plant.kind is sct.PlantKind.data else stem if stem in _EVENTS else "trigger"
         event.kind = getattr(sct.EventKind, kind)
         carried = f"i_{event.name.rstrip('_').partition('_')[2]}"
-        event.inputs.extend(each for each in plant.inputs if each.name.startswith(carried))
+        event.inputs.extend(input_ for input_ in plant.inputs if input_.name.startswith(carried))
 
 
 def _shifts(model: sct.SupervisoryControlModel, text: str) -> dict[Any, int]:

@@ -312,7 +312,7 @@ def test_what_cannot_be_said_in_a_guard_stands_at_its_event() -> None:
 
 def test_expressions_of_too_large_a_number_draw_nothing_further() -> None:
     given = expression("a + 3 > 3", a="-2..2147483646")
-    assert [each.message for each in cif.preconditions(Models(given), Configuration())] == [
+    assert [precondition.message for precondition in cif.preconditions(Models(given), Configuration())] == [
         "this can't be said in CIF: its range does not fit 32 bits"
     ]
 
@@ -547,4 +547,4 @@ def test_the_page_of_the_rule(heading: str, rules: list[str], tmp_path: Path) ->
     robot = read(tmp_path / "model.rscd").base
     assert check(robot) == []
     models = Models(robosc_to_sct.transform(robot)[0])
-    assert [each.rule for each in cif.preconditions(models, Configuration())] == rules
+    assert [precondition.rule for precondition in cif.preconditions(models, Configuration())] == rules

@@ -92,7 +92,7 @@ def test_numbers_arrays_fields_and_json(
         pytest.skip(f"no {compiler}")
     files = robosc.generate("ros1", courier, settings)
     assert run(compiler, "headers.cpp", "undefined", files, tmp_path) == (0, "", "")
-    for text in ("".join(chr(each) for bounds in HIDDEN for each in bounds if each), 'größer 漢字 🤖 "\\ \n'):
+    for text in ("".join(chr(bound) for bounds in HIDDEN for bound in bounds if bound), 'größer 漢字 🤖 "\\ \n'):
         told = subprocess.run([tmp_path / "program", tmp_path, text], capture_output=True, check=True).stdout.decode()
         assert told == json_text(text)
         assert json.loads(told) == text

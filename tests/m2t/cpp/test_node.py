@@ -14,9 +14,9 @@ def test_what_a_trigger_changes_is_done_after_its_data_is_made() -> None:
     robot = robosc.load(Path(__file__).parent / "courier.rscd")
     robosc.to_sct(robot)
     graph = robosc.to_rosgraph(robot)
-    variable = next(each for each in graph.variables if each.name == "total")
-    (sending,) = (each for topic in graph.publishers for each in topic.sendings if each.name == "sum")
-    plant = next(each for each in graph.model.plants if each.name == "component_Scanner")
+    variable = next(variable for variable in graph.variables if variable.name == "total")
+    (sending,) = (sending for topic in graph.publishers for sending in topic.sendings if sending.name == "sum")
+    plant = next(plant for plant in graph.model.plants if plant.name == "component_Scanner")
     graph.reactions.append(
         rosgraph.Reaction(
             event=sending.event,
@@ -24,8 +24,10 @@ def test_what_a_trigger_changes_is_done_after_its_data_is_made() -> None:
             assignments=[rosgraph.NodeAssignment(variable=variable, value=ex.IntegerLiteral(value=7))],
         )
     )
-    message = next(each for topic in Node(graph).publishers for each in topic.messages if each.word == "sum")
+    message = next(message for topic in Node(graph).publishers for message in topic.messages if message.word == "sum")
     assert message.reaction is not None
     (reaction,) = message.reaction.reactions
     assert reaction.condition == "supervisor_.state.component_Scanner == courier_component_Scanner_looking"
-    assert [(each.target, each.value) for each in reaction.assignments] == [("data_.Counter.total", "Integer(7)")]
+    assert [(assignment.target, assignment.value) for assignment in reaction.assignments] == [
+        ("data_.Counter.total", "Integer(7)")
+    ]

@@ -53,9 +53,9 @@ def found(
     graph = robosc.to_rosgraph(robot)
     findings = preconditions(robosc.Models(model, graph, robot), config.read(file), "controller", 1)
     return [
-        f"{each.file.rpartition('/')[2]}:{each.span.line}: {each.message}"
-        for each in findings
-        if each.severity is (least or each.severity)
+        f"{finding.file.rpartition('/')[2]}:{finding.span.line}: {finding.message}"
+        for finding in findings
+        if finding.severity is (least or finding.severity)
     ]
 
 

@@ -23,5 +23,5 @@ NAVIGATION = HERE.parents[2] / "examples" / "simple_navigation" / "simple_naviga
 def test_parts(model, name, parts) -> None:
     graph = robosc.to_rosgraph(robosc.load(str(model)))
     clients = [*graph.serviceClients, *graph.actionClients]
-    sending = next(each.request for each in clients if each.request.name == name)
-    assert [".".join(each) for each in parts_with_headers(sending)] == parts
+    sending = next(client.request for client in clients if client.request.name == name)
+    assert [".".join(part) for part in parts_with_headers(sending)] == parts

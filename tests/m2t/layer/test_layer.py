@@ -63,15 +63,15 @@ def test_packages_list_what_is_used(usher: robosc.Models, settings: Configuratio
     ros1.validate()
     assert ros1.name == "usher_layer"
     needed = {"rosconsole", "roscpp", "actionlib_msgs", *messages}
-    assert {each.name for each in ros1.build_depends} == needed
-    assert {each.name for each in ros1.exec_depends} == {*needed, "usher_driver"}
+    assert {build_depend.name for build_depend in ros1.build_depends} == needed
+    assert {exec_depend.name for exec_depend in ros1.exec_depends} == {*needed, "usher_driver"}
     assert "Threads::Threads" in robosc.generate("ros1-layer", usher, settings)["CMakeLists.txt"]
     text = robosc.generate("ros2-layer", usher, settings)["package.xml"]
     ros2 = parse_package_string(text)
     ros2.validate()
     used = {"action_msgs", "rclcpp", "rclcpp_components", *messages}
-    assert {each.name for each in ros2.build_depends} == used
-    assert {each.name for each in ros2.exec_depends} == {*used, "launch", "launch_ros", "usher_driver"}
+    assert {build_depend.name for build_depend in ros2.build_depends} == used
+    assert {exec_depend.name for exec_depend in ros2.exec_depends} == {*used, "launch", "launch_ros", "usher_driver"}
     described = ElementTree.fromstring(text).findtext("description")  # noqa: S314  # our own text
     assert described == "Lets <data> & more pass: ]]> -->"
 
@@ -103,7 +103,7 @@ def test_the_launch_file_of_ros1_re_maps_everything(usher: robosc.Models, settin
     assert group is not None
     found = {each.get("from"): each.get("to") for each in group.findall("remap")}
     names = ["/stop", "/resume", "battery", "/scan", "/speed", "label", "/lamp/light", *NAMES["ros1-layer"]]
-    assert found == {each: f"/$(arg namespace)/$(arg name)/controller/{each.lstrip('/')}" for each in names}
+    assert found == {name: f"/$(arg namespace)/$(arg name)/controller/{name.lstrip('/')}" for name in names}
     (node,) = group.findall("node")
     assert node.attrib == {"pkg": "usher_driver", "type": "driver.py", "name": "driver", "output": "screen"}
 
@@ -114,7 +114,7 @@ def test_the_launch_file_of_ros2_re_maps_everything(usher: robosc.Models, settin
     layer, driver = launched(text).of("Node")
     assert (layer.named["package"], layer.named["executable"]) == ("usher_layer", "usher_layer")
     assert (driver.named["package"], driver.named["executable"]) == ("usher_driver", "driver.py")
-    assert driver.named["remappings"] == [(each, f"/usher_layer/controller/{each.lstrip('/')}") for each in names]
+    assert driver.named["remappings"] == [(name, f"/usher_layer/controller/{name.lstrip('/')}") for name in names]
     moved = launched(text, namespace="/left/", name="gate").of("Node")[1]
     assert moved.named["remappings"][0] == ("/stop", "/left/gate/controller/stop")
     # Where another launch file has pushed a namespace, the layer is below it, but for an absolute one of its own.
@@ -258,7 +258,7 @@ def test_a_controller_that_no_launch_file_could_start(
 def test_a_launch_file_of_the_wrong_ros(usher: robosc.Models) -> None:
     controller = {"launch": {"packageName": "my_robot", "file": "drive.launch.py"}}
     settings = Configuration.model_validate({"supervisor": {"controller": controller}})
-    assert [each.severity.value for each in TARGETS["ros1-layer"].findings(usher, settings)] == ["error"]
+    assert [finding.severity.value for finding in TARGETS["ros1-layer"].findings(usher, settings)] == ["error"]
     assert TARGETS["ros2-layer"].findings(usher, settings) == []
 
 
@@ -276,5 +276,5 @@ def test_says_what_synthesis_added_is_the_reason(usher: robosc.Models) -> None:
     label = text.partition("bool pass_message_label()")[2].partition("}\n\n")[0]
     assert "add_requirement" not in label
     assert "add_state" not in label
-    assert sum(each.kind == sct.PlantKind.data for each in usher.sct.plants) == 1
+    assert sum(plant.kind == sct.PlantKind.data for plant in usher.sct.plants) == 1
     assert "data_speed" not in text.replace("usher_data_speed_c_d1:", "").replace("usher_data_speed_c_none:", "")

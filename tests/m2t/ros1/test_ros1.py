@@ -43,10 +43,10 @@ def test_every_file_for_services_and_actions(
 def test_package_lists_what_is_used(files: dict[str, str]) -> None:
     package = parse_package_string(files["package.xml"])
     package.validate()
-    assert [each.name for each in package.buildtool_depends] == ["catkin"]
+    assert [buildtool_depend.name for buildtool_depend in package.buildtool_depends] == ["catkin"]
     used = {"geometry_msgs", "rosconsole", "roscpp", "sensor_msgs", "std_msgs", "xmlrpcpp"}
-    assert {each.name for each in package.build_depends} == used
-    assert {each.name for each in package.exec_depends} == used
+    assert {build_depend.name for build_depend in package.build_depends} == used
+    assert {exec_depend.name for exec_depend in package.exec_depends} == used
     described = ElementTree.fromstring(files["package.xml"]).findtext("description")  # noqa: S314  # our own text
     assert described == "Carries <data> & more: ]]> -->"
     assert package.maintainers[0].name == "A. O'Tester <&>"
@@ -56,8 +56,8 @@ def test_package_lists_what_services_and_actions_need(porter_files: dict[str, st
     package = parse_package_string(porter_files["package.xml"])
     messages = {"geometry_msgs", "nav2_msgs", "std_msgs", "std_srvs"}
     used = {"actionlib", "rosconsole", "roscpp", "xmlrpcpp"} | messages
-    assert {each.name for each in package.build_depends} == used
-    assert {each.name for each in package.exec_depends} == used
+    assert {build_depend.name for build_depend in package.build_depends} == used
+    assert {exec_depend.name for exec_depend in package.exec_depends} == used
 
 
 def test_leaves_out_what_is_not_asked_for(courier: robosc.Models) -> None:

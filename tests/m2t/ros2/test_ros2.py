@@ -70,10 +70,10 @@ def test_what_is_special_in_a_managed_node(
 def test_package_lists_what_is_used(files: dict[str, str]) -> None:
     package = parse_package_string(files["package.xml"])
     package.validate()
-    assert [each.name for each in package.buildtool_depends] == ["ament_cmake"]
+    assert [buildtool_depend.name for buildtool_depend in package.buildtool_depends] == ["ament_cmake"]
     used = {"geometry_msgs", "rclcpp", "rclcpp_components", "sensor_msgs", "std_msgs"}
-    assert {each.name for each in package.build_depends} == used
-    assert {each.name for each in package.exec_depends} == used | {"launch", "launch_ros"}
+    assert {build_depend.name for build_depend in package.build_depends} == used
+    assert {exec_depend.name for exec_depend in package.exec_depends} == used | {"launch", "launch_ros"}
     described = ElementTree.fromstring(files["package.xml"]).findtext("description")  # noqa: S314  # our own text
     assert described == "Carries <data> & more: ]]> -->"
     assert package.maintainers[0].name == "A. O'Tester <&>"
@@ -85,10 +85,12 @@ def test_package_lists_what_services_actions_and_managed_nodes_need(
     messages = {"action_msgs", "geometry_msgs", "nav2_msgs", "std_msgs", "std_srvs"}
     used = {"rclcpp", "rclcpp_action", "rclcpp_components"} | messages
     package = parse_package_string(porter_files["package.xml"])
-    assert {each.name for each in package.build_depends} == used
+    assert {build_depend.name for build_depend in package.build_depends} == used
     managed = parse_package_string(managed_files["package.xml"])
-    assert {each.name for each in managed.build_depends} == used | {"rclcpp_lifecycle"}
-    launching = {each.name for each in managed.exec_depends} - {each.name for each in managed.build_depends}
+    assert {build_depend.name for build_depend in managed.build_depends} == used | {"rclcpp_lifecycle"}
+    launching = {exec_depend.name for exec_depend in managed.exec_depends} - {
+        build_depend.name for build_depend in managed.build_depends
+    }
     assert launching == {"launch", "launch_ros", "lifecycle_msgs"}
 
 
@@ -150,7 +152,7 @@ def test_parameters_of_the_file_are_those_of_the_node(porter_files: dict[str, st
     }
     node = " ".join(porter_files["src/porter_controller_node.cpp"].split())
     names = [*parameters, *(f"watchdog_ms.{topic}" for topic in parameters.pop("watchdog_ms"))]
-    assert [each for each in names if f'"{each}",' not in node] == ["watchdog_ms"]
+    assert [name for name in names if f'"{name}",' not in node] == ["watchdog_ms"]
 
 
 def test_leaves_out_what_is_not_asked_for(courier: robosc.Models) -> None:

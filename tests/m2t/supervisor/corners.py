@@ -194,7 +194,7 @@ def shared() -> sct.SupervisoryControlModel:
         "p4.c_trigger": ("store.m < 9", None),
         "p5.c_tau1": (f"store.there and {either}", "store.m < 9"),
     }
-    others = [_still(name, [event]) for name, event in (each.split(".") for each in list(guards)[:-1])]
+    others = [_still(name, [event]) for name, event in (guard.split(".") for guard in list(guards)[:-1])]
     return model([store, *others, _one("p5", {"c_tau1": ""})], guards=guards, name="Shared")
 
 

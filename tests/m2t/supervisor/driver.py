@@ -101,17 +101,17 @@ def program(model: sct.SupervisoryControlModel) -> str:
     for plant in model.plants:
         if len(plant.locations) > 1:
             values.append(f'printf(" %s", {names.lookup(plant)}(robot.state.{names.member(plant)}));')
-        for each in plant.variables:
-            member = f"robot.state.{names.member(each)}"
-            if isinstance(each.type, ex.EnumerationType):
-                values.append(f'printf(" %s", {names.lookup(each.type.enumeration)}({member}));')
+        for variable in plant.variables:
+            member = f"robot.state.{names.member(variable)}"
+            if isinstance(variable.type, ex.EnumerationType):
+                values.append(f'printf(" %s", {names.lookup(variable.type.enumeration)}({member}));')
             else:
                 values.append(f'printf(" %lld", (long long){member});')
-    inputs = [f"robot->inputs.{names.member(each)}" for plant in model.plants for each in plant.inputs]
+    inputs = [f"robot->inputs.{names.member(input_)}" for plant in model.plants for input_ in plant.inputs]
     return _PROGRAM % {
         "p": names.prefix,
         "u": names.macro,
-        "state": "\n".join(f"        {each}" for each in values),
+        "state": "\n".join(f"        {value}" for value in values),
         "inputs": "\n".join(
             f"    case {number}: {member} = (__typeof__({member}))value; break;" for number, member in enumerate(inputs)
         ),

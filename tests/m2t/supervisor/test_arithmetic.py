@@ -48,7 +48,7 @@ def _model(values: list[tuple[str, str]]) -> sct.SupervisoryControlModel:
     for number, step in enumerate(made.plants[1].locations[0].edges, 1):
         step.event.inputs.append(made.plants[0].inputs[0])
         step.updates[0].source = Place.parse(f"{number}:1-{number}:2")
-    refused = {each.span.line for each in preconditions(made)}
+    refused = {precondition.span.line for precondition in preconditions(made)}
     for number, step in enumerate(made.plants[1].locations[0].edges, 1):
         if number in refused:
             step.updates.clear()

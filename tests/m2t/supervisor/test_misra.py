@@ -26,7 +26,7 @@ def found(sources: Sequence[Path]) -> set[str]:
         pytest.skip("cppcheck is not installed")
     folder = sources[0].parent
     done = subprocess.run(
-        ["cppcheck", "--addon=misra", "--std=c99", "--quiet", *(each.name for each in sources)],
+        ["cppcheck", "--addon=misra", "--std=c99", "--quiet", *(source.name for source in sources)],
         cwd=folder, capture_output=True, text=True, check=False,
     )  # fmt: skip
     assert done.returncode == 0, done.stdout + done.stderr
@@ -45,7 +45,7 @@ def test_it_is_what_the_page_lists(tmp_path: Path) -> None:
     folders = [tmp_path / each for each in ("examples", "others", "large")]
     for folder in folders:
         folder.mkdir()
-    examples = found([write(each, folders[0]) for each in models])
+    examples = found([write(model, folders[0]) for model in models])
     others = [
         *found([write(make(), folders[1]) for make in OTHERS]),
         *found([write(make(), folders[2], small=0) for make in OTHERS]),

@@ -77,10 +77,10 @@ def test_no_compiler_has_anything_to_say(compiler: str, sources: Sequence[Path],
 
 
 def test_names_can_be_left_out(sources: Sequence[Path], tmp_path: Path) -> None:
-    macros = [f"-D{each.stem.removesuffix('_supervisor').upper()}_NO_NAMES" for each in sources]
+    macros = [f"-D{source.stem.removesuffix('_supervisor').upper()}_NO_NAMES" for source in sources]
     call("gcc", *STRICT, *macros, "-c", *sources, cwd=tmp_path)
-    for each in sources:
-        assert b"event_name" not in (tmp_path / f"{each.stem}.o").read_bytes()
+    for source in sources:
+        assert b"event_name" not in (tmp_path / f"{source.stem}.o").read_bytes()
 
 
 def test_cppcheck_has_nothing_to_say(sources: Sequence[Path]) -> None:
@@ -157,7 +157,7 @@ def test_no_function_calls_itself(sources: Sequence[Path]) -> None:
         code = re.sub(r"/\*.*?\*/|\".*?\"", "", source.read_text(), flags=re.DOTALL)
         starts = list(re.finditer(r"^\w[\w *]*?\b(\w+)\([^;{]*\)\n\{", code, flags=re.MULTILINE))
         assert len(starts) >= 8
-        names = [each[1] for each in starts]
+        names = [start[1] for start in starts]
         for position, start in enumerate(starts):
             end = starts[position + 1].start() if position + 1 < len(starts) else len(code)
             called = set(re.findall(r"(?<![>.])\b(\w+)\(", code[start.end() : end])) & set(names)

@@ -26,7 +26,7 @@ class Walk:
         order = (*roles.cancels, *roles.triggers, *roles.silent, *(e for es in roles.data for e in es), *roles.incoming)
         self._events = [f"{each.eContainer().name}.{each.name}" for each in order]
         self._by_name = dict(zip(self._events, order, strict=True))
-        self._inputs = {each: number for number, each in enumerate(x for p in model.plants for x in p.inputs)}
+        self._inputs = {plant: number for number, plant in enumerate(x for p in model.plants for x in p.inputs)}
 
     def steps(self, number: int) -> None:
         for _ in range(number):
@@ -35,13 +35,13 @@ class Walk:
             getattr(self, kind)()
 
     def perform(self) -> None:
-        possible = [each for each in self._events if self.loop.enabled(each)]
+        possible = [event for event in self._events if self.loop.enabled(event)]
         event = self.random.choice(possible if possible and self.random.random() < 0.8 else self._events)
         data = {}
-        for each in self._by_name[event].inputs:
-            value, number = self._value(each.type)
-            data[each.name] = value
-            self.script.append(f"input {self._inputs[each]} {number}")
+        for input_ in self._by_name[event].inputs:
+            value, number = self._value(input_.type)
+            data[input_.name] = value
+            self.script.append(f"input {self._inputs[input_]} {number}")
         self.script.append(f"perform {event}")
         self._say("perform", self.loop.perform(event, data))
 
@@ -72,7 +72,7 @@ class Walk:
 
     def _say(self, operation: str, result: bool) -> None:
         values = [int(each) if isinstance(each, bool) else each for each in self.loop.state.values()]
-        enabled = [each for each in self._events if self.loop.enabled(each)]
+        enabled = [event for event in self._events if self.loop.enabled(event)]
         parts = (f"{operation}:", *self._happened, f"= {int(result)};", *values)
         self.said.append(" ".join(map(str, parts)) + ";" + "".join(f" {each}" for each in enabled))
         self._happened.clear()

@@ -38,7 +38,7 @@ class Compiled:
         executable = self.place.folder / f"devel/lib/{PACKAGE}/{PACKAGE}"
         # What it prints is to be seen at once, in a file, too.
         by_line = ["env", "ROSCONSOLE_STDOUT_LINE_BUFFERED=1"]
-        return [*by_line, executable, f"__name:={PACKAGE}", *(f"_{each}" for each in parameters)]
+        return [*by_line, executable, f"__name:={PACKAGE}", *(f"_{parameter}" for parameter in parameters)]
 
 
 @dataclass(frozen=True)
@@ -89,9 +89,9 @@ def scouting(controller: Controller, folder: Path, *parameters: str, clock: floa
         if clock is not None:
             scout.world.do("clock", seconds=clock)
         yield scout.ready()
-        for each in peers:
+        for peer in peers:
             # Nobody waits for their farewell.
-            each.process.kill()
+            peer.process.kill()
 
 
 @pytest.fixture

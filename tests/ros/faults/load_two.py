@@ -18,7 +18,7 @@ def main(package):
     assert client.wait_for_service(timeout_sec=20)
     for name, remapped in {"first": "", "second": "/second"}.items():
         request = LoadNode.Request(package_name=package, plugin_name=f"{package}::Controller", node_name=name)
-        request.remap_rules = [f"/{each}:={remapped}/{each}" for each in TOPICS] if remapped else []
+        request.remap_rules = [f"/{topic}:={remapped}/{topic}" for topic in TOPICS] if remapped else []
         future = client.call_async(request)
         rclpy.spin_until_future_complete(node, future, timeout_sec=20)
         assert future.result().success, future.result().error_message

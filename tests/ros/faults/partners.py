@@ -225,12 +225,12 @@ class Scout:
 
     def speeds(self, since: Moment) -> list[float]:
         """The forward speeds that the world received."""
-        return [each["data"]["linear"]["x"] for each in self.commands(since)]
+        return [command["data"]["linear"]["x"] for command in self.commands(since)]
 
     def longest_pause(self, since: Moment) -> float:
         """The longest time in which nothing came on /cmd_vel; waits until something has come twice."""
         self.until(lambda: len(self.commands(since)) > 1, "the node goes on with its commands")
-        times = [each["at"] for each in self.commands(since)]
+        times = [command["at"] for command in self.commands(since)]
         return max(later - earlier for earlier, later in pairwise(times))
 
     def states(self, since: Moment) -> list[dict[str, Any]]:

@@ -29,7 +29,7 @@ def test_absent_at_start(scout: Scout) -> None:
     assert scout.says(since, "/travel: no server within 1000 ms") == 1
     assert scout.longest_pause(since) < TIMEOUT - 0.1
     steps = [each for each in scout.log(since) if each["event"].startswith("action_travel")]
-    assert [each["event"] for each in steps[:4]] == [TRIGGER, ERROR, "action_travel.c_reset", TRIGGER]
+    assert [step["event"] for step in steps[:4]] == [TRIGGER, ERROR, "action_travel.c_reset", TRIGGER]
     assert steps[1]["time"] - steps[0]["time"] < TIMEOUT + SLACK
     assert RETRY - 0.01 < steps[2]["time"] - steps[1]["time"] < RETRY + SLACK
     scout.serve(succeed=True)

@@ -11,7 +11,7 @@ MESSAGE = re.compile(r"`((?:/\w+: |\w+ is withheld: )[^`]+)`")
 
 
 def test_all_quoted_messages_are_looked_for() -> None:
-    tests = "".join(each.read_text() for each in sorted(HERE.glob("test_*.py")))
+    tests = "".join(path.read_text() for path in sorted(HERE.glob("test_*.py")))
     quoted = MESSAGE.findall(DOCUMENTATION.read_text())
     assert len(quoted) > 15
     assert [each for each in quoted if f'"{each}"' not in tests] == []

@@ -28,7 +28,7 @@ def test_absent_at_start(scout: Scout) -> None:
     scout.until_state("Lamp", "lit")
     assert scout.variable("Lamp", "answer") == "lit"
     steps = [each for each in scout.log(since) if each["event"].startswith("service_lamp")]
-    assert [each["event"] for each in steps[:4]] == [TRIGGER, ERROR, "service_lamp.c_reset", TRIGGER]
+    assert [step["event"] for step in steps[:4]] == [TRIGGER, ERROR, "service_lamp.c_reset", TRIGGER]
     assert steps[1]["time"] - steps[0]["time"] < TIMEOUT + SLACK
     assert RETRY - 0.01 < steps[2]["time"] - steps[1]["time"] < RETRY + SLACK
 
@@ -42,7 +42,7 @@ def test_dies_while_it_answers(scout: Scout) -> None:
     error = scout.until_event(since, ERROR)
     assert error["time"] - scout.events(since, TRIGGER)[0]["time"] < TIMEOUT + SLACK
     texts = "/lamp: the call failed", "/lamp: no answer within 1000 ms"
-    assert sum(scout.says(since, each) for each in texts) == 1
+    assert sum(scout.says(since, text) for text in texts) == 1
     scout.serve().do("answer_at_once", fields=LIT)
     scout.until_state("Lamp", "lit")
     assert scout.longest_pause(since) < TIMEOUT - 0.1

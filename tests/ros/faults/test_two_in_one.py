@@ -60,8 +60,8 @@ def two_components(controller: Compiled, processes: Processes) -> None:
     """The scout twice in one container of ROS 2, the second time under other topics."""
     ros = controller.place.ros
     prefixes = ros.environment["AMENT_PREFIX_PATH"].split(os.pathsep)
-    containers = (Path(each) / "lib/rclcpp_components/component_container" for each in prefixes)
-    container = next((each for each in containers if each.exists()), None)
+    containers = (Path(prefix) / "lib/rclcpp_components/component_container" for prefix in prefixes)
+    container = next((container for container in containers if container.exists()), None)
     if container is None:
         pytest.skip("there is no component_container")
     process = processes.start("container", [container])

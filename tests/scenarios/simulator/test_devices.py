@@ -137,7 +137,7 @@ def test_darknet_names_the_surest_first_and_shows_no_boxes_of_nothing() -> None:
     said = dict(ObjectDetector().say(World(HERE, sights=sights)))
     assert said["/darknet_ros/found_object"]["count"] == 2
     boxes = said["/darknet_ros/bounding_boxes"]["bounding_boxes"]
-    assert [each["class_id"] for each in boxes] == ["chair", "stop sign"]
+    assert [box["class_id"] for box in boxes] == ["chair", "stop sign"]
     ((topic, data),) = ObjectDetector().say(World(Pose(0.0, 0.0, math.pi), sights=sights))
     assert (topic, data["count"]) == ("/darknet_ros/found_object", 0)
 
