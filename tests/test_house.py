@@ -1,6 +1,7 @@
-"""The rule of the house: which room may import from which, and which library belongs to which room."""
+"""docs/architecture.md is true: which package may import which, which library belongs to which, and what there is."""
 
 import ast
+import re
 import sys
 from collections.abc import Iterator
 from functools import cache
@@ -11,6 +12,8 @@ import pytest
 import robosc
 
 PACKAGE = Path(robosc.__file__).parent
+ROOT = PACKAGE.parent
+PAGE = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
 
 #: What every room stands on. What is not named in this file is on the ground, too, and may import nothing but ground.
 ROOMS = {
@@ -220,3 +223,15 @@ def test_the_rule_allows() -> None:
         ("cli", "__version__"),
     ]:
         assert may(tuple(importer.split(".")), tuple(imported.split("."))), f"{importer} -> {imported}"
+
+
+def test_the_page_names_every_package() -> None:
+    assert [
+        path.name for path in PACKAGE.iterdir() if any(path.glob("*.py")) and f"`robosc/{path.name}`" not in PAGE
+    ] == []
+
+
+def test_what_the_page_names_is_there() -> None:
+    named = set(re.findall(r"`((?:robosc|grammar|metamodel|docs|tests)/[\w./]+)`", PAGE))
+    assert len(named) > 40
+    assert sorted(path for path in named if not (ROOT / path).exists() and not (ROOT / f"{path}.py").exists()) == []
