@@ -76,3 +76,11 @@ def test_format_and_print_keep_it(models: robosc.Models) -> None:
     assert format_text(Text("round.rscd", MODEL))[0] == MODEL
     assert models.robosc is not None
     assert RoboscPrinter()(models.robosc.definitions[1].condition) == "mod(Counter.count - 1, 5) = 2"
+
+
+@pytest.mark.parametrize("between", [" ", "\n", "// a\n", "/* ( */ // )\n /***/"])
+def test_blanks_and_comments_before_the_arguments(between: str) -> None:
+    text = MODEL.replace("mod(value", f"mod{between}(value")
+    robot = robosc.load(text=text)
+    assert robosc.check(robot) == []
+    assert format_text(Text("round.rscd", text))[0] is not None
