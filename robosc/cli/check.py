@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from robosc.cli.options import FILE, findings_format, interface_path, library_path
+from robosc.cli.options import FILE, Paths, findings_format, paths
 from robosc.cli.reading import read
 from robosc.cli.report import Report
 from robosc.diagnostics import ModelError
@@ -18,9 +18,8 @@ if TYPE_CHECKING:
 @click.command("check")
 @click.argument("models", type=FILE, nargs=-1, required=True, metavar="MODEL...")
 @findings_format
-@library_path
-@interface_path
-def command(models: Sequence[str], form: str, library_paths: Sequence[str], interface_paths: Sequence[str]) -> None:
+@paths
+def command(models: Sequence[str], form: str, paths: Paths) -> None:
     """Read robots and libraries, resolve their names and say what breaks a rule of the language.
 
     MODEL is a .rscd file, or an .xmi file of one of the metamodels. Exit status: 0 no errors, 1 errors.
@@ -33,6 +32,6 @@ def command(models: Sequence[str], form: str, library_paths: Sequence[str], inte
     with Report(form) as report:
         for model in models:
             try:
-                read(model, library_paths, report, interface_paths)
+                read(model, paths, report)
             except ModelError as error:
                 report.add(error.diagnostics)

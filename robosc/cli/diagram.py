@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import click
 
 from robosc.cli import CallError, interruption
-from robosc.cli.options import FILE, interface_path, library_path
+from robosc.cli.options import FILE, Paths, paths
 from robosc.cli.reading import read, read_models
 from robosc.cli.report import Report
 from robosc.cli.saying import put
@@ -25,8 +25,6 @@ from robosc.files.writing import refuse, write_file
 from robosc.metamodel import robosc as rsc
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from robosc.diagrams.graph import Graph
 
 _KINDS = ("behaviour", "ros-graph", "plants")
@@ -45,16 +43,14 @@ _KINDS = ("behaviour", "ros-graph", "plants")
     help="How it is drawn: dot for models only, plantuml for metamodels only.",
 )
 @click.option("-o", "--output", type=click.Path(dir_okay=False), help="The file to write, instead of printing it.")
-@library_path
-@interface_path
+@paths
 def command(
     model: str | None,
     kind: str | None,
     name: str | None,
     notation: str,
     output: str | None,
-    library_paths: Sequence[str],
-    interface_paths: Sequence[str],
+    paths: Paths,
 ) -> None:
     """Draw a model, or a metamodel.
 
@@ -85,7 +81,7 @@ def command(
         text = metamodel_diagram(name, notation)
     else:
         with Report(aside=True) as report:
-            text = diagram(_graph(model, kind or "behaviour", library_paths, report, interface_paths), notation)
+            text = diagram(_graph(model, kind or "behaviour", paths, report), notation)
     if output is None:
         put(text, nl=False)
         return
@@ -93,15 +89,15 @@ def command(
     write_file(output, text)
 
 
-def _graph(path: str, kind: str, library_paths: Sequence[str], report: Report, interface_paths: Sequence[str]) -> Graph:
+def _graph(path: str, kind: str, paths: Paths, report: Report) -> Graph:
     """What is drawn of the model in a file. Ends the report where there are errors."""
     if kind == "behaviour":
-        base = read(path, library_paths, report, interface_paths)
+        base = read(path, paths, report)
         report.stop_on_errors()
         if not isinstance(base, rsc.Base):
             raise CallError(f"{path} says nothing about components: --kind plants draws what it holds")
         return behaviour_graph(base)
-    models = read_models(path, library_paths, report, interface_paths)
+    models = read_models(path, paths, report)
     if kind == "plants":
         return plants_graph(models.sct)
     if models.rosgraph is None:

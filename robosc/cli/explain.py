@@ -20,7 +20,7 @@ from robosc.analysis.explain import (
 )
 from robosc.analysis.supervise import supervise
 from robosc.cli import CallError
-from robosc.cli.options import interface_path, library_path, model
+from robosc.cli.options import Paths, model, paths
 from robosc.cli.progress import progress
 from robosc.cli.reading import read_models
 from robosc.cli.report import Report
@@ -29,7 +29,7 @@ from robosc.diagnostics.visible import visible
 from robosc.metamodel.places import place
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable
 
     from robosc.analysis.explain import Explanation, Possibility
     from robosc.analysis.system import SynthesizedSystem
@@ -47,8 +47,7 @@ if TYPE_CHECKING:
 @click.option("--why-empty", is_flag=True, help="Why the robot has no supervisor.")
 @click.option("--why-never", metavar="EVENT", help="Why EVENT can never happen, in whatever state.")
 @click.option("--json", "as_data", is_flag=True, help="Print one JSON object.")
-@library_path
-@interface_path
+@paths
 def command(
     model: str,
     event: str | None,
@@ -56,8 +55,7 @@ def command(
     why_empty: bool,
     why_never: str | None,
     as_data: bool,
-    library_paths: Sequence[str],
-    interface_paths: Sequence[str],
+    paths: Paths,
 ) -> None:
     """Say why an event can't happen in a state, or never, or why nothing can.
 
@@ -81,7 +79,7 @@ def command(
     if state is not None and event is None:
         raise click.UsageError("--state needs --event")
     with Report(aside=True) as report:
-        plants = read_models(model, library_paths, report, interface_paths).sct
+        plants = read_models(model, paths, report).sct
         with progress("exploring what the robot can do"):
             told = explored(plants, emptiness if why_empty else _question(plants, event, state, why_never))
         if told is None and not why_empty:

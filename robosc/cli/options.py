@@ -1,13 +1,22 @@
 """Options and arguments that several commands share."""
 
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import wraps
+from typing import TYPE_CHECKING, Any
+
 import click
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
 
 #: A file that must be there.
 FILE = click.Path(exists=True, dir_okay=False, readable=True)
 
 model = click.argument("model", type=FILE)
 
-library_path = click.option(
+_library_path = click.option(
     "-I",
     "--library-path",
     "library_paths",
@@ -16,13 +25,17 @@ library_path = click.option(
     help="A folder with libraries, searched after the model's own; may be repeated. Then come those in ROBOSC_PATH.",
 )
 
-interface_path = click.option(
+_interface_path = click.option(
     "--interface-path",
     "interface_paths",
     multiple=True,
     type=click.Path(exists=True, file_okay=False),
     help="A folder with ROS packages below it, searched for .msg, .srv and .action files; may be repeated."
     " Then come those in ROBOSC_INTERFACE_PATH.",
+)
+
+configuration = click.option(
+    "--config", "chosen", type=FILE, help="The configuration, if not the controller-config.json near the model."
 )
 
 findings_format = click.option(
@@ -43,3 +56,23 @@ memory = click.option(
     show_default=True,
     help="The most memory for synthesis and generating, in megabytes of 2^20 bytes.",
 )
+
+
+@dataclass(frozen=True)
+class Paths:
+    """Folders in which the libraries, and the ROS types, of a model are looked for."""
+
+    libraries: Sequence[str] = ()
+    interfaces: Sequence[str] = ()
+
+
+def paths(command: Callable[..., None]) -> Callable[..., None]:
+    """Gives a command the options for folders to search; it gets them as `paths`."""
+
+    @_library_path
+    @_interface_path
+    @wraps(command)
+    def with_paths(*, library_paths: Sequence[str], interface_paths: Sequence[str], **options: Any) -> None:
+        command(paths=Paths(library_paths, interface_paths), **options)
+
+    return with_paths

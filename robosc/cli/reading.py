@@ -18,31 +18,34 @@ from robosc.ros_types import RosTypes
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from robosc.cli.options import Paths
     from robosc.cli.report import Report
     from robosc.configuration import Configuration
 
     Root = rsc.Base | sct.SupervisoryControlModel | rosgraph.RosGraph
 
 
-def read(path: str, library_paths: Sequence[str], report: Report, interface_paths: Sequence[str] = ()) -> Root | None:
+def read(path: str, paths: Paths, report: Report) -> Root | None:
     """The model in a file of any kind; all findings of reading and of the rules go to the report.
 
     None where so little could be read that there is none. Raises ModelError for an XMI file with faults.
     """
-    interfaces = RosTypes(interface_paths)
+    interfaces = RosTypes(paths.interfaces)
     if path.endswith(".xmi"):
         from robosc.metamodel import xmi
 
         texts: dict[str, str] = {}
         try:
-            root: Root | engine.EngineModel | None = xmi.load(path, texts, _Sources(path, library_paths, report).locate)
+            root: Root | engine.EngineModel | None = xmi.load(
+                path, texts, _Sources(path, paths.libraries, report).locate
+            )
         finally:
             report.add((), texts)
         if isinstance(root, engine.EngineModel):
             root = root.model  # From which it is made again.
         findings = []
     else:
-        reading = read_text(path, library_paths, interfaces)
+        reading = read_text(path, paths.libraries, interfaces)
         root, findings = reading.base, reading.findings
         report.add(findings, reading.texts)
     if isinstance(root, rsc.Base):
@@ -96,18 +99,35 @@ def read_configuration(model: str, chosen: str | None, report: Report) -> Config
     return config.read(file)
 
 
-def read_models(path: str, library_paths: Sequence[str], report: Report, interface_paths: Sequence[str] = ()) -> Models:
+def read_models(path: str, paths: Paths, report: Report) -> Models:
     """The sct model in a file, or made from what it holds, and what else there is about the robot.
 
     Ends the report where there are errors. Raises CallError for a library.
     """
-    root = read(path, library_paths, report, interface_paths)
+    root = read(path, paths, report)
     if isinstance(root, rsc.Library):
         raise CallError(f"{path} holds a library: it has no supervisor of its own, a robot that imports it has")
     report.stop_on_errors()
     if isinstance(root, rsc.Robot):
-        return Models(robosc.to_sct(root), robosc.to_rosgraph(root, interface_paths), root)
+        return Models(robosc.to_sct(root), robosc.to_rosgraph(root, paths.interfaces), root)
     if isinstance(root, rosgraph.RosGraph):
         return Models(root.model, root)
     assert isinstance(root, sct.SupervisoryControlModel)
     return Models(root)
+
+
+def supervise_models(models: Models, report: Report, *, memory: int | None = None) -> None:
+    """Gives the sct model its supervisor, unless it has one; what is doubtful about it goes to the report.
+
+    `memory` is the most that the process may take, in bytes, if not the default of synthesis. Ends the report where
+    there are errors. Raises EmptySupervisorError where there is no supervisor.
+    """
+    from robosc.analysis.supervise import supervise
+    from robosc.cli.progress import synthesizing
+    from robosc.synthesis import MEMORY
+
+    if models.sct.supervisor is None:
+        with synthesizing() as statistics:
+            supervision = supervise(models.sct, memory=memory or MEMORY, statistics=statistics)
+        report.add(supervision.findings)
+        report.stop_on_errors()

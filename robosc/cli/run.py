@@ -7,11 +7,9 @@ from typing import TYPE_CHECKING
 
 import click
 
-from robosc.analysis.supervise import supervise
 from robosc.cli import CallError, interruption
-from robosc.cli.options import FILE, findings_format, interface_path, library_path, model
-from robosc.cli.progress import synthesizing
-from robosc.cli.reading import read_configuration, read_models
+from robosc.cli.options import Paths, configuration, findings_format, model, paths
+from robosc.cli.reading import read_configuration, read_models, supervise_models
 from robosc.cli.report import Report
 from robosc.m2t.targets import TARGETS
 
@@ -27,12 +25,9 @@ if TYPE_CHECKING:
 @click.option("--ros1", "version", flag_value=1, type=int, help="Be a node of ROS 1.")
 @click.option("--ros2", "version", flag_value=2, type=int, help="Be a node of ROS 2.")
 @click.option("--layer", is_flag=True, help="Be the supervisory layer between an existing controller and the robot.")
-@click.option(
-    "--config", "chosen", type=FILE, help="The configuration, if not the controller-config.json near the model."
-)
+@configuration
 @findings_format
-@library_path
-@interface_path
+@paths
 @click.argument("arguments", nargs=-1, type=click.UNPROCESSED, metavar="[ROS ARGUMENTS]")
 def command(
     model: str,
@@ -40,8 +35,7 @@ def command(
     layer: bool,
     chosen: str | None,
     form: str,
-    library_paths: Sequence[str],
-    interface_paths: Sequence[str],
+    paths: Paths,
     arguments: Sequence[str],
 ) -> None:
     """Be a robot's controller: the node that `transform` would generate, straight from the model.
@@ -61,19 +55,15 @@ def command(
     if version is None:
         raise CallError("say which ROS the node is for: --ros1 or --ros2")
     with Report(form) as report:
-        models = read_models(model, library_paths, report, interface_paths)
+        models = read_models(model, paths, report)
         if models.rosgraph is None:
             raise CallError(f"{model} has no ROS graph: give its .rosgraph.xmi or .rscd")
-        configuration = read_configuration(model, chosen, report)
-        if models.sct.supervisor is None:
-            with synthesizing() as statistics:
-                supervision = supervise(models.sct, statistics=statistics)
-            report.add(supervision.findings)
-            report.stop_on_errors()
+        settings = read_configuration(model, chosen, report)
+        supervise_models(models, report)
         target = TARGETS[f"ros{version}-layer" if layer else f"ros{version}"]
-        report.add(target.findings(models, configuration))
+        report.add(target.findings(models, settings))
         report.stop_on_errors()
-    _run(models, configuration, version, arguments, layer=layer)
+    _run(models, settings, version, arguments, layer=layer)
 
 
 def _run(models: Models, configuration: Configuration, version: int, arguments: Sequence[str], *, layer: bool) -> None:

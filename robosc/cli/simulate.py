@@ -10,11 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from robosc.analysis.supervise import supervise
 from robosc.analysis.wording import with_words
-from robosc.cli.options import FILE, interface_path, library_path, model
-from robosc.cli.progress import synthesizing
-from robosc.cli.reading import read_configuration, read_models
+from robosc.cli.options import FILE, Paths, model, paths
+from robosc.cli.reading import read_configuration, read_models, supervise_models
 from robosc.cli.report import Report
 from robosc.cli.saying import put, say
 from robosc.engine import Settings
@@ -26,7 +24,7 @@ from robosc.simulation.script import RULE
 from robosc.simulation.session import Session, trace_line
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator
 
     from robosc.m2t.models import Models
 
@@ -38,8 +36,7 @@ if TYPE_CHECKING:
 @click.option("--random", "number", type=click.IntRange(0), metavar="N", help="Let N random events happen; print them.")
 @click.option("--seed", type=int, default=0, show_default=True, help="Of everything random.")
 @click.option("--config", "chosen", type=FILE, help="For --loop: the configuration, if not the one near the model.")
-@library_path
-@interface_path
+@paths
 def command(
     model: str,
     script: str | None,
@@ -47,8 +44,7 @@ def command(
     number: int | None,
     seed: int,
     chosen: str | None,
-    library_paths: Sequence[str],
-    interface_paths: Sequence[str],
+    paths: Paths,
 ) -> None:
     """Try a supervised robot: step by step by hand, by a script, or at random.
 
@@ -70,13 +66,9 @@ def command(
     if loop and script is None:
         raise click.UsageError("--loop needs a --script")
     with Report(aside=True) as report:
-        models = read_models(model, library_paths, report, interface_paths)
+        models = read_models(model, paths, report)
         settings = _settings(model, chosen, report) if loop else None
-        if models.sct.supervisor is None:
-            with synthesizing() as statistics:
-                supervision = supervise(models.sct, statistics=statistics)
-            report.add(supervision.findings)
-            report.stop_on_errors()
+        supervise_models(models, report)
         if script is not None:
             answers = _played(models, script, settings, report)
     if script is not None:

@@ -10,7 +10,7 @@ import click
 
 from robosc.analysis.supervise import EmptySupervisorError, supervise
 from robosc.analysis.wording import change
-from robosc.cli.options import interface_path, library_path, memory, model
+from robosc.cli.options import Paths, memory, model, paths
 from robosc.cli.progress import synthesizing
 from robosc.cli.reading import read_models
 from robosc.cli.report import Report
@@ -24,8 +24,6 @@ if sys.platform != "win32":
     import resource
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from robosc.synthesis import Statistics, Synthesis
 
 
@@ -33,11 +31,8 @@ if TYPE_CHECKING:
 @model
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 @memory
-@library_path
-@interface_path
-def command(
-    model: str, as_json: bool, megabytes: int, library_paths: Sequence[str], interface_paths: Sequence[str]
-) -> None:
+@paths
+def command(model: str, as_json: bool, megabytes: int, paths: Paths) -> None:
     """Synthesize the supervisor of a robot: its states, and when it allows what.
 
     MODEL is a .rscd file with a robot, or an .xmi file that `transform --to xmi` wrote. A guard says where the
@@ -53,7 +48,7 @@ def command(
     Exit status: 0 done, 1 errors in the model, 2 a wrong call, 3 no supervisor exists.
     """
     with Report(aside=True) as report:
-        plants = read_models(model, library_paths, report, interface_paths).sct
+        plants = read_models(model, paths, report).sct
         try:
             with synthesizing() as statistics:
                 supervision = supervise(plants, memory=megabytes << 20, statistics=statistics)

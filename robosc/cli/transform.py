@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING
 
 import click
 
-from robosc.analysis.supervise import supervise
 from robosc.cli import CallError, interruption
-from robosc.cli.options import FILE, findings_format, interface_path, library_path, memory, model
-from robosc.cli.progress import progress, synthesizing
-from robosc.cli.reading import read_configuration, read_models
+from robosc.cli.options import Paths, configuration, findings_format, memory, model, paths
+from robosc.cli.progress import progress
+from robosc.cli.reading import read_configuration, read_models, supervise_models
 from robosc.cli.report import Report
 from robosc.cli.saying import say
 from robosc.configuration import LOCATIONS
@@ -41,9 +40,7 @@ _EPILOG = "\n".join(["\b", "Targets:", *(f"  {target.name:<11} {target.descripti
 @model
 @click.option("--to", "targets", required=True, multiple=True, callback=_targets, metavar="TARGET[,TARGET]")
 @click.option("-o", "--output", type=click.Path(file_okay=False), help="The output folder.  [default: build/<robot>]")
-@click.option(
-    "--config", "chosen", type=FILE, help="The configuration, if not the controller-config.json near the model."
-)
+@configuration
 @click.option(
     "--with-tests", is_flag=True, help="Add a test that plays event traces against the node, and a Dockerfile."
 )
@@ -56,8 +53,7 @@ _EPILOG = "\n".join(["\b", "Targets:", *(f"  {target.name:<11} {target.descripti
 )
 @findings_format
 @memory
-@library_path
-@interface_path
+@paths
 def command(
     model: str,
     targets: Sequence[Target],
@@ -67,8 +63,7 @@ def command(
     confirmed: Sequence[str],
     form: str,
     megabytes: int,
-    library_paths: Sequence[str],
-    interface_paths: Sequence[str],
+    paths: Paths,
 ) -> None:
     """Check a robot, synthesize its supervisor and generate the TARGETs from it, all of them or none.
 
@@ -87,20 +82,16 @@ def command(
         tested = [target.name for target in TARGETS.values() if target.tested_ros]
         raise CallError(f"--with-tests is for {' and '.join(tested)}: the other targets have none")
     with Report(form) as report:
-        models = read_models(model, library_paths, report, interface_paths)
+        models = read_models(model, paths, report)
         for target in targets:
             if target.needs_graph and models.rosgraph is None:
                 raise CallError(f"{model} has no ROS graph, which {target.name} needs: give its .rosgraph.xmi or .rscd")
-        configuration = read_configuration(model, chosen, report)
-        copies = _copies(Path(model).parent, targets, configuration, confirmed, report)
+        settings = read_configuration(model, chosen, report)
+        copies = _copies(Path(model).parent, targets, settings, confirmed, report)
         report.stop_on_errors()
-        if models.sct.supervisor is None:
-            with synthesizing() as statistics:
-                supervision = supervise(models.sct, memory=megabytes << 20, statistics=statistics)
-            report.add(supervision.findings)
-            report.stop_on_errors()
+        supervise_models(models, report, memory=megabytes << 20)
         for target in targets:
-            report.add(target.findings(models, configuration))
+            report.add(target.findings(models, settings))
         report.stop_on_errors()
         folder = Path(output or f"build/{models.sct.name}")
         files = {}
@@ -108,9 +99,9 @@ def command(
             for target in targets:
                 with progress(f"generating {target.name}"):
                     files[target] = target.files(
-                        models, configuration, with_tests=with_tests, interface_paths=interface_paths
+                        models, settings, with_tests=with_tests, interface_paths=paths.interfaces
                     )
-        trees = _trees(folder, files, copies, models, configuration)
+        trees = _trees(folder, files, copies, models, settings)
         interruption.check()
         with progress(f"writing to {folder}"):  # it may wait for another run
             changed = set(write(trees))

@@ -9,13 +9,12 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from robosc.analysis.supervise import supervise
 from robosc.analysis.verify import Outcome, verify
 from robosc.analysis.verify.verdict import TRUSTED, as_json, as_junit, details, summary
 from robosc.cli import ERRORS_FOUND, interruption
-from robosc.cli.options import FILE, interface_path, library_path, model
+from robosc.cli.options import Paths, configuration, model, paths
 from robosc.cli.progress import progress
-from robosc.cli.reading import read_configuration, read_models
+from robosc.cli.reading import read_configuration, read_models, supervise_models
 from robosc.cli.report import Report
 from robosc.cli.saying import put, say
 from robosc.diagnostics.visible import visible
@@ -41,16 +40,14 @@ _WIDTH = 120
 @model
 @click.option("--json", "as_object", is_flag=True, help="Print one JSON object.")
 @click.option("--junit", type=click.Path(dir_okay=False), help="Write JUnit XML to FILE, too.")
-@click.option("--config", "chosen", type=FILE, help="The configuration, if not the one near the model.")
-@library_path
-@interface_path
+@configuration
+@paths
 def command(
     model: str,
     as_object: bool,
     junit: str | None,
     chosen: str | None,
-    library_paths: Sequence[str],
-    interface_paths: Sequence[str],
+    paths: Paths,
 ) -> None:
     """Prove what a supervised robot promises, or refute it by a shortest trace.
 
@@ -67,17 +64,13 @@ def command(
     Exit status: 0 nothing refuted, 1 refuted or errors in the model, 2 a wrong call, 3 no supervisor exists.
     """
     with Report(aside=True) as report:
-        models = read_models(model, library_paths, report, interface_paths)
-        configuration = read_configuration(model, chosen, report)
+        models = read_models(model, paths, report)
+        settings = read_configuration(model, chosen, report)
         if junit:
             refuse(junit)
-        if models.sct.supervisor is None:
-            with progress("synthesizing the supervisor"):
-                supervision = supervise(models.sct)
-            report.add(supervision.findings)
-            report.stop_on_errors()
+        supervise_models(models, report)
         with progress("verifying"):
-            verdicts = verify(models, configuration)
+            verdicts = verify(models, settings)
     if junit:
         interruption.check()
         write_file(junit, as_junit(models.sct, verdicts, model))

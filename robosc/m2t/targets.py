@@ -38,9 +38,11 @@ class Target:
 
     name: str
     description: str
+    #: Its folder below the output folder; a ROS package has a folder of its own in there.
     _folder: str = ""
-    #: Whose name the package has, of a target that is a ROS package.
+    #: What kind of ROS package it is, if it is one, and for which ROS, 1 or 2.
     package: Literal["controller", "layer"] | None = None
+    ros: int | None = None
     #: The setting in the configuration's `output` that names a folder for a copy.
     location: str | None = None
 
@@ -73,7 +75,7 @@ class Target:
     @property
     def tested_ros(self) -> int | None:
         """The ROS, 1 or 2, on which its packages can be tested with traces; None where they can't."""
-        return int(self.name[-1]) if self.package == "controller" else None
+        return self.ros if self.package == "controller" else None
 
     def files(
         self,
@@ -105,14 +107,15 @@ TARGETS = {
     for target in (
         Target("cif", "plants and requirements, and the supervised system, in CIF 3"),
         Target("supervisor", "the supervisor and its control loop in C99", "supervisor"),
-        Target("ros1", "a controller node for ROS 1", "ros1", "controller", "ros1_controller_node_location"),
-        Target("ros2", "a controller node for ROS 2", "ros2", "controller", "ros2_controller_node_location"),
-        Target("ros1-layer", "a supervisory layer before a controller for ROS 1", "ros1", "layer"),
+        Target("ros1", "a controller node for ROS 1", "ros1", "controller", 1, "ros1_controller_node_location"),
+        Target("ros2", "a controller node for ROS 2", "ros2", "controller", 2, "ros2_controller_node_location"),
+        Target("ros1-layer", "a supervisory layer before a controller for ROS 1", "ros1", "layer", 1),
         Target(
             "ros2-layer",
             "a supervisory layer before a controller for ROS 2",
             "ros2",
             "layer",
+            2,
             "ros2_supervisor_node_location",
         ),
         Target("xmi", "the models between the steps"),
