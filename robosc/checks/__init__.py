@@ -38,8 +38,8 @@ def check(
     if base is None:
         return []
     unread: dict[str, list[Diagnostic]] = {}
-    for each in known:
-        unread.setdefault(each.file, []).append(each)
+    for finding in known:
+        unread.setdefault(finding.file, []).append(finding)
     findings: list[Diagnostic] = []
     interfaces = interfaces or RosTypes()
     with remembering():
@@ -51,7 +51,7 @@ def check(
 def _findings(base: rsc.Base, unread: Sequence[Diagnostic], interfaces: RosTypes) -> Iterator[Diagnostic]:
     file = place(base)[0]
     for rule in RULES.values():
-        for each in rule.check(base, interfaces):
-            if not each.can_be_false(unread):
-                span = place(each.element)[1]
-                yield Diagnostic(file, span, rule.severity, rule.id, each.message, each.hint)
+        for finding in rule.check(base, interfaces):
+            if not finding.can_be_false(unread):
+                span = place(finding.element)[1]
+                yield Diagnostic(file, span, rule.severity, rule.id, finding.message, finding.hint)

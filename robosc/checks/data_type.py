@@ -22,13 +22,13 @@ def data_type(base: rsc.Base) -> Iterator[Finding]:
             yield from _base_of(definition)
     yield from _endless(base)
     for _, communication in communications(base):
-        for each in carried_types(communication):
-            if isinstance(each, rsc.Array):
+        for carried in carried_types(communication):
+            if isinstance(carried, rsc.Array):
                 yield Finding(
-                    each,
+                    carried,
                     f"the data of `{communication.name}` is an array, expected one in an object only: a ROS message"
                     " has fields, and an array is one of them",
-                    f"declare `datatype object … {{ data: {_text(each)} }}` and use that",
+                    f"declare `datatype object … {{ data: {_text(carried)} }}` and use that",
                 )
         sent = sent_type(communication)
         path = _enum_in(sent, set())
@@ -73,17 +73,17 @@ def _endless(base: rsc.Base) -> Iterator[Finding]:
         path = [(start, iter(list(start.properties)))]
         while path:
             current, remaining = path[-1]
-            each = next(remaining, None)
-            if each is None:
+            part = next(remaining, None)
+            if part is None:
                 path.pop()
                 open_types.discard(current)
                 done.add(current)
                 continue
-            inner = _object_of(each.type)
+            inner = _object_of(part.type)
             if inner is not None and inner in open_types:
                 yield Finding(
-                    each,
-                    f"property `{each.name}` makes object `{inner.name}` contain itself, expected data of finite size",
+                    part,
+                    f"property `{part.name}` makes object `{inner.name}` contain itself, expected data of finite size",
                     "leave the property out, or give it a type that does not contain the object",
                 )
             elif inner is not None and inner not in done and inner.eContainer() is base:
@@ -117,10 +117,10 @@ def _enum_in(declared: rsc.DataType | None, seen: set[rsc.ObjectDataType]) -> li
         return []
     if isinstance(named, rsc.ObjectDataType) and named not in seen:
         seen.add(named)
-        for each in named.properties:
-            rest = _enum_in(each.type, seen)
+        for part in named.properties:
+            rest = _enum_in(part.type, seen)
             if rest is not None:
-                return [each.name, *rest]
+                return [part.name, *rest]
     return None
 
 

@@ -57,8 +57,8 @@ def sent_type(communication: rsc.CommunicationType | None) -> rsc.DataType | Non
 
 def data_types(base: rsc.Base) -> Iterator[rsc.DataType]:
     """Every type that stands in the text of a base, those within arrays too."""
-    for each in _outermost(base):
-        around: rsc.DataType | None = each
+    for outermost in _outermost(base):
+        around: rsc.DataType | None = outermost
         while around is not None:
             yield around
             around = around.type if isinstance(around, rsc.Array) else None
@@ -69,7 +69,7 @@ def _outermost(base: rsc.Base) -> Iterator[rsc.DataType | None]:
         if isinstance(definition, rsc.EnumDataType):
             yield definition.type
         elif isinstance(definition, rsc.ObjectDataType):
-            yield from (each.type for each in definition.properties)
+            yield from (part.type for part in definition.properties)
     for _, communication in communications(base):
         yield from carried_types(communication)
     for _, variable in variables(base):

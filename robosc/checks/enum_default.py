@@ -12,7 +12,7 @@ def enum_default(base: rsc.Base) -> Iterator[Finding]:
     for enum in base.definitions:
         if not isinstance(enum, rsc.EnumDataType):
             continue
-        defaults = [each for each in enum.rules if isinstance(each, rsc.EnumDefaultRule)]
+        defaults = [alternative for alternative in enum.rules if isinstance(alternative, rsc.EnumDefaultRule)]
         if not defaults:
             yield Finding(
                 enum,

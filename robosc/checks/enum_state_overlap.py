@@ -19,44 +19,44 @@ if TYPE_CHECKING:
 @rule("enum-state-overlap")
 def enum_state_overlap(base: rsc.Base) -> Iterator[Finding]:
     """No enum value has the name of a state, in a robot or library and what it imports."""
-    homes = {value: home for home in [base, *reachable(base, has_enum_values)] for value in enum_values(home)}
+    units = {value: unit for unit in [base, *reachable(base, has_enum_values)] for value in enum_values(unit)}
     named: dict[str, list[tuple[Instance, rsc.State]]] = {}
     for instance in instances(base):
         for state in states(instance.automaton) if instance.automaton else ():
             named.setdefault(state.name, []).append((instance, state))
     reported = set()
-    for value, home in homes.items():
+    for value, unit in units.items():
         for instance, state in named.get(value.name, ()):
             # What a library has together with its own imports, it has the finding of.
-            if any((value, state) in fact(_overlaps, each) for each in reachable(base)):
+            if any((value, state) in fact(_overlaps, library) for library in reachable(base)):
                 continue
-            place = value if home is base else state if instance.home is base else _import(base, instance, home)
+            place = value if unit is base else state if instance.unit is base else _import(base, instance, unit)
             if place not in reported:
                 reported.add(place)
                 yield Finding(
                     place,
-                    f"value `{value.name}` of enum `{value.eContainer().eContainer().name}`{_of(home, base)} has the"
+                    f"value `{value.name}` of enum `{value.eContainer().eContainer().name}`{_of(unit, base)} has the"
                     f" name of the state `{instance.name}.{state.name}`, expected names that differ",
-                    _repair(value, state, home is base, instance.home is base),
+                    _repair(value, state, unit is base, instance.unit is base),
                 )
 
 
 def _overlaps(library: rsc.Library) -> set[tuple[rsc.EnumValue, rsc.State]]:
-    values = [value for home in [library, *reachable(library, has_enum_values)] for value in enum_values(home)]
+    values = [value for unit in [library, *reachable(library, has_enum_values)] for value in enum_values(unit)]
     found = [state for instance in instances(library) if instance.automaton for state in states(instance.automaton)]
     return {(value, state) for value in values for state in found if value.name == state.name}
 
 
-def _import(base: rsc.Base, instance: Instance, home: rsc.Base) -> rsc.Component:
+def _import(base: rsc.Base, instance: Instance, unit: rsc.Base) -> rsc.Component:
     """The later one of the two imports that bring the state and the value."""
     for component, library in reversed(list(imports(base))):
-        if component is instance.component or home in [library, *reachable(library)]:
+        if component is instance.component or unit in [library, *reachable(library)]:
             return component
     return instance.component
 
 
-def _of(home: rsc.Base, seen_from: rsc.Base) -> str:
-    return "" if home is seen_from else f" in library `{home.name}`"
+def _of(unit: rsc.Base, seen_from: rsc.Base) -> str:
+    return "" if unit is seen_from else f" in library `{unit.name}`"
 
 
 def _repair(value: rsc.EnumValue, state: rsc.State, own_value: bool, own_state: bool) -> str:

@@ -80,9 +80,9 @@ class ExpressionCheck:
             return
         if wanted != UNKNOWN and not isinstance(wanted, ObjectType):
             self.report(value, f"{what} must be {wanted}, found an object value", repair(value, UNKNOWN, wanted))
-        for each in value.properties:
-            name = f"the value of property `{each.property.name}`" if each.property else "the value"
-            self.provided(each.value, declared_type(each.property.type) if each.property else UNKNOWN, name)
+        for given in value.properties:
+            name = f"the value of property `{given.property.name}`" if given.property else "the value"
+            self.provided(given.value, declared_type(given.property.type) if given.property else UNKNOWN, name)
 
     def type(self, expression: ex.Expression | None) -> Type:
         """The type of the expression, UNKNOWN if it has a fault itself; what is wrong within it is reported."""
@@ -193,17 +193,17 @@ def _inside(expression: ex.Expression | None) -> list[ex.Expression]:
 def names(first: Type, second: Type) -> tuple[str, str]:
     """Two different types as a message names them, with their libraries where their names alone are equal."""
     if str(first) == str(second):
-        return _with_home(first), _with_home(second)
+        return _with_unit(first), _with_unit(second)
     return str(first), str(second)
 
 
-def _with_home(each: Type) -> str:
-    if not isinstance(each, (EnumType, ObjectType)):
-        return str(each)
-    home: Any = each.definition.eContainer()
-    if isinstance(home, rsc.InterfaceTypeReference):
-        return f"{each} of package {home.package}"
-    return f"{each} of {type(home).__name__.lower()} {home.name}" if home else str(each)
+def _with_unit(named: Type) -> str:
+    if not isinstance(named, (EnumType, ObjectType)):
+        return str(named)
+    unit: Any = named.definition.eContainer()
+    if isinstance(unit, rsc.InterfaceTypeReference):
+        return f"{named} of package {unit.package}"
+    return f"{named} of {type(unit).__name__.lower()} {unit.name}" if unit else str(named)
 
 
 def _describe(access: rsc.Access) -> str:

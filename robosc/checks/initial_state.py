@@ -12,7 +12,7 @@ def initial_state(base: rsc.Base) -> Iterator[Finding]:
     """A behaviour has exactly one initial state, and so at least one state."""
     for component, behaviour in behaviours(base):
         every = states(behaviour.automaton)
-        initial = [each for each in every if each.initial]
+        initial = [state for state in every if state.initial]
         for other in initial[1:]:
             yield Finding(
                 other,

@@ -10,7 +10,7 @@ from robosc.checks.rule import Finding, rule
 from robosc.checks.supervised import Fault, data_reads, supervised_faults
 from robosc.checks.tabulation import table_faults
 from robosc.metamodel import robosc as rsc
-from robosc.semantics.cone_of_influence import Need, Needed, accesses, read_type
+from robosc.semantics.cone_of_influence import ConeOfInfluence, Reason, accesses, read_type
 from robosc.semantics.evaluation import evaluate
 from robosc.semantics.typing import INTEGER, infer
 
@@ -40,13 +40,13 @@ def integer_range(base: rsc.Base) -> Iterator[Finding]:
 # Ranges that are missing
 
 
-def _without_range(_: Instances, result: Needed) -> Iterator[Fault]:
-    for owned, need in result.variables.items():
+def _without_range(_: Instances, result: ConeOfInfluence) -> Iterator[Fault]:
+    for owned, reason in result.variables.items():
         if _is_unbounded(owned.variable.type):
             name = f"{owned.instance.name}.{owned.variable.name}"
             yield Fault(
                 owned.variable,
-                need,
+                reason,
                 f"variable `{name}` has no range, and the supervisor needs it, expected one: its states are finitely"
                 " many",
                 f"write a range, such as `variable {owned.variable.name}: integer(0..100)`",
@@ -59,7 +59,7 @@ def _without_range(_: Instances, result: Needed) -> Iterator[Fault]:
             field = declared.eContainer()
             yield Fault(
                 field if isinstance(field, rsc.ObjectProperty) else declared,
-                Need(access, assigned.instance, assigned.variable),
+                Reason(access, assigned.instance, assigned.variable),
                 f"`{field.name}` carries an integer without range to the supervisor, which needs"
                 f" `{assigned.variable.variable.name}`, expected a range: its inputs have finitely many values",
                 "write a range, such as `integer(0..100)`: what lies outside becomes the nearest bound"
@@ -102,9 +102,9 @@ def _provided(
     if not isinstance(data, rsc.ObjectValue):
         yield data, declared, name
         return
-    for each in data.properties:
-        if each.property is not None:
-            yield from _provided(each.value, each.property.type, each.property.name)
+    for given in data.properties:
+        if given.property is not None:
+            yield from _provided(given.value, given.property.type, given.property.name)
 
 
 def _outside(constant: ex.Expression | None, declared: rsc.DataType | None, name: str) -> Iterator[Finding]:
@@ -113,7 +113,7 @@ def _outside(constant: ex.Expression | None, declared: rsc.DataType | None, name
     low, high = declared.minimum, declared.maximum
     if low is None or high is None or infer(constant) != INTEGER or next(accesses(constant), None) is not None:
         return
-    value = evaluate(constant, lambda each: each)
+    value = evaluate(constant, lambda access: access)
     assert isinstance(value, int)
     if not low <= value <= high:
         nearest = low if value < low else high

@@ -51,10 +51,12 @@ def _reason(communication: rsc.CommunicationType, types: list[Type]) -> str | No
 
 def _repair(communication: rsc.CommunicationType, base: rsc.Base, types: list[Type]) -> str:
     """An interface that exists where there is one that fits by name, or is at least the only one."""
-    homes = dict.fromkeys([base, *(library for _, library in imports(base))])
-    known = [definition for home in homes for definition in home.definitions if isinstance(definition, rsc.Interface)]
+    units = dict.fromkeys([base, *(library for _, library in imports(base))])
+    known = [definition for unit in units for definition in unit.definitions if isinstance(definition, rsc.Interface)]
     objects = [kind.definition.name for kind in types if isinstance(kind, ObjectType)]
-    fitting = [each for each in known if any(name.startswith(each.type or each.name) for name in objects)]
+    fitting = [
+        interface for interface in known if any(name.startswith(interface.type or interface.name) for name in objects)
+    ]
     if fitting:
         return f"add `links {written(fitting[0].name)}` after its types"
     name = communication.name

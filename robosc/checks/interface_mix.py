@@ -21,24 +21,24 @@ if TYPE_CHECKING:
 @interface_rule("interface-mix", Severity.WARNING)
 def interface_mix(base: rsc.Base, interfaces: RosTypes) -> Iterator[Finding]:
     """One of the two ROS fits all data of a model, as a controller runs in one of them."""
-    communications = {occurrence.communication for occurrence in instances(base).occurrences()}
-    homes = [base, *reachable(base, carries)]
-    present = [(home, data) for home in homes for data in carried(home) if data.communication in communications]
+    communications = {port.communication for port in instances(base).ports()}
+    units = [base, *reachable(base, carries)]
+    present = [(unit, data) for unit in units for data in carried(unit) if data.communication in communications]
     used = UsedData([base, *reachable(base)] if present else ())
     first: dict[str, tuple[rsc.Base, Carried]] = {}
-    for home, data in present:
+    for unit, data in present:
         reasons = misfits(data, interfaces, used.uses(data))
         if len(reasons) == len(interfaces.distributions):
             continue  # The matter of `interface-type`.
         for ros, reason in reasons.items():
-            others = [each for each in first if each != ros]
-            first.setdefault(ros, (home, data))
+            others = [other_ros for other_ros in first if other_ros != ros]
+            first.setdefault(ros, (unit, data))
             if others:
-                other_home, other = first[others[0]]
-                if home is not base and home is other_home:
+                other_unit, other = first[others[0]]
+                if unit is not base and unit is other_unit:
                     return  # the library's own matter
                 yield Finding(
-                    data.declared if home is base else _import_of(base, home),
+                    data.declared if unit is base else _import_of(base, unit),
                     f"`{data.communication.name}` fits {others[0]} only and `{other.communication.name}` {ros} only,"
                     " expected that one ROS fits both: a controller runs in one of them",
                     f"use what both have, or leave one of them out: in {ros}, {reason}",
@@ -46,6 +46,6 @@ def interface_mix(base: rsc.Base, interfaces: RosTypes) -> Iterator[Finding]:
                 return
 
 
-def _import_of(base: rsc.Base, home: rsc.Base) -> rsc.Component:
+def _import_of(base: rsc.Base, unit: rsc.Base) -> rsc.Component:
     """The first imported component that brings the text of a library with it."""
-    return next(component for component, library in imports(base) if library is home or home in reachable(library))
+    return next(component for component, library in imports(base) if library is unit or unit in reachable(library))

@@ -44,13 +44,13 @@ def interface_unknown(base: rsc.Base, interfaces: RosTypes) -> Iterator[Finding]
     for data in carried(base):
         if isinstance(data.interface.eContainer(), rsc.InterfaceTypeReference):
             continue  # Whoever linked it has said that there is no such type.
-        for each in _unknown(data, interfaces):
-            wanted: ex.Located | None = each.property if isinstance(each, Fault) else data.interface
-            other = data.declared if isinstance(each, Fault) else data.communication
+        for fault in _unknown(data, interfaces):
+            wanted: ex.Located | None = fault.property if isinstance(fault, Fault) else data.interface
+            other = data.declared if isinstance(fault, Fault) else data.communication
             element = wanted if wanted is not None and _root(wanted) is base else other
-            if (element, each.message) not in reported:
-                reported.add((element, each.message))
-                yield Finding(element, each.message, each.hint)
+            if (element, fault.message) not in reported:
+                reported.add((element, fault.message))
+                yield Finding(element, fault.message, fault.hint)
     for _, reference in tree(base):
         if isinstance(reference, rsc.InterfaceTypeReference) and isinstance(reference.eContainer(), rsc.EnumDataType):
             others = other_kinds(interfaces, reference.package, reference.rosType, "message")
@@ -66,21 +66,21 @@ def interface_unknown(base: rsc.Base, interfaces: RosTypes) -> Iterator[Finding]
 
 def _unknown(data: Carried, interfaces: RosTypes) -> list[Fault] | list[Unknown]:
     found = faults(data, interfaces, {})
-    return [found] if isinstance(found, Unknown) else [each for each in found if each.unknown]
+    return [found] if isinstance(found, Unknown) else [fault for fault in found if fault.unknown]
 
 
 def _faulty(base: rsc.Base, interfaces: RosTypes) -> Iterator[tuple[ex.Located, str, str, bool]]:
     """Where the base's text must change, why, how, and whether the model uses what is faulty there."""
     found: dict[tuple[ex.Located, str, str], bool] = {}
-    homes = {home: list(carried(home)) for home in [base, *reachable(base, carries)]}
-    everything = UsedData([base, *reachable(base)] if any(homes.values()) else ())
-    for home, communicated in homes.items():
-        itself = everything if home is base else UsedData([home, *reachable(home)] if communicated else ())
+    units = {unit: list(carried(unit)) for unit in [base, *reachable(base, carries)]}
+    everything = UsedData([base, *reachable(base)] if any(units.values()) else ())
+    for unit, communicated in units.items():
+        itself = everything if unit is base else UsedData([unit, *reachable(unit)] if communicated else ())
         for data in communicated:
-            uses, reported = everything.uses(data), {} if home is base else itself.uses(data)
+            uses, reported = everything.uses(data), {} if unit is base else itself.uses(data)
             answer = faults(data, interfaces, uses)
             for fault in () if isinstance(answer, Unknown) else answer:
-                if fault.unknown or (home is not base and (fault.property is None or fault.property in reported)):
+                if fault.unknown or (unit is not base and (fault.property is None or fault.property in reported)):
                     continue  # the library's own matter
                 element = _place(base, data, fault, uses)
                 if element is not None:

@@ -107,7 +107,7 @@ def reachable(base: rsc.Base, holds: Holds = anything) -> list[rsc.Library]:
     found = known[current, holds]
     for importing, library in reversed(chain):
         found = known[importing, holds] = Cell(library, found) if fact(holds, library) else found
-    return [each for each in dict.fromkeys(_each(found)) if each is not base]
+    return [library for library in dict.fromkeys(_each(found)) if library is not base]
 
 
 def _each(cell: Cell | None) -> Iterable[rsc.Library]:

@@ -12,14 +12,14 @@ def marked_state(base: rsc.Base) -> Iterator[Finding]:
     """From each reachable state of a component its transitions lead to a marked state, guards left aside."""
     for component, behaviour in behaviours(base):
         every = states(behaviour.automaton)
-        initial = [each for each in every if each.initial][:1]  # A second one is the matter of `initial-state`.
+        initial = [state for state in every if state.initial][:1]  # A second one is the matter of `initial-state`.
         common = common_transitions(behaviour.automaton)
-        after = {each: list(_successors([*each.transitions, *common], behaviour.automaton)) for each in every}
-        before: dict[rsc.State, list[rsc.State]] = {each: [] for each in every}
+        after = {state: list(_successors([*state.transitions, *common], behaviour.automaton)) for state in every}
+        before: dict[rsc.State, list[rsc.State]] = {state: [] for state in every}
         for source, targets in after.items():
             for target in targets:
                 before[target].append(source)
-        marked = [each for each in every if each.marked]
+        marked = [state for state in every if state.marked]
         live = _closure(marked, before)
         reached = _closure(initial, after)
         for state in every:
@@ -54,4 +54,4 @@ def _closure(start: Iterable[rsc.State], edges: Mapping[rsc.State, Iterable[rsc.
 
 
 def _names(marked: list[rsc.State]) -> str:
-    return " or ".join(f"`{each.name}`" for each in marked[:3])
+    return " or ".join(f"`{state.name}`" for state in marked[:3])

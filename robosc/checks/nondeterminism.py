@@ -24,13 +24,13 @@ def nondeterminism(base: rsc.Base) -> Iterator[Finding]:
         order = {definition: number for number, definition in enumerate(automaton.definitions)}
         common = common_transitions(automaton)
         reported: set[rsc.Transition] = set()
-        yield from _repeated([(each, None) for each in common], component, reported)
+        yield from _repeated([(transition, None) for transition in common], component, reported)
         for state in states(automaton):
             own: list[tuple[rsc.Transition, rsc.State | None]] = [
                 (transition, state) for transition in state.transitions
             ]
-            before = [(each, None) for each in common if order[each] < order[state]]
-            after = [(each, None) for each in common if order[each] > order[state]]
+            before = [(transition, None) for transition in common if order[transition] < order[state]]
+            after = [(transition, None) for transition in common if order[transition] > order[state]]
             yield from _repeated([*before, *own, *after], component, reported)
 
 

@@ -21,7 +21,7 @@ def result_type(base: rsc.Base) -> Iterator[Finding]:
             communication = transition.communicationType.communicationType
             event, allowed = str(transition.resultType), events(communication)
             if communication is not None and event not in allowed:
-                forms = [f"on {each} {_preposition(each)} {written(communication.name)}" for each in allowed]
+                forms = [f"on {name} {_preposition(name)} {written(communication.name)}" for name in allowed]
                 yield Finding(
                     transition,
                     f"{_describe(communication)} has no {event}, expected {_enumeration(allowed)}",

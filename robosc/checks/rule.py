@@ -43,8 +43,8 @@ class Finding:
         span = place(self.relies_on)[1]
         within = [finding for finding in findings if span.contains(finding.span)]
         return any(
-            each.rule == "syntax" or isinstance(_innermost(self.relies_on, each.span), self.relies_on_names)
-            for each in within
+            finding.rule == "syntax" or isinstance(_innermost(self.relies_on, finding.span), self.relies_on_names)
+            for finding in within
         )
 
 
@@ -56,7 +56,7 @@ def _goes_on(expression: Span, unread: Span) -> bool:
 
 def _innermost(element: ex.Located, span: Span) -> ex.Located:
     """The smallest part of an element that holds a place in the text."""
-    *_, found = (each for _, each in tree(element) if place(each)[1].contains(span))
+    *_, found = (part for _, part in tree(element) if place(part)[1].contains(span))
     assert isinstance(found, ex.Located)
     return found
 

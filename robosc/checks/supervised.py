@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 from robosc.checks.libraries import fact, instances, reachable
 from robosc.checks.rule import Finding
 from robosc.metamodel import robosc as rsc
-from robosc.semantics.cone_of_influence import Need, Needed, accesses, needed
+from robosc.semantics.cone_of_influence import ConeOfInfluence, Reason, accesses, cone_of_influence
 from robosc.semantics.typing import BOOLEAN, INTEGER, UNKNOWN, EnumType, declared_type, type_of
 
 if TYPE_CHECKING:
@@ -24,13 +24,13 @@ class Fault:
     """An element that the supervisor needs and that has to change, and what it is needed for."""
 
     element: ex.Located
-    need: Need
+    reason: Reason
     message: str
     hint: str
 
 
 #: Finds the faults of one kind among what is needed of some instances.
-Search: TypeAlias = "Callable[[Instances, Needed], Iterator[Fault]]"
+Search: TypeAlias = "Callable[[Instances, ConeOfInfluence], Iterator[Fault]]"
 
 
 def supervised_faults(base: rsc.Base, search: Search) -> Iterator[Finding]:
@@ -39,18 +39,18 @@ def supervised_faults(base: rsc.Base, search: Search) -> Iterator[Finding]:
     It stands at the element where the base's text has it, else at the reference in this text that makes it needed.
     """
     reported = set()
-    result = fact(_needed, base)
+    result = fact(_cone, base)
     of_libraries: set[ex.Located] | None = None
     for fault in search(instances(base), result):
         if of_libraries is None:
             of_libraries = {fault.element for library in reachable(base) for fault in _faults(library, search)}
         if fault.element in of_libraries:
             continue
-        home = _root(fault.element)
-        place = fault.element if home is base else _reference(base, fault.need, result)
+        unit = _root(fault.element)
+        place = fault.element if unit is base else _reference(base, fault.reason, result)
         if (place, fault.element) not in reported:
             reported.add((place, fault.element))
-            hint = fault.hint if home is base else f"in library `{home.name}`, {fault.hint}"
+            hint = fault.hint if unit is base else f"in library `{unit.name}`, {fault.hint}"
             yield Finding(place, fault.message, hint)
 
 
@@ -60,7 +60,7 @@ def can_be_needed(variable: rsc.Variable) -> bool:
     return found in {BOOLEAN, INTEGER, UNKNOWN} or isinstance(found, EnumType)
 
 
-def data_reads(result: Needed) -> Iterator[tuple[Assigned, rsc.Access]]:
+def data_reads(result: ConeOfInfluence) -> Iterator[tuple[Assigned, rsc.Access]]:
     """Every reading of an event's data that a needed variable is computed from.
 
     Only where the variable itself is fine, and gets a value of its type.
@@ -81,17 +81,17 @@ def _fits(assigned: Assigned) -> bool:
 
 
 def _faults(base: rsc.Base, search: Search) -> Iterator[Fault]:
-    return search(instances(base), fact(_needed, base))
+    return search(instances(base), fact(_cone, base))
 
 
-def _needed(base: rsc.Base) -> Needed:
-    return needed(instances(base))
+def _cone(base: rsc.Base) -> ConeOfInfluence:
+    return cone_of_influence(instances(base))
 
 
-def _reference(base: rsc.Base, need: Need, result: Needed) -> rsc.Access:
-    while need.within is not None and need.within.home is not base and need.variable is not None:
-        need = result.variables[need.variable]
-    return need.access
+def _reference(base: rsc.Base, reason: Reason, result: ConeOfInfluence) -> rsc.Access:
+    while reason.within is not None and reason.within.unit is not base and reason.variable is not None:
+        reason = result.variables[reason.variable]
+    return reason.access
 
 
 def _root(element: ex.Located) -> Any:

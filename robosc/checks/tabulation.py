@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from robosc.checks.supervised import Fault, can_be_needed
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
-from robosc.semantics.cone_of_influence import LARGEST_TABLE, Need, Needed, accesses, conditions, read_type
+from robosc.semantics.cone_of_influence import LARGEST_TABLE, ConeOfInfluence, Reason, accesses, conditions, read_type
 from robosc.semantics.operators import COMPARISONS
 from robosc.semantics.typing import DOUBLE, Types, value_type
 from robosc.semantics.walks import operands
@@ -36,7 +36,7 @@ _PRODUCT = _Limit(
 )
 
 
-def table_faults(instances: Instances, result: Needed) -> Iterator[Fault]:
+def table_faults(instances: Instances, result: ConeOfInfluence) -> Iterator[Fault]:
     """Each comparison of doubles and each product that the supervisor computes from too many valuations."""
     for condition, within in conditions(instances):
         yield from _in_expression(instances, condition, within, None)
@@ -87,7 +87,7 @@ def _too_many(
     if count > limit.most:
         yield Fault(
             expression,
-            Need(reads[0], within, assigned.variable if assigned else None),
+            Reason(reads[0], within, assigned.variable if assigned else None),
             f"{limit.what} depends on {count} combinations of integer values, expected at most {limit.most}",
             limit.repair,
         )

@@ -54,9 +54,9 @@ def types(base: rsc.Base) -> Iterator[Finding]:
 
 def _enum(enum: rsc.EnumDataType) -> Iterator[Finding]:
     place = Place(declared_type(enum.type), restriction=ENUM_RULE)
-    for each in enum.rules:
-        if isinstance(each, rsc.EnumTransformationRule):
-            yield from _boolean(each.condition, "the condition of an enum rule", place)
+    for alternative in enum.rules:
+        if isinstance(alternative, rsc.EnumTransformationRule):
+            yield from _boolean(alternative.condition, "the condition of an enum rule", place)
 
 
 def _provide(statement: rsc.ProvideStatement) -> Iterator[Finding]:

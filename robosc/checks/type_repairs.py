@@ -119,7 +119,7 @@ def _part(whole: ex.Expression, found: Type, wanted: Type) -> str:
     if not isinstance(found, ObjectType):
         return "leave it out: this event carries no data"
     properties = list(found.definition.properties)
-    fitting = [each for each in properties if declared_type(each.type) == wanted] or properties
+    fitting = [part for part in properties if declared_type(part.type) == wanted] or properties
     return (
         f"read one of its properties, such as `{_text(whole)}.{written(fitting[0].name)}`"
         if fitting

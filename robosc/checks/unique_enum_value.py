@@ -28,9 +28,9 @@ def enum_values(base: rsc.Base) -> Iterator[rsc.EnumValue]:
     """The enum values that the base itself declares, in the order of the text."""
     for definition in base.definitions:
         if isinstance(definition, rsc.EnumDataType):
-            for each in definition.rules:
-                if each.value and each.value.name:
-                    yield each.value
+            for alternative in definition.rules:
+                if alternative.value and alternative.value.name:
+                    yield alternative.value
 
 
 def has_enum_values(base: rsc.Base) -> bool:
@@ -47,7 +47,7 @@ def _between_imports(base: rsc.Base) -> Iterator[Finding]:
     for library, component in importing.items():
         for value in _with_imports(library):
             first = firsts.setdefault(value.name, value)
-            if first is not value and not any({first, value} <= fact(_brought, each) for each in reachable(base)):
+            if first is not value and not any({first, value} <= fact(_brought, other) for other in reachable(base)):
                 yield Finding(
                     component,
                     f"the import of `{library.name}` brings {_describe(value, base)}, which has the name of"
@@ -57,8 +57,8 @@ def _between_imports(base: rsc.Base) -> Iterator[Finding]:
 
 
 def _with_imports(library: rsc.Library) -> Iterator[rsc.EnumValue]:
-    for each in [library, *reachable(library, has_enum_values)]:
-        yield from enum_values(each)
+    for base in [library, *reachable(library, has_enum_values)]:
+        yield from enum_values(base)
 
 
 def _brought(library: rsc.Library) -> set[rsc.EnumValue]:
@@ -72,14 +72,16 @@ def _enum(value: rsc.EnumValue) -> rsc.EnumDataType:
 
 def _describe(value: rsc.EnumValue, seen_from: rsc.Base) -> str:
     enum = _enum(value)
-    home = enum.eContainer()
-    where = "" if home is seen_from else f" in library `{home.name}`"
+    unit = enum.eContainer()
+    where = "" if unit is seen_from else f" in library `{unit.name}`"
     return f"value `{value.name}` of enum `{enum.name}`{where}"
 
 
 def _repair(value: rsc.EnumValue, first: rsc.EnumValue) -> str:
-    rules = [each.eContainer() for each in (value, first)]
-    if _enum(value) is _enum(first) and all(isinstance(each, rsc.EnumTransformationRule) for each in rules):
+    rules = [same.eContainer() for same in (value, first)]
+    if _enum(value) is _enum(first) and all(
+        isinstance(alternative, rsc.EnumTransformationRule) for alternative in rules
+    ):
         return f"join the two conditions by `or`, so that `{value.name}` stands once"
     if _enum(value) is _enum(first):
         return (

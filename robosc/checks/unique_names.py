@@ -74,15 +74,15 @@ def _provided_again(value: ex.Expression) -> Iterator[Finding]:
     if not isinstance(value, rsc.ObjectValue):
         return
     named = set()
-    for each in value.properties:
-        if each.property is not None and each.property in named:
+    for given in value.properties:
+        if given.property is not None and given.property in named:
             yield Finding(
-                each,
-                f"property `{each.property.name}` has a value already, expected one for each property",
+                given,
+                f"property `{given.property.name}` has a value already, expected one for each property",
                 "leave one of the two out",
             )
-        named.add(each.property)
-        yield from _provided_again(each.value)
+        named.add(given.property)
+        yield from _provided_again(given.value)
 
 
 def repeated(elements: Iterable[ex.NamedElement]) -> Iterator[tuple[ex.NamedElement, ex.NamedElement]]:

@@ -7,15 +7,15 @@ from robosc.checks.rule import Finding, rule
 from robosc.diagnostics import Severity
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
-from robosc.semantics.instances import Occurrence
+from robosc.semantics.instances import PortInstance
 
 
 @rule("unique-topic", Severity.WARNING)
 def unique_topic(base: rsc.Base) -> Iterator[Finding]:
     """No two components send messages on one topic, with or without a `/` before it, no import gives a name two."""
     yield from _remapped_twice(base)
-    firsts: dict[str, Occurrence] = {}
-    for second in instances(base).occurrences():
+    firsts: dict[str, PortInstance] = {}
+    for second in instances(base).ports():
         message = second.communication
         if not isinstance(message, rsc.Message) or str(message.direction) != "outgoing":
             continue
@@ -49,20 +49,20 @@ def _remapped_twice(base: rsc.Base) -> Iterator[Finding]:
                 )
 
 
-def _place(occurrence: Occurrence, base: rsc.Base) -> ex.Located:
-    if occurrence.instance.home is base:
-        return occurrence.communication
-    component = occurrence.instance.component
+def _place(port: PortInstance, base: rsc.Base) -> ex.Located:
+    if port.instance.unit is base:
+        return port.communication
+    component = port.instance.component
     assert isinstance(component.type, rsc.ImportedComponent)
     remapped = (
-        remapping for remapping in component.type.remappings if remapping.communicationType is occurrence.communication
+        remapping for remapping in component.type.remappings if remapping.communicationType is port.communication
     )
     return next(remapped, component)
 
 
-def _repair(occurrence: Occurrence, base: rsc.Base) -> str:
-    name, instance = occurrence.communication.name, occurrence.instance
+def _repair(port: PortInstance, base: rsc.Base) -> str:
+    name, instance = port.communication.name, port.instance
     topic = f"/{instance.name.lower()}/{name}"
-    if instance.home is base:
+    if instance.unit is base:
         return f'give it a topic of its own, such as `identifier: "{topic}"`'
     return f'give it a topic of its own, such as `with {{ {name}: "{topic}" }}` after the import'

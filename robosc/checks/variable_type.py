@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from robosc.checks.declarations import variables
 from robosc.checks.rule import Finding, rule
 from robosc.checks.supervised import Fault, data_reads, supervised_faults
-from robosc.semantics.cone_of_influence import Need, Needed
+from robosc.semantics.cone_of_influence import ConeOfInfluence, Reason
 from robosc.semantics.printing import RoboscPrinter
 from robosc.semantics.typing import DOUBLE, NONE, STRING, ArrayType, ObjectType, access_types, declared_type, value_type
 
@@ -35,14 +35,14 @@ def variable_type(base: rsc.Base) -> Iterator[Finding]:
     yield from supervised_faults(base, _faults)
 
 
-def _faults(_: Instances, result: Needed) -> Iterator[Fault]:
-    for owned, need in result.variables.items():
+def _faults(_: Instances, result: ConeOfInfluence) -> Iterator[Fault]:
+    for owned, reason in result.variables.items():
         found = declared_type(owned.variable.type)
         if found in {DOUBLE, STRING}:
             name = f"{owned.instance.name}.{owned.variable.name}"
             yield Fault(
                 owned.variable,
-                need,
+                reason,
                 f"variable `{name}` is {found}, and the supervisor needs it, expected boolean, an integer with a range"
                 " or an enum: its states are finitely many",
                 _enum_repair(str(found)),
@@ -55,7 +55,7 @@ def _faults(_: Instances, result: Needed) -> Iterator[Fault]:
             kind = "array data" if is_array else f"a {types[-1]}"
             yield Fault(
                 access,
-                Need(access, assigned.instance, assigned.variable),
+                Reason(access, assigned.instance, assigned.variable),
                 f"`{assigned.variable.variable.name}`, which the supervisor needs, is computed from {kind},"
                 f" `{RoboscPrinter()(access)}`, expected booleans, integers with a range or enums",
                 _enum_repair(

@@ -49,12 +49,12 @@ class Carried:
 
 def carried(base: rsc.Base) -> Iterator[Carried]:
     """The data of all communications with an interface that the base itself defines, in the order of the text."""
-    for _, each in communications(base):
-        interface = each.interface
+    for _, communication in communications(base):
+        interface = communication.interface
         if interface is not None and interface.package and interface.type:
-            for declared, part in _parts(each):
+            for declared, part in _parts(communication):
                 if declared is not None:
-                    yield Carried(each, interface, declared, part)
+                    yield Carried(communication, interface, declared, part)
 
 
 def carries(base: rsc.Base) -> bool:
@@ -97,10 +97,10 @@ class UsedData:
         sources: dict[object, None] = dict.fromkeys([(data.communication, data.part), *_enums(data.declared)])
         pending = list(sources)
         while pending:
-            for each in self._touched.get(pending.pop(0), ()):
-                if each.property is not None and each.property not in uses:
-                    uses[each.property] = each
-                    new = [enum for enum in _enums(each.property.type) if enum not in sources]
+            for touching in self._touched.get(pending.pop(0), ()):
+                if touching.property is not None and touching.property not in uses:
+                    uses[touching.property] = touching
+                    new = [enum for enum in _enums(touching.property.type) if enum not in sources]
                     sources |= dict.fromkeys(new)
                     pending += new
         return uses
@@ -116,7 +116,7 @@ class UsedData:
         communication = statement.communicationType.communicationType if statement.communicationType else None
         if communication is not None:
             touched = self._touched.setdefault((communication, _SENT[type(communication)]), [])
-            touched += [each for _, each in tree(statement) if isinstance(each, rsc.ObjectPropertyValue)]
+            touched += [part for _, part in tree(statement) if isinstance(part, rsc.ObjectPropertyValue)]
 
     def _read(self, source: object, expression: ex.Expression | None) -> None:
         touched = self._touched.setdefault(source, [])

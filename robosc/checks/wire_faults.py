@@ -128,13 +128,13 @@ class _Comparison:
                 yield Fault(None, message, _repair(fields[field], None))
 
     def _object(self, definition: rsc.ObjectDataType, fields: Fields, name: str) -> Iterator[Fault]:
-        for each in definition.properties:
-            if each.name in fields:
-                yield from self._property(each, fields[each.name], name)
+        for owner in definition.properties:
+            if owner.name in fields:
+                yield from self._property(owner, fields[owner.name], name)
             else:
-                close = get_close_matches(each.name, fields, n=1)
+                close = get_close_matches(owner.name, fields, n=1)
                 hint = f"did you mean `{close[0]}`?" if close else "write a field that it has, or leave this one out"
-                yield Fault(each, f"`{each.name}` is no field of {name}: {_listed(fields)}", hint)
+                yield Fault(owner, f"`{owner.name}` is no field of {name}: {_listed(fields)}", hint)
 
     def _property(self, owner: rsc.ObjectProperty, wire: WireType, name: str) -> Iterator[Fault]:
         declared, element = wire_type(owner.type), wire
@@ -226,4 +226,4 @@ def _type_for(wire: WireType) -> str | None:
         return None if element is None else f"array({element})"
     if isinstance(wire, Nested):
         return str(wire)
-    return next((each for names, each in _FITTING.values() if wire.name in names), None)
+    return next((fitting for names, fitting in _FITTING.values() if wire.name in names), None)

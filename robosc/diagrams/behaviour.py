@@ -75,12 +75,12 @@ class _Component(RoboscPrinter):
 
     def communication(self, reference: robosc.CommunicationReference) -> str:
         """Its name; with its component where two share the name and it is the other's."""
-        occurrence = self.instances.occurrence(reference, self.instance)
-        assert occurrence is not None
-        name = written(occurrence.communication.name)
-        others = sum(port.communication.name == occurrence.communication.name for port in self.instances.occurrences())
-        own = occurrence.instance is self.instance
-        return name if own or others == 1 else f"{written(occurrence.instance.name)}.{name}"
+        port = self.instances.port(reference, self.instance)
+        assert port is not None
+        name = written(port.communication.name)
+        others = sum(other.communication.name == port.communication.name for other in self.instances.ports())
+        own = port.instance is self.instance
+        return name if own or others == 1 else f"{written(port.instance.name)}.{name}"
 
     def atom(self, expression: ex.Expression) -> str:
         """A name of the component itself without the component."""

@@ -23,7 +23,7 @@ class Enumerations:
         if others is not None:
             self.known.update(others.known)
             self.literals.update(others.literals)
-        self._names = Names(each.name for each in self.known.values())
+        self._names = Names(enumeration.name for enumeration in self.known.values())
 
     def enumeration(self, enum: robosc.EnumDataType) -> ex.Enumeration:
         """The enumeration of an enum."""

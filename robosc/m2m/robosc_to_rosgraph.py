@@ -12,7 +12,7 @@ from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc, rosgraph, sct
 from robosc.ros_types import RosTypes, Section
 from robosc.semantics.cone_of_influence import transitions
-from robosc.semantics.instances import Instance, InstanceVariable, Occurrence
+from robosc.semantics.instances import Instance, InstanceVariable, PortInstance
 from robosc.semantics.naming import Names
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ _FIELD = "data"
 class _Part(NamedTuple):
     """What one event of a communication carries, in which part of its ROS type."""
 
-    occurrence: Occurrence
+    port: PortInstance
     type: robosc.DataType
     part: Section
 
@@ -71,13 +71,13 @@ class _Transformation:
             for definition in instance.automaton.definitions if instance.automaton else ():
                 if isinstance(definition, robosc.Variable):
                     self.variable(InstanceVariable(instance, definition))
-        for occurrence in self.instances.occurrences():
-            if isinstance(occurrence.communication, robosc.Message):
-                self.message(occurrence, occurrence.communication)
-            elif isinstance(occurrence.communication, robosc.Service):
-                self.service(occurrence, occurrence.communication)
-            elif isinstance(occurrence.communication, robosc.Action):
-                self.action(occurrence, occurrence.communication)
+        for port in self.instances.ports():
+            if isinstance(port.communication, robosc.Message):
+                self.message(port, port.communication)
+            elif isinstance(port.communication, robosc.Service):
+                self.service(port, port.communication)
+            elif isinstance(port.communication, robosc.Action):
+                self.action(port, port.communication)
         for instance in self.instances:
             self.reactions(instance)
         return self.graph
@@ -114,8 +114,8 @@ class _Transformation:
 
     # Communication
 
-    def message(self, occurrence: Occurrence, message: robosc.Message) -> None:
-        topic = occurrence.instance.topic(message)
+    def message(self, port: PortInstance, message: robosc.Message) -> None:
+        topic = port.instance.topic(message)
         interface = self.interface(message, message.type, rosgraph.InterfaceKind.message)
         # Written with a slash or without, it is one topic, and what comes on it one batch.
         key = topic.removeprefix("/"), interface
@@ -126,39 +126,39 @@ class _Transformation:
                 subscription = rosgraph.Subscription(topic=topic, interface=interface, source=where)
                 self.subscriptions[key] = subscription
                 self.graph.subscriptions.append(subscription)
-            subscription.receptions.append(self.reception(occurrence, robosc.ResultType.response))
+            subscription.receptions.append(self.reception(port, robosc.ResultType.response))
         else:
             publisher = self.publishers.get(key)
             if publisher is None:
                 publisher = rosgraph.Publisher(topic=topic, interface=interface, source=where)
                 self.publishers[key] = publisher
                 self.graph.publishers.append(publisher)
-            publisher.sendings.append(self.sending(occurrence))
+            publisher.sendings.append(self.sending(port))
 
-    def service(self, occurrence: Occurrence, service: robosc.Service) -> None:
+    def service(self, port: PortInstance, service: robosc.Service) -> None:
         self.graph.serviceClients.append(
             rosgraph.ServiceClient(
-                identifier=occurrence.instance.topic(service),
+                identifier=port.instance.topic(service),
                 interface=self.interface(service, service.requestType, rosgraph.InterfaceKind.service),
-                request=self.sending(occurrence),
-                response=self.reception(occurrence, robosc.ResultType.response),
-                error=self.trace.event(occurrence, sct.EventKind.error),
-                reset=self.trace.event(occurrence, sct.EventKind.reset),
+                request=self.sending(port),
+                response=self.reception(port, robosc.ResultType.response),
+                error=self.trace.event(port, sct.EventKind.error),
+                reset=self.trace.event(port, sct.EventKind.reset),
                 source=service.source,
             )
         )
 
-    def action(self, occurrence: Occurrence, action: robosc.Action) -> None:
+    def action(self, port: PortInstance, action: robosc.Action) -> None:
         self.graph.actionClients.append(
             rosgraph.ActionClient(
-                identifier=occurrence.instance.topic(action),
+                identifier=port.instance.topic(action),
                 interface=self.interface(action, action.requestType, rosgraph.InterfaceKind.action),
-                request=self.sending(occurrence),
-                feedback=self.reception(occurrence, robosc.ResultType.feedback),
-                response=self.reception(occurrence, robosc.ResultType.response),
-                error=self.trace.event(occurrence, sct.EventKind.error),
-                cancel=self.trace.event(occurrence, sct.EventKind.cancel),
-                reset=self.trace.event(occurrence, sct.EventKind.reset),
+                request=self.sending(port),
+                feedback=self.reception(port, robosc.ResultType.feedback),
+                response=self.reception(port, robosc.ResultType.response),
+                error=self.trace.event(port, sct.EventKind.error),
+                cancel=self.trace.event(port, sct.EventKind.cancel),
+                reset=self.trace.event(port, sct.EventKind.reset),
                 source=action.source,
             )
         )
@@ -181,15 +181,15 @@ class _Transformation:
             self.graph.interfaces.append(interface)
         return self.interfaces[key]
 
-    def sending(self, occurrence: Occurrence) -> rosgraph.Sending:
+    def sending(self, port: PortInstance) -> rosgraph.Sending:
         sending = rosgraph.Sending(
-            name=occurrence.communication.name,
-            event=self.trace.event(occurrence, sct.EventKind.trigger),
-            source=occurrence.communication.source,
+            name=port.communication.name,
+            event=self.trace.event(port, sct.EventKind.trigger),
+            source=port.communication.source,
         )
-        for statement in self.instances.provided(occurrence):
+        for statement in self.instances.provided(port):
             alternative = rosgraph.ProvidedData(location=self.trace.provided[statement], source=statement.source)
-            sent = _sent(occurrence)
+            sent = _sent(port)
             lone = () if isinstance(statement.data, robosc.ObjectValue) else (self.field(sent),)
             for field in self.fields(statement.data, lone, sent.type):
                 alternative.fields.append(field)
@@ -202,8 +202,8 @@ class _Transformation:
         if isinstance(data, robosc.ObjectValue):
             return [
                 field
-                for each in data.properties
-                for field in self.fields(each.value, (*path, each.property.name), each.property.type)
+                for given in data.properties
+                for field in self.fields(given.value, (*path, given.property.name), given.property.type)
             ]
         value = self.expressions(data, None)
         return [
@@ -217,23 +217,23 @@ class _Transformation:
 
     # Data that comes in
 
-    def reception(self, occurrence: Occurrence, result_type: robosc.ResultType) -> rosgraph.Reception:
-        part = _received(occurrence, result_type)
+    def reception(self, port: PortInstance, result_type: robosc.ResultType) -> rosgraph.Reception:
+        part = _received(port, result_type)
         assert part is not None
         reception = rosgraph.Reception(
-            name=occurrence.communication.name,
-            event=self.trace.event(occurrence, EVENT_OF[result_type.name]),
-            source=occurrence.communication.source,
+            name=port.communication.name,
+            event=self.trace.event(port, EVENT_OF[result_type.name]),
+            source=port.communication.source,
         )
         for data, declared in self.trace.inputs.items():
-            if data.occurrence == occurrence and data.result_type == result_type:
-                segments = [robosc.PropertySegment(property=each) for each in data.path]
+            if data.port == port and data.result_type == result_type:
+                segments = [robosc.PropertySegment(property=part) for part in data.path]
                 reception.inputs.append(rosgraph.InputAssignment(input=declared, value=self.wire(part)(segments)))
         return reception
 
     def field(self, part: _Part) -> str:
         """The field that holds a basic value."""
-        linked = part.occurrence.communication.interface
+        linked = part.port.communication.interface
         return _FIELD if linked is None else self.known.field_of_basic(linked.package, linked.type, part.part)
 
     def wire(self, part: _Part) -> Callable[[Sequence[robosc.AccessSegment]], ex.Expression]:
@@ -296,7 +296,7 @@ class _Transformation:
         assert instance.automaton is not None or not list(transitions(instance))
         for transition, state in transitions(instance):
             assigned = self.instances.assignments(transition, instance)
-            assignments = {owned: each for owned, each in assigned.items() if owned in self.variables}
+            assignments = {owned: assignment for owned, assignment in assigned.items() if owned in self.variables}
             if not assignments:
                 continue
             event, data = self.event_and_data(transition, instance)
@@ -320,10 +320,10 @@ class _Transformation:
         if isinstance(transition, robosc.TauTransition):
             return self.trace.taus[instance, transition], None
         assert isinstance(transition, robosc.ResultTransition)
-        occurrence = self.instances.occurrence(transition.communicationType, instance)
-        assert occurrence is not None
-        event = self.trace.event(occurrence, EVENT_OF[transition.resultType.name])
-        carried = _received(occurrence, transition.resultType)
+        port = self.instances.port(transition.communicationType, instance)
+        assert port is not None
+        event = self.trace.event(port, EVENT_OF[transition.resultType.name])
+        carried = _received(port, transition.resultType)
         return event, None if carried is None else self.wire(carried)
 
 
@@ -352,27 +352,27 @@ def _steps(
     return steps, reached
 
 
-def _sent(occurrence: Occurrence) -> _Part:
-    match occurrence.communication:
+def _sent(port: PortInstance) -> _Part:
+    match port.communication:
         case robosc.Message() as message:
-            return _Part(occurrence, message.type, Section.MESSAGE)
+            return _Part(port, message.type, Section.MESSAGE)
         case robosc.Service() as service:
-            return _Part(occurrence, service.requestType, Section.REQUEST)
-    assert isinstance(occurrence.communication, robosc.Action)
-    return _Part(occurrence, occurrence.communication.requestType, Section.GOAL)
+            return _Part(port, service.requestType, Section.REQUEST)
+    assert isinstance(port.communication, robosc.Action)
+    return _Part(port, port.communication.requestType, Section.GOAL)
 
 
-def _received(occurrence: Occurrence, result_type: robosc.ResultType) -> _Part | None:
+def _received(port: PortInstance, result_type: robosc.ResultType) -> _Part | None:
     """The data that an event of a communication brings; None for the events that bring none."""
-    communication = occurrence.communication
+    communication = port.communication
     if result_type == robosc.ResultType.feedback and isinstance(communication, robosc.Action):
-        return _Part(occurrence, communication.feedbackType, Section.FEEDBACK)
+        return _Part(port, communication.feedbackType, Section.FEEDBACK)
     if result_type != robosc.ResultType.response:
         return None
     match communication:
         case robosc.Message():
-            return _Part(occurrence, communication.type, Section.MESSAGE)
+            return _Part(port, communication.type, Section.MESSAGE)
         case robosc.Service():
-            return _Part(occurrence, communication.responseType, Section.RESPONSE)
+            return _Part(port, communication.responseType, Section.RESPONSE)
     assert isinstance(communication, robosc.Action)
-    return _Part(occurrence, communication.responseType, Section.RESULT)
+    return _Part(port, communication.responseType, Section.RESULT)

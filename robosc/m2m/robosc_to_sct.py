@@ -10,8 +10,8 @@ from robosc.m2m.sct_expressions import SctExpressions
 from robosc.m2m.trace import EVENT_OF, Trace
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc, sct
-from robosc.semantics.cone_of_influence import Data, needed, transitions
-from robosc.semantics.instances import Instance, Instances, InstanceVariable, Occurrence
+from robosc.semantics.cone_of_influence import Data, cone_of_influence, transitions
+from robosc.semantics.instances import Instance, Instances, InstanceVariable, PortInstance
 from robosc.semantics.naming import Names
 from robosc.semantics.printing import RoboscPrinter, conjunction, disjunction
 
@@ -36,7 +36,7 @@ class _Transformation:
         self.robot = robot
         self.instances = Instances(robot)
         self.model = sct.SupervisoryControlModel(name=robot.name, source=robot.source)
-        self.trace = Trace(self.instances, needed(self.instances), self.model, Enumerations(self.model))
+        self.trace = Trace(self.instances, cone_of_influence(self.instances), self.model, Enumerations(self.model))
         self.enumerations = self.trace.enumerations
         self.expressions = SctExpressions(self.trace)
         self.print = RoboscPrinter()
@@ -46,7 +46,7 @@ class _Transformation:
         # Targets first, then what refers to them: a guard may name any component's state.
         for instance in self.instances:
             for communication in instance.communications:
-                self.communication(Occurrence(instance, communication))
+                self.communication(PortInstance(instance, communication))
             if instance.automaton is not None:
                 self.behaviour(instance)
         for instance in self.instances:
@@ -54,52 +54,52 @@ class _Transformation:
                 self.initial(variable)
             if instance.automaton is not None:
                 self.edges(instance)
-        for occurrence in self.instances.occurrences():
-            self.data_plant(occurrence)
+        for port in self.instances.ports():
+            self.data_plant(port)
         self.requirements()
         return self.model, self.trace
 
     # Communication
 
-    def communication(self, occurrence: Occurrence) -> None:
-        instance, communication = occurrence.instance, occurrence.communication
+    def communication(self, port: PortInstance) -> None:
+        instance, communication = port.instance, port.communication
         kind = type(communication).__name__.lower()
         plant = sct.Plant(
-            name=self.plant_names.fresh(f"{kind}_{self.communication_name(occurrence)}"),
+            name=self.plant_names.fresh(f"{kind}_{self.communication_name(port)}"),
             kind=getattr(sct.PlantKind, kind),
             origin=f"{instance.name}.{communication.name}",
             topic=instance.topic(communication),
             source=communication.source,
         )
         self.model.plants.append(plant)
-        self.trace.plants[occurrence] = plant
+        self.trace.plants[port] = plant
         self.trace.origins[plant] = communication
         if isinstance(communication, robosc.Message):
-            self.message(plant, occurrence, communication)
+            self.message(plant, port, communication)
         elif isinstance(communication, robosc.Service):
-            self.service(plant, occurrence)
+            self.service(plant, port)
         else:
-            self.action(plant, occurrence)
-        self.inputs(plant, occurrence)
+            self.action(plant, port)
+        self.inputs(plant, port)
 
-    def communication_name(self, occurrence: Occurrence) -> str:
-        name = occurrence.communication.name
-        shared = self.instances.is_shared(occurrence.communication)
-        return f"{occurrence.instance.name}_{name}" if shared else name
+    def communication_name(self, port: PortInstance) -> str:
+        name = port.communication.name
+        shared = self.instances.is_shared(port.communication)
+        return f"{port.instance.name}_{name}" if shared else name
 
-    def message(self, plant: sct.Plant, occurrence: Occurrence, message: robosc.Message) -> None:
+    def message(self, plant: sct.Plant, port: PortInstance, message: robosc.Message) -> None:
         """Listing 5.1."""
         outgoing = message.direction == robosc.MessageDirection.outgoing
-        event = self.event(plant, occurrence, sct.EventKind.response if outgoing else sct.EventKind.trigger)
+        event = self.event(plant, port, sct.EventKind.response if outgoing else sct.EventKind.trigger)
         location = _location(plant, "ready", initial=True, marked=True)
         _edge(location, event, location)
 
-    def service(self, plant: sct.Plant, occurrence: Occurrence) -> None:
+    def service(self, plant: sct.Plant, port: PortInstance) -> None:
         """Listing 5.2."""
-        trigger = self.event(plant, occurrence, sct.EventKind.trigger)
-        reset = self.event(plant, occurrence, sct.EventKind.reset)
-        response = self.event(plant, occurrence, sct.EventKind.response)
-        error = self.event(plant, occurrence, sct.EventKind.error)
+        trigger = self.event(plant, port, sct.EventKind.trigger)
+        reset = self.event(plant, port, sct.EventKind.reset)
+        response = self.event(plant, port, sct.EventKind.response)
+        error = self.event(plant, port, sct.EventKind.error)
         idle = _location(plant, "idle", initial=True, marked=True)
         waiting, ready, failed = (_location(plant, name) for name in ("wait_for_response", "ready", "error"))
         _edge(idle, trigger, waiting)
@@ -108,14 +108,14 @@ class _Transformation:
         _edge(ready, reset, idle)
         _edge(failed, reset, idle)
 
-    def action(self, plant: sct.Plant, occurrence: Occurrence) -> None:
+    def action(self, plant: sct.Plant, port: PortInstance) -> None:
         """Listing 5.3."""
-        trigger = self.event(plant, occurrence, sct.EventKind.trigger)
-        reset = self.event(plant, occurrence, sct.EventKind.reset)
-        cancel = self.event(plant, occurrence, sct.EventKind.cancel)
-        feedback = self.event(plant, occurrence, sct.EventKind.feedback)
-        response = self.event(plant, occurrence, sct.EventKind.response)
-        error = self.event(plant, occurrence, sct.EventKind.error)
+        trigger = self.event(plant, port, sct.EventKind.trigger)
+        reset = self.event(plant, port, sct.EventKind.reset)
+        cancel = self.event(plant, port, sct.EventKind.cancel)
+        feedback = self.event(plant, port, sct.EventKind.feedback)
+        response = self.event(plant, port, sct.EventKind.response)
+        error = self.event(plant, port, sct.EventKind.error)
         idle = _location(plant, "idle", initial=True, marked=True)
         executing, ready, failed = (_location(plant, name) for name in ("executing", "ready", "error"))
         _edge(idle, trigger, executing)
@@ -126,7 +126,7 @@ class _Transformation:
         _edge(ready, reset, idle)
         _edge(failed, reset, idle)
 
-    def event(self, plant: sct.Plant, occurrence: Occurrence, kind: sct.EventKind) -> sct.Event:
+    def event(self, plant: sct.Plant, port: PortInstance, kind: sct.EventKind) -> sct.Event:
         controllable = kind in (sct.EventKind.trigger, sct.EventKind.reset, sct.EventKind.cancel)
         event = sct.Event(
             name=f"{'c' if controllable else 'u'}_{kind.name}",
@@ -135,26 +135,26 @@ class _Transformation:
             source=plant.source,
         )
         plant.events.append(event)
-        self.trace.events[occurrence, kind.name] = event
+        self.trace.events[port, kind.name] = event
         return event
 
-    def inputs(self, plant: sct.Plant, occurrence: Occurrence) -> None:
+    def inputs(self, plant: sct.Plant, port: PortInstance) -> None:
         """Algorithm 1, for what is needed."""
         names = Names()
-        for data in self.trace.needed.data:
-            if data.occurrence == occurrence:
+        for data in self.trace.cone.data:
+            if data.port == port:
                 kind = EVENT_OF[data.result_type.name]
-                name = "_".join([f"i_{kind.name}", *(each.name for each in data.path)])
+                name = "_".join([f"i_{kind.name}", *(part.name for part in data.path)])
                 declared = sct.Input(name=names.fresh(name), type=self.type(self.data_type(data)))
                 plant.inputs.append(declared)
-                self.trace.event(occurrence, kind).inputs.append(declared)
+                self.trace.event(port, kind).inputs.append(declared)
                 self.trace.inputs[data] = declared
 
     @staticmethod
     def data_type(data: Data) -> robosc.DataType:
         if data.path:
             return data.path[-1].type
-        communication = data.occurrence.communication
+        communication = data.port.communication
         if isinstance(communication, robosc.Message):
             return communication.type
         assert isinstance(communication, (robosc.Service, robosc.Action))
@@ -200,7 +200,7 @@ class _Transformation:
             plant.variables.append(variable)
             self.trace.variables[owned] = variable
             self.trace.origins[variable] = owned.variable
-        taus = (each for each, _ in transitions(instance) if isinstance(each, robosc.TauTransition))
+        taus = (transition for transition, _ in transitions(instance) if isinstance(transition, robosc.TauTransition))
         for number, transition in enumerate(taus, start=1):
             event = sct.Event(
                 name=names.fresh(f"c_tau{number}"),
@@ -219,7 +219,7 @@ class _Transformation:
             for definition in definitions
             if isinstance(definition, robosc.Variable)
         )
-        return [each for each in declared if each in self.trace.needed.variables]
+        return [owned for owned in declared if owned in self.trace.cone.variables]
 
     def initial(self, owned: InstanceVariable) -> None:
         value = initial_value(owned.variable)
@@ -228,10 +228,10 @@ class _Transformation:
         self.trace.variables[owned].initial = literal(value)
 
     def edges(self, instance: Instance) -> None:
-        everywhere = [each for each, state in transitions(instance) if state is None]
+        everywhere = [transition for transition, state in transitions(instance) if state is None]
         mentioned = [
             event
-            for event in dict.fromkeys(self.event_of(each, instance) for each, _ in transitions(instance))
+            for event in dict.fromkeys(self.event_of(transition, instance) for transition, _ in transitions(instance))
             if event.kind in _NEVER_BLOCKED
         ]
         for state in _states(instance):
@@ -248,9 +248,9 @@ class _Transformation:
         if isinstance(transition, robosc.TauTransition):
             return self.trace.taus[instance, transition]
         assert isinstance(transition, robosc.ResultTransition)
-        occurrence = self.instances.occurrence(transition.communicationType, instance)
-        assert occurrence is not None
-        return self.trace.event(occurrence, EVENT_OF[transition.resultType.name])
+        port = self.instances.port(transition.communicationType, instance)
+        assert port is not None
+        return self.trace.event(port, EVENT_OF[transition.resultType.name])
 
     def edge(self, location: sct.Location, transition: robosc.Transition, instance: Instance) -> None:
         target = location if transition.target is None else self.trace.locations[instance, transition.target]
@@ -272,15 +272,15 @@ class _Transformation:
 
     # Provided data
 
-    def data_plant(self, occurrence: Occurrence) -> None:
+    def data_plant(self, port: PortInstance) -> None:
         """Listing 5.4, with names that do not change from run to run."""
-        statements = self.instances.provided(occurrence)
+        statements = self.instances.provided(port)
         if not statements:
             return
         plant = sct.Plant(
-            name=self.plant_names.fresh(f"data_{self.communication_name(occurrence)}"),
+            name=self.plant_names.fresh(f"data_{self.communication_name(port)}"),
             kind=sct.PlantKind.data,
-            origin=self.trace.plants[occurrence].origin,
+            origin=self.trace.plants[port].origin,
             source=statements[0].source,
         )
         self.model.plants.append(plant)
@@ -310,27 +310,25 @@ class _Transformation:
 
     def requirements(self) -> None:
         """Section 5.2.2: one for each communication named, on its trigger; and the cancelling of actions."""
-        on_action: dict[Occurrence, list[robosc.Requirement]] = {
-            occurrence: []
-            for occurrence in self.instances.occurrences()
-            if isinstance(occurrence.communication, robosc.Action)
+        on_action: dict[PortInstance, list[robosc.Requirement]] = {
+            port: [] for port in self.instances.ports() if isinstance(port.communication, robosc.Action)
         }
         for requirement in self.robot.definitions:
             if not isinstance(requirement, robosc.Requirement):
                 continue
-            named = [self.instances.occurrence(each, None) for each in requirement.target.communicationTypes]
-            for occurrence in dict.fromkeys(each for each in named if each is not None):
-                self.requirement(requirement, occurrence)
-                if occurrence in on_action:
-                    on_action[occurrence].append(requirement)
-        for occurrence, requirements in on_action.items():
-            self.cancelling(occurrence, requirements)
+            named = [self.instances.port(reference, None) for reference in requirement.target.communicationTypes]
+            for port in dict.fromkeys(port for port in named if port is not None):
+                self.requirement(requirement, port)
+                if port in on_action:
+                    on_action[port].append(requirement)
+        for port, requirements in on_action.items():
+            self.cancelling(port, requirements)
 
-    def requirement(self, requirement: robosc.Requirement, occurrence: Occurrence) -> None:
+    def requirement(self, requirement: robosc.Requirement, port: PortInstance) -> None:
         disables = isinstance(requirement, robosc.DisablesRequirement)
-        name, condition = self.shown(occurrence), self.print(requirement.condition)
+        name, condition = self.shown(port), self.print(requirement.condition)
         target = sct.Requirement(
-            event=self.trace.event(occurrence, sct.EventKind.trigger),
+            event=self.trace.event(port, sct.EventKind.trigger),
             kind=sct.RequirementKind.disables if disables else sct.RequirementKind.needs,
             condition=self.expressions.condition(requirement.condition, None),
             text=f"requirement {condition} disables {name}" if disables else f"requirement {name} needs {condition}",
@@ -339,29 +337,29 @@ class _Transformation:
         self.model.requirements.append(target)
         self.trace.origins[target] = requirement
 
-    def cancelling(self, occurrence: Occurrence, requirements: list[robosc.Requirement]) -> None:
+    def cancelling(self, port: PortInstance, requirements: list[robosc.Requirement]) -> None:
         """Algorithm 2, starting at false: an action is cancelled exactly when it could not be started any more."""
         broken: list[ex.Expression] = []
         for requirement in requirements:
             condition = self.expressions.condition(requirement.condition, None)
             disables = isinstance(requirement, robosc.DisablesRequirement)
             broken.append(condition if disables else ex.Negation(operand=condition))
-        name = self.shown(occurrence)
+        name = self.shown(port)
         self.model.requirements.append(
             sct.Requirement(
-                event=self.trace.event(occurrence, sct.EventKind.cancel),
+                event=self.trace.event(port, sct.EventKind.cancel),
                 kind=sct.RequirementKind.needs,
                 condition=disjunction(broken) or ex.BooleanLiteral(value=False),
                 text=f"{name} is cancelled where a requirement on it no longer holds"
                 if broken
                 else f"{name} is never cancelled: no requirement restricts it",
-                source=self.trace.plants[occurrence].source,
+                source=self.trace.plants[port].source,
             )
         )
 
-    def shown(self, occurrence: Occurrence) -> str:
-        name = occurrence.communication.name
-        return f"{occurrence.instance.name}.{name}" if self.communication_name(occurrence) != name else name
+    def shown(self, port: PortInstance) -> str:
+        name = port.communication.name
+        return f"{port.instance.name}.{name}" if self.communication_name(port) != name else name
 
 
 def _states(instance: Instance) -> list[robosc.State]:

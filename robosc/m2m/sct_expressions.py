@@ -60,11 +60,11 @@ class SctExpressions:
         instances = self._trace.instances
         if access.value:
             assert isinstance(transition, robosc.ResultTransition)
-            occurrence = instances.occurrence(transition.communicationType, within)
+            port = instances.port(transition.communicationType, within)
             path = property_path(access)
-            assert occurrence is not None
+            assert port is not None
             assert path is not None
-            return sct.InputReference(input=self._trace.inputs[Data(occurrence, transition.resultType, path)])
+            return sct.InputReference(input=self._trace.inputs[Data(port, transition.resultType, path)])
         if isinstance(access.item, robosc.State):
             instance = instances.instance(access.component, within)
             assert instance is not None

@@ -36,8 +36,8 @@ def tabulate(
     new reference of one of them. Raises TooLargeError.
     """
     count = 1
-    for each in ranges:
-        count *= len(each)
+    for values in ranges:
+        count *= len(values)
     if count > LARGEST_TABLE:
         raise TooLargeError(count)
     keys = [_key(reference) for reference in references]

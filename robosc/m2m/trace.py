@@ -11,8 +11,8 @@ if TYPE_CHECKING:
     from robosc.m2m.enumerations import Enumerations
     from robosc.metamodel import expression as ex
     from robosc.metamodel import robosc
-    from robosc.semantics.cone_of_influence import Data, Needed
-    from robosc.semantics.instances import Instance, Instances, InstanceVariable, Occurrence
+    from robosc.semantics.cone_of_influence import ConeOfInfluence, Data
+    from robosc.semantics.instances import Instance, Instances, InstanceVariable, PortInstance
 
 
 #: Table 5.1: the plant's event that a result type means.
@@ -30,11 +30,11 @@ class Trace:
     """The links of one transformation; an element that the supervisor does not need has no target."""
 
     instances: Instances
-    needed: Needed
+    cone: ConeOfInfluence
     model: sct.SupervisoryControlModel
     enumerations: Enumerations
-    plants: dict[Occurrence, sct.Plant] = field(default_factory=dict)
-    events: dict[tuple[Occurrence, str], sct.Event] = field(default_factory=dict)
+    plants: dict[PortInstance, sct.Plant] = field(default_factory=dict)
+    events: dict[tuple[PortInstance, str], sct.Event] = field(default_factory=dict)
     inputs: dict[Data, sct.Input] = field(default_factory=dict)
     behaviours: dict[Instance, sct.Plant] = field(default_factory=dict)
     locations: dict[tuple[Instance, robosc.State], sct.Location] = field(default_factory=dict)
@@ -43,6 +43,6 @@ class Trace:
     provided: dict[robosc.ProvideStatement, sct.Location] = field(default_factory=dict)
     origins: dict[ex.Located, ex.Located] = field(default_factory=dict)
 
-    def event(self, occurrence: Occurrence, kind: sct.EventKind) -> sct.Event:
+    def event(self, port: PortInstance, kind: sct.EventKind) -> sct.Event:
         """The event of that kind of a communication; KeyError where its kind of communication has none."""
-        return self.events[occurrence, kind.name]
+        return self.events[port, kind.name]

@@ -13,7 +13,7 @@ from robosc.semantics.walks import parts
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from robosc.semantics.instances import Instance, Instances, InstanceVariable, Occurrence
+    from robosc.semantics.instances import Instance, Instances, InstanceVariable, PortInstance
 
 #: A comparison of doubles is tabulated over the integers that it is computed from, up to so many valuations: a larger
 #: table would be larger than any model that it is part of.
@@ -24,7 +24,7 @@ LARGEST_TABLE = 1 << 16
 class Data:
     """A part of what an event carries: the properties on the way from the whole to it; none: the whole."""
 
-    occurrence: Occurrence
+    port: PortInstance
     result_type: robosc.ResultType
     path: tuple[robosc.ObjectProperty, ...]
 
@@ -40,7 +40,7 @@ class Assigned:
 
 
 @dataclass(frozen=True)
-class Need:
+class Reason:
     """Why something is needed: what reads it, in the text of which instance (None: the robot's), to compute what.
 
     `variable` is None where the supervisor itself evaluates what reads it.
@@ -52,31 +52,31 @@ class Need:
 
 
 @dataclass(frozen=True)
-class Needed:
+class ConeOfInfluence:
     """What the supervisor needs, each with the first reason, in the order in which it was found.
 
     `computations` are the assignments that it performs.
     """
 
-    variables: dict[InstanceVariable, Need]
-    data: dict[Data, Need]
+    variables: dict[InstanceVariable, Reason]
+    data: dict[Data, Reason]
     computations: list[Assigned]
 
 
-def needed(instances: Instances) -> Needed:
+def cone_of_influence(instances: Instances) -> ConeOfInfluence:
     """What guards, requirements and conditions of provided data read, and what that was computed from."""
     assignments: dict[InstanceVariable, list[Assigned]] = {}
     for assigned in all_assignments(instances):
         if assigned.variable is not None:
             assignments.setdefault(assigned.variable, []).append(assigned)
-    result = Needed({}, {}, [])
+    result = ConeOfInfluence({}, {}, [])
     queue: list[InstanceVariable] = []
 
     def read(expression: ex.Expression | None, within: Instance | None, computed: InstanceVariable | None) -> None:
         for access in accesses(expression):
             variable = instances.variable(access, within)
             if variable is not None and variable not in result.variables:
-                result.variables[variable] = Need(access, within, computed)
+                result.variables[variable] = Reason(access, within, computed)
                 queue.append(variable)
 
     for condition, within in conditions(instances):
@@ -144,13 +144,13 @@ def read_type(assigned: Assigned, access: robosc.Access) -> robosc.DataType | No
     return last.property.type if isinstance(last, robosc.PropertySegment) and last.property else None
 
 
-def _read_data(instances: Instances, assigned: Assigned, result: Needed) -> None:
+def _read_data(instances: Instances, assigned: Assigned, result: ConeOfInfluence) -> None:
     transition = assigned.transition
     if not isinstance(transition, robosc.ResultTransition):
         return
-    occurrence = instances.occurrence(transition.communicationType, assigned.instance)
+    port = instances.port(transition.communicationType, assigned.instance)
     for access in accesses(assigned.assignment.value):
         path = property_path(access)
-        if access.value and occurrence is not None and path is not None:
-            data = Data(occurrence, transition.resultType, path)
-            result.data.setdefault(data, Need(access, assigned.instance, assigned.variable))
+        if access.value and port is not None and path is not None:
+            data = Data(port, transition.resultType, path)
+            result.data.setdefault(data, Reason(access, assigned.instance, assigned.variable))

@@ -17,12 +17,12 @@ if TYPE_CHECKING:
 class Instance:
     """One component of a robot, or of a library looked at by itself.
 
-    `home` is the robot or library whose text defines it; names in that text mean what they mean there.
+    `unit` is the robot or library whose text defines it; names in that text mean what they mean there.
     """
 
     component: robosc.Component
     local: robosc.LocalComponent
-    home: robosc.Base
+    unit: robosc.Base
     topics: dict[robosc.CommunicationType, str] = field(default_factory=dict)
 
     @property
@@ -53,7 +53,7 @@ Resolved: TypeAlias = "dict[robosc.Component, Instance | None]"
 
 
 @dataclass(frozen=True)
-class Occurrence:
+class PortInstance:
     """A communication of one instance."""
 
     instance: Instance
@@ -88,32 +88,32 @@ class Instances:
     def __iter__(self) -> Iterator[Instance]:
         return iter(self._of.values())
 
-    def occurrences(self) -> Iterator[Occurrence]:
+    def ports(self) -> Iterator[PortInstance]:
         """Every communication of every instance, in the order of the text."""
         for instance in self:
             for communication in instance.communications:
-                yield Occurrence(instance, communication)
+                yield PortInstance(instance, communication)
 
     def is_shared(self, communication: robosc.CommunicationType) -> bool:
         """Whether another instance has a communication of the same name."""
         return self._names[communication.name] > 1
 
-    def provided(self, occurrence: Occurrence) -> list[robosc.ProvideStatement]:
+    def provided(self, port: PortInstance) -> list[robosc.ProvideStatement]:
         """The statements on the data of a communication, in the order of the text."""
-        return self._provided.get(occurrence, [])
+        return self._provided.get(port, [])
 
     def instance(self, component: robosc.Component | None, within: Instance | None) -> Instance | None:
         """The instance that a text means by a component; `within` is the instance whose behaviour the text is."""
-        if within is not None and within.home is not self.base:
+        if within is not None and within.unit is not self.base:
             return within  # A library's text speaks of its own component only.
         return within if component is None else self._of.get(component)
 
-    def occurrence(self, reference: robosc.CommunicationReference | None, within: Instance | None) -> Occurrence | None:
+    def port(self, reference: robosc.CommunicationReference | None, within: Instance | None) -> PortInstance | None:
         """The communication that a reference means."""
         instance = self.instance(reference.component, within) if reference else None
         if instance is None or reference is None or reference.communicationType is None:
             return None
-        return Occurrence(instance, reference.communicationType)
+        return PortInstance(instance, reference.communicationType)
 
     def variable(self, access: robosc.Access, within: Instance | None) -> InstanceVariable | None:
         """The variable that an access reads; None where it reads something else."""
@@ -129,20 +129,20 @@ class Instances:
             for assignment in transition.assignments
             if assignment.item
         )
-        return {variable: each for variable, each in owned if variable is not None}
+        return {variable: assignment for variable, assignment in owned if variable is not None}
 
     @cached_property
     def _names(self) -> Counter[str]:
-        return Counter(occurrence.communication.name for occurrence in self.occurrences())
+        return Counter(port.communication.name for port in self.ports())
 
     @cached_property
-    def _provided(self) -> dict[Occurrence, list[robosc.ProvideStatement]]:
-        provided: dict[Occurrence, list[robosc.ProvideStatement]] = {}
+    def _provided(self) -> dict[PortInstance, list[robosc.ProvideStatement]]:
+        provided: dict[PortInstance, list[robosc.ProvideStatement]] = {}
         for definition in self.base.definitions:
             if isinstance(definition, robosc.ProvideStatement):
-                occurrence = self.occurrence(definition.communicationType, None)
-                if occurrence is not None:
-                    provided.setdefault(occurrence, []).append(definition)
+                port = self.port(definition.communicationType, None)
+                if port is not None:
+                    provided.setdefault(port, []).append(definition)
         return provided
 
 
@@ -177,17 +177,17 @@ def libraries(
 def _instantiate(component: robosc.Component, base: robosc.Base, resolved: Resolved) -> Instance | None:
     """Follows imports to the component's definition; outer re-mappings win."""
     chain: list[tuple[robosc.Component, robosc.ImportedComponent]] = []
-    home, current, seen = base, component, {component}
+    unit, current, seen = base, component, {component}
     found: Instance | None = None
     while current not in resolved:
         if isinstance(current.type, robosc.LocalComponent):
-            found = Instance(current, current.type, home)
+            found = Instance(current, current.type, unit)
             break
         if not isinstance(current.type, robosc.ImportedComponent):
             break
         chain.append((current, current.type))
-        home, current = current.type.library, current.type.definition
-        if home is None or current is None or current in seen:
+        unit, current = current.type.library, current.type.definition
+        if unit is None or current is None or current in seen:
             break
         seen.add(current)
     else:
@@ -197,6 +197,6 @@ def _instantiate(component: robosc.Component, base: robosc.Base, resolved: Resol
             topics: dict[robosc.CommunicationType, str] = {}
             for remapping in imported.remappings:
                 topics.setdefault(remapping.communicationType, remapping.identifier)
-            found = Instance(importing, found.local, found.home, topics | found.topics | topics)
+            found = Instance(importing, found.local, found.unit, topics | found.topics | topics)
         resolved[importing] = found
     return found

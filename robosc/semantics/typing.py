@@ -56,12 +56,12 @@ class ObjectType:
 
     @property
     def _identity(self) -> Any:
-        home: Any = self.definition.eContainer()
-        if not isinstance(home, rsc.InterfaceTypeReference):
+        unit: Any = self.definition.eContainer()
+        if not isinstance(unit, rsc.InterfaceTypeReference):
             return self.definition
-        owner = home.eContainer()
+        owner = unit.eContainer()
         parts = ("requestType", "responseType", "feedbackType")
-        return home.package, home.rosType, next((part for part in parts if getattr(owner, part, None) is home), "")
+        return unit.package, unit.rosType, next((part for part in parts if getattr(owner, part, None) is unit), "")
 
     def __str__(self) -> str:
         return f"object {self.definition.name}"
@@ -183,9 +183,9 @@ def value_type(element: ex.Located) -> Type | None:
     return None
 
 
-def is_number(each: Type) -> bool:
+def is_number(kind: Type) -> bool:
     """Whether it is an integer or a double."""
-    return each in {INTEGER, DOUBLE}
+    return kind in {INTEGER, DOUBLE}
 
 
 def operator_type(row: Operator, operands: Sequence[Type]) -> Type:
