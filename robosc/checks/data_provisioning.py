@@ -2,10 +2,10 @@
 
 from collections.abc import Iterator
 
-from robosc.checks.declarations import DIRECTIONS, sent_type
+from robosc.checks.declarations import DIRECTIONS
 from robosc.checks.rule import Finding, rule
 from robosc.metamodel import robosc as rsc
-from robosc.semantics.typing import NONE, declared_type
+from robosc.semantics.typing import NONE, provided_data_type
 
 
 @rule("data-provisioning")
@@ -23,7 +23,7 @@ def data_provisioning(base: rsc.Base) -> Iterator[Finding]:
                 "leave the provide statement out: the data of an outgoing message comes from its component;"
                 f" {DIRECTIONS.format(communication.name)}",
             )
-        elif communication is not None and declared_type(sent_type(communication)) == NONE:
+        elif communication is not None and provided_data_type(communication) == NONE:
             what = "it" if isinstance(communication, rsc.Message) else "its request"
             yield Finding(
                 statement.data or statement,

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robosc.checks.declarations import carried_types, communications, sent_type
+from robosc.checks.declarations import communications
 from robosc.checks.rule import Finding, rule
 from robosc.metamodel import robosc as rsc
+from robosc.semantics.communication import carried, sent_type
 from robosc.semantics.naming import written
 from robosc.semantics.typing import NONE, ArrayType, EnumType, declared_type
 
@@ -22,13 +23,13 @@ def data_type(base: rsc.Base) -> Iterator[Finding]:
             yield from _base_of(definition)
     yield from _endless(base)
     for _, communication in communications(base):
-        for carried in carried_types(communication):
-            if isinstance(carried, rsc.Array):
+        for _, declared in carried(communication):
+            if isinstance(declared, rsc.Array):
                 yield Finding(
-                    carried,
+                    declared,
                     f"the data of `{communication.name}` is an array, expected one in an object only: a ROS message"
                     " has fields, and an array is one of them",
-                    f"declare `datatype object … {{ data: {_text(carried)} }}` and use that",
+                    f"declare `datatype object … {{ data: {_text(declared)} }}` and use that",
                 )
         sent = sent_type(communication)
         path = _enum_in(sent, set())

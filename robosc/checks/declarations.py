@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from robosc.checks.automata import behaviours, components
 from robosc.metamodel import robosc as rsc
+from robosc.semantics.communication import carried
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -32,29 +33,6 @@ def variables(base: rsc.Base) -> Iterator[tuple[rsc.Component, rsc.Variable]]:
                 yield component, definition
 
 
-def carried_types(communication: rsc.CommunicationType) -> list[rsc.DataType]:
-    """The types of all data of a communication, in the order of the text."""
-    types: list[rsc.DataType | None] = []
-    match communication:
-        case rsc.Message():
-            types = [communication.type]
-        case rsc.Service():
-            types = [communication.requestType, communication.responseType]
-        case rsc.Action():
-            types = [communication.requestType, communication.responseType, communication.feedbackType]
-    return [kind for kind in types if kind is not None]
-
-
-def sent_type(communication: rsc.CommunicationType | None) -> rsc.DataType | None:
-    """The type of the data that goes out of the controller; None where none goes out."""
-    match communication:
-        case rsc.Message() if str(communication.direction) == "incoming":
-            return communication.type
-        case rsc.Service() | rsc.Action():
-            return communication.requestType
-    return None
-
-
 def data_types(base: rsc.Base) -> Iterator[rsc.DataType]:
     """Every type that stands in the text of a base, those within arrays too."""
     for outermost in _outermost(base):
@@ -71,6 +49,6 @@ def _outermost(base: rsc.Base) -> Iterator[rsc.DataType | None]:
         elif isinstance(definition, rsc.ObjectDataType):
             yield from (part.type for part in definition.properties)
     for _, communication in communications(base):
-        yield from carried_types(communication)
+        yield from (declared for _, declared in carried(communication))
     for _, variable in variables(base):
         yield variable.type

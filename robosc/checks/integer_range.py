@@ -5,11 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.checks.automata import assigned_variable, behaviours, sends_message, transitions
-from robosc.checks.declarations import data_types, sent_type, variables
+from robosc.checks.declarations import data_types, variables
 from robosc.checks.rule import Finding, rule
 from robosc.checks.supervised import Fault, data_reads, supervised_faults
 from robosc.checks.tabulation import table_faults
 from robosc.metamodel import robosc as rsc
+from robosc.semantics.communication import sent_type
 from robosc.semantics.cone_of_influence import ConeOfInfluence, Reason, accesses, read_type
 from robosc.semantics.evaluation import evaluate
 from robosc.semantics.typing import INTEGER, infer

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robosc.checks.declarations import carried_types, communications
+from robosc.checks.declarations import communications
 from robosc.checks.libraries import imports
 from robosc.checks.rule import Finding, rule
 from robosc.metamodel import robosc as rsc
+from robosc.semantics.communication import carried
 from robosc.semantics.naming import written
 from robosc.semantics.typing import NONE, UNKNOWN, EnumType, ObjectType, Type, declared_type
 
@@ -20,7 +21,7 @@ def interface_link(base: rsc.Base) -> Iterator[Finding]:
     """What has no wire type of its own links an interface: objects, actions, services that carry data."""
     for _, communication in communications(base):
         if communication.interface is None:
-            types = [_wire_type(carried_kind) for carried_kind in carried_types(communication)]
+            types = [_wire_type(declared) for _, declared in carried(communication)]
             reason = _reason(communication, types)
             if reason:
                 yield Finding(

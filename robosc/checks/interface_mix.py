@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from robosc.checks.libraries import imports, instances, reachable
 from robosc.checks.rule import Finding, interface_rule
-from robosc.checks.wire_data import UsedData, carried, carries
+from robosc.checks.wire_data import UsedData, carried_data, carries
 from robosc.checks.wire_faults import misfits
 from robosc.diagnostics import Severity
 
@@ -23,7 +23,7 @@ def interface_mix(base: rsc.Base, interfaces: RosTypes) -> Iterator[Finding]:
     """One of the two ROS fits all data of a model, as a controller runs in one of them."""
     communications = {port.communication for port in instances(base).ports()}
     units = [base, *reachable(base, carries)]
-    present = [(unit, data) for unit in units for data in carried(unit) if data.communication in communications]
+    present = [(unit, data) for unit in units for data in carried_data(unit) if data.communication in communications]
     used = UsedData([base, *reachable(base)] if present else ())
     first: dict[str, tuple[rsc.Base, Carried]] = {}
     for unit, data in present:

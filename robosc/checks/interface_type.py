@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from robosc.checks.libraries import reachable
 from robosc.checks.rule import Finding, interface_rule
-from robosc.checks.wire_data import Carried, UsedData, Uses, carried, carries
+from robosc.checks.wire_data import Carried, UsedData, Uses, carried_data, carries
 from robosc.checks.wire_faults import Fault, Unknown, faults
 from robosc.diagnostics import Severity
 from robosc.metamodel import expression as ex
@@ -41,7 +41,7 @@ def interface_unused(base: rsc.Base, interfaces: RosTypes) -> Iterator[Finding]:
 def interface_unknown(base: rsc.Base, interfaces: RosTypes) -> Iterator[Finding]:
     """The definitions of all ROS types that interfaces name are at hand."""
     reported: set[tuple[object, str]] = set()
-    for data in carried(base):
+    for data in carried_data(base):
         if isinstance(data.interface.eContainer(), rsc.InterfaceTypeReference):
             continue  # Whoever linked it has said that there is no such type.
         for fault in _unknown(data, interfaces):
@@ -72,7 +72,7 @@ def _unknown(data: Carried, interfaces: RosTypes) -> list[Fault] | list[Unknown]
 def _faulty(base: rsc.Base, interfaces: RosTypes) -> Iterator[tuple[ex.Located, str, str, bool]]:
     """Where the base's text must change, why, how, and whether the model uses what is faulty there."""
     found: dict[tuple[ex.Located, str, str], bool] = {}
-    units = {unit: list(carried(unit)) for unit in [base, *reachable(base, carries)]}
+    units = {unit: list(carried_data(unit)) for unit in [base, *reachable(base, carries)]}
     everything = UsedData([base, *reachable(base)] if any(units.values()) else ())
     for unit, communicated in units.items():
         itself = everything if unit is base else UsedData([unit, *reachable(unit)] if communicated else ())

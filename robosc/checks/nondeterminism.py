@@ -8,7 +8,7 @@ from robosc.checks.automata import behaviours, common_transitions, states
 from robosc.checks.rule import Finding, rule
 from robosc.checks.unique_names import on_line
 from robosc.metamodel import robosc as rsc
-from robosc.semantics.typing import events
+from robosc.semantics.communication import event_names
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -69,5 +69,5 @@ def _event(transition: rsc.Transition) -> _Event | None:
     if not isinstance(transition, rsc.ResultTransition) or transition.communicationType is None:
         return None
     reference, event = transition.communicationType, str(transition.resultType)
-    known = event in events(reference.communicationType)
+    known = event in event_names(reference.communicationType)
     return (reference.component, reference.communicationType, event) if known else None

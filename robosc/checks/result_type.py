@@ -5,8 +5,8 @@ from collections.abc import Iterator
 from robosc.checks.automata import behaviours, transitions
 from robosc.checks.rule import Finding, rule
 from robosc.metamodel import robosc as rsc
+from robosc.semantics.communication import event_names
 from robosc.semantics.naming import written
-from robosc.semantics.typing import events
 
 _FROM = {"response", "error", "feedback", "cancel"}
 
@@ -19,7 +19,7 @@ def result_type(base: rsc.Base) -> Iterator[Finding]:
             if not isinstance(transition, rsc.ResultTransition) or transition.communicationType is None:
                 continue
             communication = transition.communicationType.communicationType
-            event, allowed = str(transition.resultType), events(communication)
+            event, allowed = str(transition.resultType), event_names(communication)
             if communication is not None and event not in allowed:
                 forms = [f"on {name} {_preposition(name)} {written(communication.name)}" for name in allowed]
                 yield Finding(
@@ -38,6 +38,6 @@ def _preposition(event: str) -> str:
     return "from" if event in _FROM else "to"
 
 
-def _enumeration(words: list[str] | tuple[str, ...]) -> str:
+def _enumeration(words: list[str]) -> str:
     *others, last = (f"`{word}`" for word in words)
     return f"{', '.join(others)} or {last}" if others else last

@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
-from robosc.checks.declarations import communications, sent_type
+from robosc.checks.declarations import communications
 from robosc.metamodel import robosc as rsc
 from robosc.metamodel.reflection import tree
 from robosc.ros_types.wire import Nested, Section
+from robosc.semantics.communication import PortEvent, carried, event_of, sent
 from robosc.semantics.cone_of_influence import accesses
 
 if TYPE_CHECKING:
@@ -18,13 +19,6 @@ if TYPE_CHECKING:
 
 #: The properties that a text touches, each with the first place that does.
 Uses: TypeAlias = "dict[rsc.ObjectProperty, ex.Located]"
-_PARTS: dict[tuple[type[rsc.CommunicationType], str], Section] = {
-    (rsc.Message, "response"): Section.MESSAGE,
-    (rsc.Service, "response"): Section.RESPONSE,
-    (rsc.Action, "response"): Section.RESULT,
-    (rsc.Action, "feedback"): Section.FEEDBACK,
-}
-_SENT = {rsc.Message: Section.MESSAGE, rsc.Service: Section.REQUEST, rsc.Action: Section.GOAL}
 
 
 @dataclass(frozen=True)
@@ -34,12 +28,18 @@ class Carried:
     communication: rsc.CommunicationType
     interface: rsc.Interface
     declared: rsc.DataType
-    part: Section
+    event: PortEvent
 
     @property
     def is_received(self) -> bool:
         """Whether the data comes into the controller."""
-        return self.declared is not sent_type(self.communication)
+        return not self.event.is_sent
+
+    @property
+    def part(self) -> Section:
+        """The section of the ROS type that holds the data."""
+        assert self.event.section is not None
+        return self.event.section
 
     @property
     def ros_type(self) -> Nested:
@@ -47,34 +47,18 @@ class Carried:
         return Nested(self.interface.package, self.interface.type)
 
 
-def carried(base: rsc.Base) -> Iterator[Carried]:
+def carried_data(base: rsc.Base) -> Iterator[Carried]:
     """The data of all communications with an interface that the base itself defines, in the order of the text."""
     for _, communication in communications(base):
         interface = communication.interface
         if interface is not None and interface.package and interface.type:
-            for declared, part in _parts(communication):
-                if declared is not None:
-                    yield Carried(communication, interface, declared, part)
+            for event, declared in carried(communication):
+                yield Carried(communication, interface, declared, event)
 
 
 def carries(base: rsc.Base) -> bool:
     """Whether the base itself defines a communication with an interface."""
-    return any(True for _ in carried(base))
-
-
-def _parts(communication: rsc.CommunicationType) -> list[tuple[rsc.DataType | None, Section]]:
-    match communication:
-        case rsc.Message():
-            return [(communication.type, Section.MESSAGE)]
-        case rsc.Service():
-            return [(communication.requestType, Section.REQUEST), (communication.responseType, Section.RESPONSE)]
-        case rsc.Action():
-            return [
-                (communication.requestType, Section.GOAL),
-                (communication.responseType, Section.RESULT),
-                (communication.feedbackType, Section.FEEDBACK),
-            ]
-    return []
+    return any(True for _ in carried_data(base))
 
 
 class UsedData:
@@ -94,7 +78,7 @@ class UsedData:
     def uses(self, data: Carried) -> Uses:
         """The properties that are touched of some data; enums touch what their rules read."""
         uses: Uses = {}
-        sources: dict[object, None] = dict.fromkeys([(data.communication, data.part), *_enums(data.declared)])
+        sources: dict[object, None] = dict.fromkeys([(data.communication, data.event), *_enums(data.declared)])
         pending = list(sources)
         while pending:
             for touching in self._touched.get(pending.pop(0), ()):
@@ -106,17 +90,15 @@ class UsedData:
         return uses
 
     def _received(self, transition: rsc.ResultTransition) -> None:
-        communication = transition.communicationType.communicationType if transition.communicationType else None
-        part = _PARTS.get((type(communication), str(transition.resultType)))  # type: ignore[arg-type]
-        if part is not None:
+        event = event_of(transition.communicationType, transition.resultType)
+        if event is not None and not event.is_sent:
             for assignment in transition.assignments:
-                self._read((communication, part), assignment.value)
+                self._read((transition.communicationType.communicationType, event), assignment.value)
 
     def _provided(self, statement: rsc.ProvideStatement) -> None:
         communication = statement.communicationType.communicationType if statement.communicationType else None
-        if communication is not None:
-            touched = self._touched.setdefault((communication, _SENT[type(communication)]), [])
-            touched += [part for _, part in tree(statement) if isinstance(part, rsc.ObjectPropertyValue)]
+        touched = self._touched.setdefault((communication, sent(communication)), [])
+        touched += [part for _, part in tree(statement) if isinstance(part, rsc.ObjectPropertyValue)]
 
     def _read(self, source: object, expression: ex.Expression | None) -> None:
         touched = self._touched.setdefault(source, [])

@@ -9,11 +9,11 @@ from robosc.metamodel.reflection import contents, tree
 from robosc.ros_types import DefinitionError, Section
 from robosc.ros_types.unknown import OWN_OBJECT, other_kinds, why_unknown
 from robosc.ros_types.wire import INTEGER_RANGES, Basic, Sequence
+from robosc.semantics.communication import section_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from robosc.metamodel import expression as ex
     from robosc.ros_types import Fields, RosDistribution, RosTypes, WireType
 
 #: Small integers bring their range with them.
@@ -23,7 +23,7 @@ _NARROW = ("int8", "uint8", "int16", "uint16")
 def declare(reference: rsc.InterfaceTypeReference, interfaces: RosTypes) -> tuple[str, str] | None:
     """Gives a reference the object that it stands for; a message and a hint where the ROS type is not known."""
     if next(_definitions(reference, interfaces), None) is None:
-        part = _part(reference)
+        part = section_of(reference)
         message, hint = why_unknown(interfaces, reference.package, reference.rosType, part)
         if part is Section.MESSAGE and other_kinds(interfaces, reference.package, reference.rosType, part.kind):
             hint = OWN_OBJECT
@@ -85,24 +85,11 @@ def _definitions(
 ) -> Iterator[tuple[RosDistribution, Fields]]:
     for distribution in interfaces.distributions:
         try:
-            fields = distribution.fields(reference.package, reference.rosType, _part(reference))
+            fields = distribution.fields(reference.package, reference.rosType, section_of(reference))
         except DefinitionError:
             continue
         if fields is not None:
             yield distribution, fields
-
-
-def _part(reference: rsc.InterfaceTypeReference) -> Section:
-    """Which part of its type a reference stands for: where it stands decides."""
-    around: ex.Located = reference.eContainer()
-    match around:
-        case rsc.Service():
-            return Section.REQUEST if around.requestType is reference else Section.RESPONSE
-        case rsc.Action() if around.feedbackType is reference:
-            return Section.FEEDBACK
-        case rsc.Action():
-            return Section.GOAL if around.requestType is reference else Section.RESULT
-    return Section.MESSAGE
 
 
 def _data_type(wire: WireType, distribution: RosDistribution) -> rsc.DataType | None:

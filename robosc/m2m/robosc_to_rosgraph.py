@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from functools import partial
+from typing import TYPE_CHECKING, TypeAlias
 
-from robosc.m2m.constants import default_value, initial_value, literal
-from robosc.m2m.enumerations import Enumerations
-from robosc.m2m.node_expressions import NodeExpressions
-from robosc.m2m.trace import EVENT_OF
+from robosc.m2m.declarations import Declarations, default_value
+from robosc.m2m.expressions import NodeExpressions
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc, rosgraph, sct
-from robosc.ros_types import RosTypes, Section
+from robosc.ros_types import RosTypes
+from robosc.semantics.communication import data_type, event_of, events
 from robosc.semantics.cone_of_influence import transitions
 from robosc.semantics.instances import Instance, InstanceVariable, PortInstance
 from robosc.semantics.naming import Names
@@ -19,6 +19,10 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from robosc.m2m.trace import Trace
+    from robosc.semantics.communication import PortEvent
+
+    #: What an access to `value` means where it stands.
+    Value: TypeAlias = Callable[[robosc.Access], ex.Expression]
 
 #: The wire types of basic data without `links`, all of std_msgs.
 _BASIC = {
@@ -32,12 +36,12 @@ _BASIC = {
 _FIELD = "data"
 
 
-class _Part(NamedTuple):
-    """What one event of a communication carries, in which part of its ROS type."""
-
-    port: PortInstance
-    type: robosc.DataType
-    part: Section
+#: The kinds of ROS types, by the kinds of communication.
+_KINDS = {
+    robosc.Message: rosgraph.InterfaceKind.message,
+    robosc.Service: rosgraph.InterfaceKind.service,
+    robosc.Action: rosgraph.InterfaceKind.action,
+}
 
 
 def transform(trace: Trace, interfaces: RosTypes | None = None) -> rosgraph.RosGraph:
@@ -60,11 +64,11 @@ class _Transformation:
         self.interfaces: dict[tuple[str, str, str], rosgraph.Interface] = {}
         self.variables: dict[InstanceVariable, rosgraph.NodeVariable] = {}
         self.conversions: dict[robosc.EnumDataType, rosgraph.Conversion] = {}
-        self.enumerations = Enumerations(self.graph, trace.enumerations)
+        self.declarations = Declarations(self.graph, trace.declarations)
         self.conversion_names = Names()
         self.subscriptions: dict[tuple[str, rosgraph.Interface], rosgraph.Subscription] = {}
         self.publishers: dict[tuple[str, rosgraph.Interface], rosgraph.Publisher] = {}
-        self.expressions = NodeExpressions(trace, self.variables, self.enumerations)
+        self.expressions = NodeExpressions(trace, self.declarations, self.variables)
 
     def run(self) -> rosgraph.RosGraph:
         for instance in self.instances:
@@ -73,11 +77,9 @@ class _Transformation:
                     self.variable(InstanceVariable(instance, definition))
         for port in self.instances.ports():
             if isinstance(port.communication, robosc.Message):
-                self.message(port, port.communication)
-            elif isinstance(port.communication, robosc.Service):
-                self.service(port, port.communication)
-            elif isinstance(port.communication, robosc.Action):
-                self.action(port, port.communication)
+                self.message(port)
+            else:
+                self.client(port)
         for instance in self.instances:
             self.reactions(instance)
         return self.graph
@@ -87,92 +89,60 @@ class _Transformation:
     def variable(self, owned: InstanceVariable) -> None:
         if owned in self.trace.variables:
             return
-        value = initial_value(owned.variable)
         variable = rosgraph.NodeVariable(
             name=owned.variable.name,
             component=owned.instance.name,
-            type=self.type(owned.variable.type),
-            initial=literal(self.enumerations.literal(value) if isinstance(value, robosc.EnumValue) else value),
+            type=self.declarations.type(owned.variable.type),
+            initial=self.declarations.initial(owned.variable),
             source=owned.variable.source,
         )
         self.variables[owned] = variable
         self.graph.variables.append(variable)
 
-    def type(self, kind: robosc.DataType) -> ex.Type:
-        match kind:
-            case robosc.BooleanDataType():
-                return ex.BooleanType()
-            case robosc.IntegerDataType():
-                return ex.IntegerType(minimum=kind.minimum, maximum=kind.maximum)
-            case robosc.DoubleDataType():
-                return ex.DoubleType()
-            case robosc.StringDataType():
-                return ex.StringType()
-        assert isinstance(kind, robosc.ComplexDataTypeReference)
-        assert isinstance(kind.type, robosc.EnumDataType)
-        return ex.EnumerationType(enumeration=self.enumerations.enumeration(kind.type))
-
     # Communication
 
-    def message(self, port: PortInstance, message: robosc.Message) -> None:
-        topic = port.instance.topic(message)
-        interface = self.interface(message, message.type, rosgraph.InterfaceKind.message)
+    def message(self, port: PortInstance) -> None:
+        """All messages on one topic of one ROS type are one subscription, or one publisher."""
+        (event,) = events(port.communication)
+        topic, interface = port.instance.topic(port.communication), self.interface(port.communication)
         # Written with a slash or without, it is one topic, and what comes on it one batch.
         key = topic.removeprefix("/"), interface
-        where = message.source
-        if message.direction == robosc.MessageDirection.outgoing:
-            subscription = self.subscriptions.get(key)
-            if subscription is None:
-                subscription = rosgraph.Subscription(topic=topic, interface=interface, source=where)
-                self.subscriptions[key] = subscription
-                self.graph.subscriptions.append(subscription)
-            subscription.receptions.append(self.reception(port, robosc.ResultType.response))
+        where = port.communication.source
+        if event.is_sent:
+            if key not in self.publishers:
+                self.publishers[key] = rosgraph.Publisher(topic=topic, interface=interface, source=where)
+                self.graph.publishers.append(self.publishers[key])
+            self.publishers[key].sendings.append(self.sending(port, event))
         else:
-            publisher = self.publishers.get(key)
-            if publisher is None:
-                publisher = rosgraph.Publisher(topic=topic, interface=interface, source=where)
-                self.publishers[key] = publisher
-                self.graph.publishers.append(publisher)
-            publisher.sendings.append(self.sending(port))
+            if key not in self.subscriptions:
+                self.subscriptions[key] = rosgraph.Subscription(topic=topic, interface=interface, source=where)
+                self.graph.subscriptions.append(self.subscriptions[key])
+            self.subscriptions[key].receptions.append(self.reception(port, event))
 
-    def service(self, port: PortInstance, service: robosc.Service) -> None:
-        self.graph.serviceClients.append(
-            rosgraph.ServiceClient(
-                identifier=port.instance.topic(service),
-                interface=self.interface(service, service.requestType, rosgraph.InterfaceKind.service),
-                request=self.sending(port),
-                response=self.reception(port, robosc.ResultType.response),
-                error=self.trace.event(port, sct.EventKind.error),
-                reset=self.trace.event(port, sct.EventKind.reset),
-                source=service.source,
-            )
-        )
+    def client(self, port: PortInstance) -> None:
+        """The features of a client are called as the events are in texts; one more is `reset`."""
+        is_action = isinstance(port.communication, robosc.Action)
+        client = rosgraph.ActionClient() if is_action else rosgraph.ServiceClient()
+        client.identifier = port.instance.topic(port.communication)
+        client.interface = self.interface(port.communication)
+        client.source = port.communication.source
+        for event in events(port.communication):
+            made: rosgraph.Sending | rosgraph.Reception | sct.Event = self.trace.event(port, event.kind)
+            if event.feature:
+                made = self.sending(port, event) if event.is_sent else self.reception(port, event)
+            setattr(client, event.name or event.kind.name, made)
+        clients: list[ex.Located] = self.graph.actionClients if is_action else self.graph.serviceClients  # type: ignore[assignment]
+        clients.append(client)
 
-    def action(self, port: PortInstance, action: robosc.Action) -> None:
-        self.graph.actionClients.append(
-            rosgraph.ActionClient(
-                identifier=port.instance.topic(action),
-                interface=self.interface(action, action.requestType, rosgraph.InterfaceKind.action),
-                request=self.sending(port),
-                feedback=self.reception(port, robosc.ResultType.feedback),
-                response=self.reception(port, robosc.ResultType.response),
-                error=self.trace.event(port, sct.EventKind.error),
-                cancel=self.trace.event(port, sct.EventKind.cancel),
-                reset=self.trace.event(port, sct.EventKind.reset),
-                source=action.source,
-            )
-        )
-
-    def interface(
-        self, communication: robosc.CommunicationType, carried: robosc.DataType, kind: rosgraph.InterfaceKind
-    ) -> rosgraph.Interface:
-        linked = communication.interface
+    def interface(self, communication: robosc.CommunicationType) -> rosgraph.Interface:
+        """The ROS type that a communication links, or the one of `std_msgs` or `std_srvs` for its basic data."""
+        kind, linked = _KINDS[type(communication)], communication.interface
         if linked is not None:
             package, name = linked.package, linked.type
-        elif kind == rosgraph.InterfaceKind.service:
-            package, name = "std_srvs", "Empty"
+        elif isinstance(communication, robosc.Message):
+            package, name = "std_msgs", _BASIC[type(_wire_type(communication.type))]
         else:
-            package, name = "std_msgs", _BASIC[type(_wire_type(carried))]
+            package, name = "std_srvs", "Empty"
         key = (package, name, kind.name)
         if key not in self.interfaces:
             interface = rosgraph.Interface(package=package, type=name, kind=kind)
@@ -181,17 +151,18 @@ class _Transformation:
             self.graph.interfaces.append(interface)
         return self.interfaces[key]
 
-    def sending(self, port: PortInstance) -> rosgraph.Sending:
+    def sending(self, port: PortInstance, event: PortEvent) -> rosgraph.Sending:
         sending = rosgraph.Sending(
             name=port.communication.name,
-            event=self.trace.event(port, sct.EventKind.trigger),
+            event=self.trace.event(port, event.kind),
             source=port.communication.source,
         )
+        sent = data_type(port.communication, event)
+        assert sent is not None
         for statement in self.instances.provided(port):
             alternative = rosgraph.ProvidedData(location=self.trace.provided[statement], source=statement.source)
-            sent = _sent(port)
-            lone = () if isinstance(statement.data, robosc.ObjectValue) else (self.field(sent),)
-            for field in self.fields(statement.data, lone, sent.type):
+            lone = () if isinstance(statement.data, robosc.ObjectValue) else (self.field(port, event),)
+            for field in self.fields(statement.data, lone, sent):
                 alternative.fields.append(field)
             sending.alternatives.append(alternative)
         return sending
@@ -209,7 +180,7 @@ class _Transformation:
         return [
             rosgraph.FieldAssignment(
                 path=list(path),
-                type=self.type(declared),
+                type=self.declarations.type(declared),
                 value=self.expressions.as_double(value) if isinstance(declared, robosc.DoubleDataType) else value,
                 source=data.source,
             )
@@ -217,78 +188,67 @@ class _Transformation:
 
     # Data that comes in
 
-    def reception(self, port: PortInstance, result_type: robosc.ResultType) -> rosgraph.Reception:
-        part = _received(port, result_type)
-        assert part is not None
+    def reception(self, port: PortInstance, event: PortEvent) -> rosgraph.Reception:
         reception = rosgraph.Reception(
             name=port.communication.name,
-            event=self.trace.event(port, EVENT_OF[result_type.name]),
+            event=self.trace.event(port, event.kind),
             source=port.communication.source,
         )
+        value = self.value_of(port, event)
         for data, declared in self.trace.inputs.items():
-            if data.port == port and data.result_type == result_type:
-                segments = [robosc.PropertySegment(property=part) for part in data.path]
-                reception.inputs.append(rosgraph.InputAssignment(input=declared, value=self.wire(part)(segments)))
+            if data.port == port and data.event == event:
+                path = robosc.Access(value=True, segments=[robosc.PropertySegment(property=part) for part in data.path])
+                reception.inputs.append(rosgraph.InputAssignment(input=declared, value=value(path)))
         return reception
 
-    def field(self, part: _Part) -> str:
+    def field(self, port: PortInstance, event: PortEvent) -> str:
         """The field that holds a basic value."""
-        linked = part.port.communication.interface
-        return _FIELD if linked is None else self.known.field_of_basic(linked.package, linked.type, part.part)
+        linked = port.communication.interface
+        assert event.section is not None
+        return _FIELD if linked is None else self.known.field_of_basic(linked.package, linked.type, event.section)
 
-    def wire(self, part: _Part) -> Callable[[Sequence[robosc.AccessSegment]], ex.Expression]:
-        """What `value` with its segments means where the ROS message carries this part."""
-        is_basic = not isinstance(_wire_type(part.type), robosc.ComplexDataTypeReference)
+    def value_of(self, port: PortInstance, event: PortEvent) -> Value:
+        """What `value` with its segments means where a ROS message carries the data of an event."""
+        carried = data_type(port.communication, event)
+        assert carried is not None
+        is_object = isinstance(_wire_type(carried), robosc.ComplexDataTypeReference)
+        return partial(self.wire, carried, () if is_object else (self.field(port, event),))
 
-        def access(segments: Sequence[robosc.AccessSegment]) -> ex.Expression:
-            steps, reached = _steps(segments, part.type)
-            if is_basic:
-                steps.insert(0, rosgraph.FieldStep(name=self.field(part)))
-            if isinstance(reached, robosc.ComplexDataTypeReference) and isinstance(reached.type, robosc.EnumDataType):
-                conversion = self.conversion(reached.type)
-                argument = rosgraph.WireAccess(steps=steps, type=self.basic_type(reached.type.type))
-                return rosgraph.ConversionCall(conversion=conversion, argument=argument)
-            return rosgraph.WireAccess(steps=steps, type=self.basic_type(reached))
-
-        return access
+    def wire(self, whole: robosc.DataType, fields: Sequence[str], access: robosc.Access) -> ex.Expression:
+        """What an access to data of a type reads, below some fields; an enum is converted."""
+        steps, reached = _steps(access.segments, whole)
+        steps[:0] = [rosgraph.FieldStep(name=name) for name in fields]
+        enum = reached.type if isinstance(reached, robosc.ComplexDataTypeReference) else None
+        if isinstance(enum, robosc.EnumDataType):
+            argument = rosgraph.WireAccess(steps=steps, type=self.basic_type(enum.type))
+            return rosgraph.ConversionCall(conversion=self.conversion(enum), argument=argument)
+        return rosgraph.WireAccess(steps=steps, type=self.basic_type(reached))
 
     def basic_type(self, kind: robosc.DataType) -> ex.Type | None:
-        return self.type(kind) if isinstance(kind, robosc.BasicDataType) else None
+        return self.declarations.type(kind) if isinstance(kind, robosc.BasicDataType) else None
 
     def conversion(self, enum: robosc.EnumDataType) -> rosgraph.Conversion:
         """Listing 5.13."""
         if enum not in self.conversions:
             conversion = rosgraph.Conversion(
                 name=self.conversion_names.fresh(enum.name),
-                enumeration=self.enumerations.enumeration(enum),
-                default=self.enumerations.literal(default_value(enum)),
+                enumeration=self.declarations.enumeration(enum),
+                default=self.declarations.literal(default_value(enum)),
                 source=enum.source,
             )
             self.conversions[enum] = conversion
             for rule in enum.rules:
                 if isinstance(rule, robosc.EnumTransformationRule):
-                    condition = self.expressions(rule.condition, None, self.argument(enum.type))
+                    condition = self.expressions(rule.condition, None, partial(self.wire, enum.type, ()))
                     conversion.rules.append(
                         rosgraph.ConversionRule(
                             condition=condition,
-                            literal=self.enumerations.literal(rule.value),
+                            literal=self.declarations.literal(rule.value),
                             source=rule.source,
                         )
                     )
             self.graph.conversions.append(conversion)
         return self.conversions[enum]
-
-    def argument(self, whole: robosc.DataType) -> Callable[[Sequence[robosc.AccessSegment]], ex.Expression]:
-        """What `value` with its segments means in the rules of an enum over this type."""
-
-        def access(segments: Sequence[robosc.AccessSegment]) -> ex.Expression:
-            steps, reached = _steps(segments, whole)
-            if isinstance(reached, robosc.ComplexDataTypeReference) and isinstance(reached.type, robosc.EnumDataType):
-                nested = rosgraph.WireAccess(steps=steps, type=self.basic_type(reached.type.type))
-                return rosgraph.ConversionCall(conversion=self.conversion(reached.type), argument=nested)
-            return rosgraph.WireAccess(steps=steps, type=self.basic_type(reached))
-
-        return access
 
     # What events change in the node
 
@@ -299,13 +259,13 @@ class _Transformation:
             assignments = {owned: assignment for owned, assignment in assigned.items() if owned in self.variables}
             if not assignments:
                 continue
-            event, data = self.event_and_data(transition, instance)
             places = self.trace.behaviours[instance].locations
             reaction = rosgraph.Reaction(
-                event=event,
+                event=self.trace.event_of(transition, instance),
                 locations=list(places) if state is None else [self.trace.locations[instance, state]],
                 source=transition.source,
             )
+            data = self.data(transition, instance)
             for owned, assignment in assignments.items():
                 variable = self.variables[owned]
                 value = self.expressions(assignment.value, instance, data)
@@ -314,17 +274,14 @@ class _Transformation:
                 )
             self.graph.reactions.append(reaction)
 
-    def event_and_data(
-        self, transition: robosc.Transition, instance: Instance
-    ) -> tuple[sct.Event, Callable[[Sequence[robosc.AccessSegment]], ex.Expression] | None]:
-        if isinstance(transition, robosc.TauTransition):
-            return self.trace.taus[instance, transition], None
-        assert isinstance(transition, robosc.ResultTransition)
+    def data(self, transition: robosc.Transition, instance: Instance) -> Value | None:
+        """What `value` means in a transition; None where its event brings no data."""
+        if not isinstance(transition, robosc.ResultTransition):
+            return None
         port = self.instances.port(transition.communicationType, instance)
-        assert port is not None
-        event = self.trace.event(port, EVENT_OF[transition.resultType.name])
-        carried = _received(port, transition.resultType)
-        return event, None if carried is None else self.wire(carried)
+        event = event_of(transition.communicationType, transition.resultType)
+        has_data = port is not None and event is not None and event.feature and not event.is_sent
+        return self.value_of(port, event) if has_data else None  # type: ignore[arg-type]
 
 
 def _wire_type(kind: robosc.DataType) -> robosc.DataType:
@@ -350,29 +307,3 @@ def _steps(
             steps.append(rosgraph.IndexStep(index=segment.index))
             reached = reached.type
     return steps, reached
-
-
-def _sent(port: PortInstance) -> _Part:
-    match port.communication:
-        case robosc.Message() as message:
-            return _Part(port, message.type, Section.MESSAGE)
-        case robosc.Service() as service:
-            return _Part(port, service.requestType, Section.REQUEST)
-    assert isinstance(port.communication, robosc.Action)
-    return _Part(port, port.communication.requestType, Section.GOAL)
-
-
-def _received(port: PortInstance, result_type: robosc.ResultType) -> _Part | None:
-    """The data that an event of a communication brings; None for the events that bring none."""
-    communication = port.communication
-    if result_type == robosc.ResultType.feedback and isinstance(communication, robosc.Action):
-        return _Part(port, communication.feedbackType, Section.FEEDBACK)
-    if result_type != robosc.ResultType.response:
-        return None
-    match communication:
-        case robosc.Message():
-            return _Part(port, communication.type, Section.MESSAGE)
-        case robosc.Service():
-            return _Part(port, communication.responseType, Section.RESPONSE)
-    assert isinstance(communication, robosc.Action)
-    return _Part(port, communication.responseType, Section.RESULT)

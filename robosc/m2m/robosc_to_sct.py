@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robosc.m2m.constants import initial_value, literal
-from robosc.m2m.enumerations import Enumerations
-from robosc.m2m.sct_expressions import SctExpressions
-from robosc.m2m.trace import EVENT_OF, Trace
+from robosc.m2m.declarations import Declarations
+from robosc.m2m.expressions import SctExpressions
+from robosc.m2m.trace import Trace
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc, sct
-from robosc.semantics.cone_of_influence import Data, cone_of_influence, transitions
+from robosc.semantics.communication import CONTROLLABLE, data_type, events
+from robosc.semantics.cone_of_influence import cone_of_influence, transitions
 from robosc.semantics.instances import Instance, Instances, InstanceVariable, PortInstance
 from robosc.semantics.naming import Names
 from robosc.semantics.printing import RoboscPrinter, conjunction, disjunction
@@ -20,6 +20,27 @@ if TYPE_CHECKING:
 
 #: What comes from outside, or must always be possible: a component elsewhere than in the right state ignores it.
 _NEVER_BLOCKED = (sct.EventKind.response, sct.EventKind.error, sct.EventKind.feedback, sct.EventKind.cancel)
+
+_IDLE = "idle"
+_SERVICE = (
+    (_IDLE, sct.EventKind.trigger, "wait_for_response"),
+    ("wait_for_response", sct.EventKind.response, "ready"),
+    ("wait_for_response", sct.EventKind.error, "error"),
+    ("ready", sct.EventKind.reset, _IDLE),
+    ("error", sct.EventKind.reset, _IDLE),
+)
+_ACTION = (
+    (_IDLE, sct.EventKind.trigger, "executing"),
+    ("executing", sct.EventKind.feedback, "executing"),
+    ("executing", sct.EventKind.response, "ready"),
+    ("executing", sct.EventKind.error, "error"),
+    ("executing", sct.EventKind.cancel, _IDLE),
+    ("ready", sct.EventKind.reset, _IDLE),
+    ("error", sct.EventKind.reset, _IDLE),
+)
+_MESSAGE = (("ready", sct.EventKind.trigger, "ready"), ("ready", sct.EventKind.response, "ready"))
+#: Listings 5.1 to 5.3: the edges of the plant of each communication; it begins, and may end, where the first one does.
+_PLANTS = {robosc.Message: _MESSAGE, robosc.Service: _SERVICE, robosc.Action: _ACTION}
 
 
 def transform(robot: robosc.Robot) -> tuple[sct.SupervisoryControlModel, Trace]:
@@ -36,8 +57,8 @@ class _Transformation:
         self.robot = robot
         self.instances = Instances(robot)
         self.model = sct.SupervisoryControlModel(name=robot.name, source=robot.source)
-        self.trace = Trace(self.instances, cone_of_influence(self.instances), self.model, Enumerations(self.model))
-        self.enumerations = self.trace.enumerations
+        self.declarations = Declarations(self.model)
+        self.trace = Trace(self.instances, cone_of_influence(self.instances), self.model, self.declarations)
         self.expressions = SctExpressions(self.trace)
         self.print = RoboscPrinter()
         self.plant_names = Names()
@@ -51,7 +72,7 @@ class _Transformation:
                 self.behaviour(instance)
         for instance in self.instances:
             for variable in self.needed_variables(instance):
-                self.initial(variable)
+                self.trace.variables[variable].initial = self.declarations.initial(variable.variable)
             if instance.automaton is not None:
                 self.edges(instance)
         for port in self.instances.ports():
@@ -74,12 +95,21 @@ class _Transformation:
         self.model.plants.append(plant)
         self.trace.plants[port] = plant
         self.trace.origins[plant] = communication
-        if isinstance(communication, robosc.Message):
-            self.message(plant, port, communication)
-        elif isinstance(communication, robosc.Service):
-            self.service(plant, port)
-        else:
-            self.action(plant, port)
+        made: dict[str, sct.Event] = {}
+        for row in events(communication):
+            controllable = row.kind in CONTROLLABLE
+            name = f"{'c' if controllable else 'u'}_{row.kind.name}"
+            event = sct.Event(name=name, kind=row.kind, controllable=controllable, source=plant.source)
+            plant.events.append(event)
+            made[row.kind.name] = self.trace.events[port, row.kind.name] = event
+        edges = [
+            (origin, made[kind.name], end) for origin, kind, end in _PLANTS[type(communication)] if kind.name in made
+        ]
+        names = dict.fromkeys(name for origin, _, end in edges for name in (origin, end))
+        first = next(iter(names))
+        places = {name: _location(plant, name, initial=name == first, marked=name == first) for name in names}
+        for origin, event, end in edges:
+            _edge(places[origin], event, places[end])
         self.inputs(plant, port)
 
     def communication_name(self, port: PortInstance) -> str:
@@ -87,89 +117,19 @@ class _Transformation:
         shared = self.instances.is_shared(port.communication)
         return f"{port.instance.name}_{name}" if shared else name
 
-    def message(self, plant: sct.Plant, port: PortInstance, message: robosc.Message) -> None:
-        """Listing 5.1."""
-        outgoing = message.direction == robosc.MessageDirection.outgoing
-        event = self.event(plant, port, sct.EventKind.response if outgoing else sct.EventKind.trigger)
-        location = _location(plant, "ready", initial=True, marked=True)
-        _edge(location, event, location)
-
-    def service(self, plant: sct.Plant, port: PortInstance) -> None:
-        """Listing 5.2."""
-        trigger = self.event(plant, port, sct.EventKind.trigger)
-        reset = self.event(plant, port, sct.EventKind.reset)
-        response = self.event(plant, port, sct.EventKind.response)
-        error = self.event(plant, port, sct.EventKind.error)
-        idle = _location(plant, "idle", initial=True, marked=True)
-        waiting, ready, failed = (_location(plant, name) for name in ("wait_for_response", "ready", "error"))
-        _edge(idle, trigger, waiting)
-        _edge(waiting, response, ready)
-        _edge(waiting, error, failed)
-        _edge(ready, reset, idle)
-        _edge(failed, reset, idle)
-
-    def action(self, plant: sct.Plant, port: PortInstance) -> None:
-        """Listing 5.3."""
-        trigger = self.event(plant, port, sct.EventKind.trigger)
-        reset = self.event(plant, port, sct.EventKind.reset)
-        cancel = self.event(plant, port, sct.EventKind.cancel)
-        feedback = self.event(plant, port, sct.EventKind.feedback)
-        response = self.event(plant, port, sct.EventKind.response)
-        error = self.event(plant, port, sct.EventKind.error)
-        idle = _location(plant, "idle", initial=True, marked=True)
-        executing, ready, failed = (_location(plant, name) for name in ("executing", "ready", "error"))
-        _edge(idle, trigger, executing)
-        _edge(executing, feedback, executing)
-        _edge(executing, response, ready)
-        _edge(executing, error, failed)
-        _edge(executing, cancel, idle)
-        _edge(ready, reset, idle)
-        _edge(failed, reset, idle)
-
-    def event(self, plant: sct.Plant, port: PortInstance, kind: sct.EventKind) -> sct.Event:
-        controllable = kind in (sct.EventKind.trigger, sct.EventKind.reset, sct.EventKind.cancel)
-        event = sct.Event(
-            name=f"{'c' if controllable else 'u'}_{kind.name}",
-            kind=kind,
-            controllable=controllable,
-            source=plant.source,
-        )
-        plant.events.append(event)
-        self.trace.events[port, kind.name] = event
-        return event
-
     def inputs(self, plant: sct.Plant, port: PortInstance) -> None:
-        """Algorithm 1, for what is needed."""
+        """Algorithm 1, for what is in the cone of influence."""
         names = Names()
         for data in self.trace.cone.data:
             if data.port == port:
-                kind = EVENT_OF[data.result_type.name]
-                name = "_".join([f"i_{kind.name}", *(part.name for part in data.path)])
-                declared = sct.Input(name=names.fresh(name), type=self.type(self.data_type(data)))
-                plant.inputs.append(declared)
-                self.trace.event(port, kind).inputs.append(declared)
-                self.trace.inputs[data] = declared
-
-    @staticmethod
-    def data_type(data: Data) -> robosc.DataType:
-        if data.path:
-            return data.path[-1].type
-        communication = data.port.communication
-        if isinstance(communication, robosc.Message):
-            return communication.type
-        assert isinstance(communication, (robosc.Service, robosc.Action))
-        if isinstance(communication, robosc.Action) and data.result_type == robosc.ResultType.feedback:
-            return communication.feedbackType
-        return communication.responseType
-
-    def type(self, kind: robosc.DataType) -> ex.Type:
-        if isinstance(kind, robosc.BooleanDataType):
-            return ex.BooleanType()
-        if isinstance(kind, robosc.IntegerDataType):
-            return ex.IntegerType(minimum=kind.minimum, maximum=kind.maximum)
-        assert isinstance(kind, robosc.ComplexDataTypeReference)
-        assert isinstance(kind.type, robosc.EnumDataType)
-        return ex.EnumerationType(enumeration=self.enumerations.enumeration(kind.type))
+                name = "_".join([f"i_{data.event.kind.name}", *(part.name for part in data.path)])
+                whole = data_type(port.communication, data.event)
+                declared = data.path[-1].type if data.path else whole
+                assert declared is not None
+                made = sct.Input(name=names.fresh(name), type=self.declarations.type(declared))
+                plant.inputs.append(made)
+                self.trace.event(port, data.event.kind).inputs.append(made)
+                self.trace.inputs[data] = made
 
     # Behaviour
 
@@ -194,7 +154,7 @@ class _Transformation:
         for owned in self.needed_variables(instance):
             variable = sct.DiscreteVariable(
                 name=names.fresh(owned.variable.name),
-                type=self.type(owned.variable.type),
+                type=self.declarations.type(owned.variable.type),
                 source=owned.variable.source,
             )
             plant.variables.append(variable)
@@ -221,17 +181,13 @@ class _Transformation:
         )
         return [owned for owned in declared if owned in self.trace.cone.variables]
 
-    def initial(self, owned: InstanceVariable) -> None:
-        value = initial_value(owned.variable)
-        if isinstance(value, robosc.EnumValue):
-            value = self.enumerations.literal(value)
-        self.trace.variables[owned].initial = literal(value)
-
     def edges(self, instance: Instance) -> None:
         everywhere = [transition for transition, state in transitions(instance) if state is None]
         mentioned = [
             event
-            for event in dict.fromkeys(self.event_of(transition, instance) for transition, _ in transitions(instance))
+            for event in dict.fromkeys(
+                self.trace.event_of(transition, instance) for transition, _ in transitions(instance)
+            )
             if event.kind in _NEVER_BLOCKED
         ]
         for state in _states(instance):
@@ -243,25 +199,16 @@ class _Transformation:
                 if event not in present:
                     _edge(location, event, location)
 
-    def event_of(self, transition: robosc.Transition, instance: Instance) -> sct.Event:
-        """Table 5.1, and an event of its own for each tau transition."""
-        if isinstance(transition, robosc.TauTransition):
-            return self.trace.taus[instance, transition]
-        assert isinstance(transition, robosc.ResultTransition)
-        port = self.instances.port(transition.communicationType, instance)
-        assert port is not None
-        return self.trace.event(port, EVENT_OF[transition.resultType.name])
-
     def edge(self, location: sct.Location, transition: robosc.Transition, instance: Instance) -> None:
         target = location if transition.target is None else self.trace.locations[instance, transition.target]
-        edge = _edge(location, self.event_of(transition, instance), target)
+        edge = _edge(location, self.trace.event_of(transition, instance), target)
         edge.source = transition.source
         self.trace.origins[edge] = transition
         if isinstance(transition, robosc.TauTransition) and transition.guard is not None:
-            edge.guard = self.expressions.condition(transition.guard, instance)
+            edge.guard = self.expressions(transition.guard, instance)
         for owned, assignment in self.instances.assignments(transition, instance).items():
             if owned in self.trace.variables:
-                value = self.expressions.value(assignment.value, instance, transition)
+                value = self.expressions(assignment.value, instance, transition)
                 edge.updates.append(
                     sct.Update(
                         variable=self.trace.variables[owned],
@@ -298,7 +245,7 @@ class _Transformation:
             edge.guard = self.none_holds(statements) if provided is None else self.holds(provided)
 
     def holds(self, statement: robosc.ProvideStatement) -> ex.Expression | None:
-        return None if statement.condition is None else self.expressions.condition(statement.condition, None)
+        return None if statement.condition is None else self.expressions(statement.condition, None)
 
     def none_holds(self, statements: list[robosc.ProvideStatement]) -> ex.Expression | None:
         conditions = [self.holds(statement) for statement in statements]
@@ -330,7 +277,7 @@ class _Transformation:
         target = sct.Requirement(
             event=self.trace.event(port, sct.EventKind.trigger),
             kind=sct.RequirementKind.disables if disables else sct.RequirementKind.needs,
-            condition=self.expressions.condition(requirement.condition, None),
+            condition=self.expressions(requirement.condition, None),
             text=f"requirement {condition} disables {name}" if disables else f"requirement {name} needs {condition}",
             source=requirement.source,
         )
@@ -341,7 +288,7 @@ class _Transformation:
         """Algorithm 2, starting at false: an action is cancelled exactly when it could not be started any more."""
         broken: list[ex.Expression] = []
         for requirement in requirements:
-            condition = self.expressions.condition(requirement.condition, None)
+            condition = self.expressions(requirement.condition, None)
             disables = isinstance(requirement, robosc.DisablesRequirement)
             broken.append(condition if disables else ex.Negation(operand=condition))
         name = self.shown(port)

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from itertools import groupby
-from typing import TYPE_CHECKING
+import math
+from itertools import groupby, product
+from operator import itemgetter
+from typing import NamedTuple, TypeAlias
 
-from robosc.m2m.constants import literal
+from robosc.m2m.declarations import literal
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 from robosc.semantics.cone_of_influence import LARGEST_TABLE
-from robosc.semantics.evaluation import Value, evaluate
+from robosc.semantics.evaluation import Program, Value
 from robosc.semantics.printing import conjunction, disjunction
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+from robosc.semantics.walks import copied, parts
 
 
 class TooLargeError(Exception):
@@ -24,72 +24,89 @@ class TooLargeError(Exception):
         super().__init__(f"{count} combinations of values")
 
 
-def tabulate(
-    comparison: ex.Expression,
-    references: Sequence[ex.Expression],
-    ranges: Sequence[range],
-    copy: Callable[[ex.Expression], ex.Expression],
-) -> ex.Expression:
-    """A condition over integer comparisons that holds exactly where the comparison does.
+class _Column(NamedTuple):
+    """Runs of values of the integer at `depth`, each with what the comparison still depends on; none: it is false."""
 
-    `references` are the integer references in it, each in another object than the comparison's own; `copy` makes a
-    new reference of one of them. Raises TooLargeError.
-    """
-    count = 1
-    for values in ranges:
-        count *= len(values)
+    depth: int
+    runs: tuple[tuple[int, int, _Table], ...]
+
+
+#: Where a comparison holds, integer by integer; equal for equal conditions.
+_Table: TypeAlias = bool | _Column
+
+
+def tabulate(comparison: ex.Expression) -> ex.Expression:
+    """A condition over integer comparisons that holds exactly where the comparison does. Raises TooLargeError."""
+    references = {_declaration(part): part for part in parts(comparison) if _declaration(part) is not None}
+    ranges = [_range(reference) for reference in references]
+    count = math.prod(map(len, ranges))
     if count > LARGEST_TABLE:
         raise TooLargeError(count)
-    keys = [_key(reference) for reference in references]
-
-    def table(depth: int, values: Mapping[object, int]) -> ex.Expression:
-        if depth == len(keys):
-            result = evaluate(comparison, lambda reference: values[_key(reference)])
-            return ex.BooleanLiteral(value=bool(result))
-        columns = [(value, table(depth + 1, {**values, keys[depth]: value})) for value in ranges[depth]]
-        alternatives: list[ex.Expression] = []
-        for shape, group in groupby(columns, key=lambda column: _shape(column[1])):
-            run = list(group)
-            if shape == "false":
-                continue
-            inside = _between(references[depth], run[0][0], run[-1][0], ranges[depth], copy)
-            rest = None if shape == "true" else run[0][1]
-            alternatives.append(conjunction(part for part in (inside, rest) if part) or ex.BooleanLiteral(value=True))
-        return disjunction(alternatives) or ex.BooleanLiteral(value=False)
-
-    return table(0, {})
+    position = {reference: number for number, reference in enumerate(references)}
+    holds = Program[Value](comparison, lambda reference: itemgetter(position[_declaration(reference)]))
+    rows: list[_Table] = [bool(holds(values)) for values in product(*ranges)]
+    for depth in range(len(ranges) - 1, -1, -1):
+        width = len(ranges[depth])
+        rows = [_column(depth, ranges[depth], rows[first : first + width]) for first in range(0, len(rows), width)]
+    return _condition(rows[0], list(references.values()), ranges)
 
 
-def _between(
-    reference: ex.Expression, low: int, high: int, whole: range, copy: Callable[[ex.Expression], ex.Expression]
-) -> ex.Expression | None:
+def _column(depth: int, whole: range, rows: list[_Table]) -> _Table:
+    """The runs of values with equal tables; where all are equal, that table: it does not depend on the integer."""
+    runs: list[tuple[int, int, _Table]] = []
+    table: _Table
+    for table, group in groupby(zip(whole, rows, strict=True), key=lambda row: row[1]):
+        values = [value for value, _ in group]
+        if len(values) == len(whole):
+            return table
+        if table is not False:
+            runs.append((values[0], values[-1], table))
+    return _Column(depth, tuple(runs))
+
+
+def _condition(table: _Table, references: list[ex.Expression], ranges: list[range]) -> ex.Expression:
+    """The condition of a table: no deeper than integers of two values or more that fit into the largest one."""
+    if isinstance(table, bool):
+        return ex.BooleanLiteral(value=table)
+    alternatives = []
+    for low, high, rest in table.runs:
+        inside = _between(references[table.depth], low, high, ranges[table.depth])
+        alternatives.append(_all(inside if rest is True else [*inside, _condition(rest, references, ranges)]))
+    found = disjunction(alternatives)
+    assert found is not None
+    return found
+
+
+def _between(reference: ex.Expression, low: int, high: int, whole: range) -> list[ex.Expression]:
     """`low <= reference <= high`, without the bounds that the range has anyway."""
-    if low == high and len(whole) > 1:
-        return ex.Equation(left=copy(reference), right=literal(low))
-    parts: list[ex.Expression] = []
+    if low == high:
+        return [ex.Equation(left=copied(reference), right=literal(low))]
+    bounds: list[ex.Expression] = []
     if low > whole[0]:
-        parts.append(ex.GreaterOrEqual(left=copy(reference), right=literal(low)))
+        bounds.append(ex.GreaterOrEqual(left=copied(reference), right=literal(low)))
     if high < whole[-1]:
-        parts.append(ex.LessOrEqual(left=copy(reference), right=literal(high)))
-    return conjunction(parts)
+        bounds.append(ex.LessOrEqual(left=copied(reference), right=literal(high)))
+    return bounds
 
 
-def _key(reference: ex.Expression) -> Value:
-    if isinstance(reference, sct.VariableReference):
-        return reference.variable
-    assert isinstance(reference, sct.InputReference)
-    return reference.input
+def _all(conditions: list[ex.Expression]) -> ex.Expression:
+    found = conjunction(conditions)
+    assert found is not None
+    return found
 
 
-def _shape(expression: ex.Expression) -> str:
-    """Equal for equal trees over the same references, as tables of one comparison are."""
-    match expression:
-        case ex.BooleanLiteral():
-            return "true" if expression.value else "false"
-        case ex.IntegerLiteral():
-            return str(expression.value)
-        case ex.UnaryMinus():
-            return f"-{_shape(expression.operand)}"
-        case ex.BinaryExpression():
-            return f"({_shape(expression.left)} {type(expression).__name__} {_shape(expression.right)})"
-    return str(id(_key(expression)))
+def _declaration(reference: ex.Expression) -> sct.DiscreteVariable | sct.Input | None:
+    match reference:
+        case sct.VariableReference():
+            return reference.variable
+        case sct.InputReference():
+            return reference.input
+    return None
+
+
+def _range(declared: sct.DiscreteVariable | sct.Input | None) -> range:
+    kind = declared.type if declared is not None else None
+    assert isinstance(kind, ex.IntegerType)
+    assert kind.minimum is not None
+    assert kind.maximum is not None
+    return range(kind.minimum, kind.maximum + 1)

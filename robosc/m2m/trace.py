@@ -5,24 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from robosc.metamodel import sct
+from robosc.metamodel import robosc
+from robosc.semantics.communication import event_of
 
 if TYPE_CHECKING:
-    from robosc.m2m.enumerations import Enumerations
+    from robosc.m2m.declarations import Declarations
     from robosc.metamodel import expression as ex
-    from robosc.metamodel import robosc
+    from robosc.metamodel import sct
     from robosc.semantics.cone_of_influence import ConeOfInfluence, Data
     from robosc.semantics.instances import Instance, Instances, InstanceVariable, PortInstance
-
-
-#: Table 5.1: the plant's event that a result type means.
-EVENT_OF = {
-    "request": sct.EventKind.trigger,
-    "response": sct.EventKind.response,
-    "error": sct.EventKind.error,
-    "feedback": sct.EventKind.feedback,
-    "cancel": sct.EventKind.cancel,
-}
 
 
 @dataclass
@@ -32,7 +23,7 @@ class Trace:
     instances: Instances
     cone: ConeOfInfluence
     model: sct.SupervisoryControlModel
-    enumerations: Enumerations
+    declarations: Declarations
     plants: dict[PortInstance, sct.Plant] = field(default_factory=dict)
     events: dict[tuple[PortInstance, str], sct.Event] = field(default_factory=dict)
     inputs: dict[Data, sct.Input] = field(default_factory=dict)
@@ -44,5 +35,16 @@ class Trace:
     origins: dict[ex.Located, ex.Located] = field(default_factory=dict)
 
     def event(self, port: PortInstance, kind: sct.EventKind) -> sct.Event:
-        """The event of that kind of a communication; KeyError where its kind of communication has none."""
+        """The event of that kind of a port; KeyError where its kind of communication has none."""
         return self.events[port, kind.name]
+
+    def event_of(self, transition: robosc.Transition, instance: Instance) -> sct.Event:
+        """What a transition of an instance reacts to (thesis table 5.1); each tau transition has its own event."""
+        if isinstance(transition, robosc.TauTransition):
+            return self.taus[instance, transition]
+        assert isinstance(transition, robosc.ResultTransition)
+        port = self.instances.port(transition.communicationType, instance)
+        named = event_of(transition.communicationType, transition.resultType)
+        assert port is not None
+        assert named is not None
+        return self.event(port, named.kind)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc
-from robosc.semantics.typing import received_data
+from robosc.semantics.communication import PortEvent, data_type, event_of
 from robosc.semantics.walks import parts
 
 if TYPE_CHECKING:
@@ -22,10 +22,10 @@ LARGEST_TABLE = 1 << 16
 
 @dataclass(frozen=True)
 class Data:
-    """A part of what an event carries: the properties on the way from the whole to it; none: the whole."""
+    """A part of what an event of a port carries: the properties on the way from the whole to it; none: the whole."""
 
     port: PortInstance
-    result_type: robosc.ResultType
+    event: PortEvent
     path: tuple[robosc.ObjectProperty, ...]
 
 
@@ -139,7 +139,9 @@ def read_type(assigned: Assigned, access: robosc.Access) -> robosc.DataType | No
         transition = assigned.transition
         if not isinstance(transition, robosc.ResultTransition) or transition.communicationType is None:
             return None
-        return received_data(transition.communicationType.communicationType, transition.resultType)
+        event = event_of(transition.communicationType, transition.resultType)
+        carried = event if event is not None and not event.is_sent else None
+        return data_type(transition.communicationType.communicationType, carried)
     last = segments[-1]
     return last.property.type if isinstance(last, robosc.PropertySegment) and last.property else None
 
@@ -149,8 +151,11 @@ def _read_data(instances: Instances, assigned: Assigned, result: ConeOfInfluence
     if not isinstance(transition, robosc.ResultTransition):
         return
     port = instances.port(transition.communicationType, assigned.instance)
+    event = event_of(transition.communicationType, transition.resultType)
+    if port is None or event is None:
+        return
     for access in accesses(assigned.assignment.value):
         path = property_path(access)
-        if access.value and port is not None and path is not None:
-            data = Data(port, transition.resultType, path)
+        if access.value and path is not None:
+            data = Data(port, event, path)
             result.data.setdefault(data, Reason(access, assigned.instance, assigned.variable))

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
 from robosc.metamodel import rosgraph, sct
+from robosc.semantics.communication import data_type, event, sent_type
 from robosc.semantics.operators import CONDITIONS, Operator, Rule, operator_of
 from robosc.semantics.walks import fold
 
@@ -114,43 +115,16 @@ def declared_type(data_type: rsc.DataType | ex.Type | None) -> Type:
     return UNKNOWN if data_type is None else _BASIC[type(data_type)]
 
 
-def events(communication: rsc.CommunicationType | None) -> tuple[str, ...]:
-    """The events of a communication that a transition may name."""
-    match communication:
-        case rsc.Message():
-            return ("request",) if str(communication.direction) == "incoming" else ("response",)
-        case rsc.Service():
-            return "request", "response", "error"
-        case rsc.Action():
-            return "request", "response", "error", "feedback", "cancel"
-    return ()
-
-
-def received_data(
-    communication: rsc.CommunicationType | None, result_type: rsc.ResultType | None
-) -> rsc.DataType | None:
-    """The declared type of the data that an event of a communication carries to the component; None where none."""
-    event = str(result_type)
-    match communication:
-        case rsc.Message() if event == "response":
-            return communication.type
-        case rsc.Service() | rsc.Action() if event == "response":
-            return communication.responseType
-        case rsc.Action() if event == "feedback":
-            return communication.feedbackType
-    return None
-
-
-def event_data_type(communication: rsc.CommunicationType | None, result_type: rsc.ResultType) -> Type | None:
+def event_data_type(communication: rsc.CommunicationType | None, result_type: rsc.ResultType | None) -> Type | None:
     """The type of the data that an event of a communication carries to the component, which `value` reads.
 
     None for the events without data: requests, errors and cancels. UNKNOWN for an event that the communication does
     not have (the rule `result-type`) and where the communication is unresolved.
     """
-    event = str(result_type)
-    if event in events(communication) and event in {"request", "error", "cancel"}:
-        return None
-    return declared_type(received_data(communication, result_type)) if event in events(communication) else UNKNOWN
+    row = event(communication, result_type)
+    if row is None:
+        return UNKNOWN
+    return None if row.is_sent or not row.feature else declared_type(data_type(communication, row))
 
 
 def provided_data_type(communication: rsc.CommunicationType | None) -> Type:
@@ -159,12 +133,7 @@ def provided_data_type(communication: rsc.CommunicationType | None) -> Type:
     UNKNOWN where nothing goes out (an outgoing message is the component's own, the rule `data-provisioning`) and where
     the communication is unresolved.
     """
-    match communication:
-        case rsc.Message():
-            return declared_type(communication.type) if str(communication.direction) == "incoming" else UNKNOWN
-        case rsc.Service() | rsc.Action():
-            return declared_type(communication.requestType)
-    return UNKNOWN
+    return declared_type(sent_type(communication))
 
 
 def value_type(element: ex.Located) -> Type | None:

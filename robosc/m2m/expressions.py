@@ -1,0 +1,150 @@
+"""Expressions of a robot model as expressions of its sct model, and as those that the ROS node evaluates."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robosc.diagnostics import Diagnostic, ModelError, Severity
+from robosc.m2m.tabulation import TooLargeError, tabulate
+from robosc.metamodel import expression as ex
+from robosc.metamodel import robosc, rosgraph, sct
+from robosc.metamodel.places import place
+from robosc.semantics.communication import event_of
+from robosc.semantics.cone_of_influence import Data, property_path
+from robosc.semantics.evaluation import evaluate
+from robosc.semantics.operators import COMPARISONS, Rule, operator_of
+from robosc.semantics.typing import DOUBLE, Types
+from robosc.semantics.walks import fold, with_operands
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from robosc.m2m.declarations import Declarations
+    from robosc.m2m.trace import Trace
+    from robosc.semantics.instances import Instance, InstanceVariable
+
+    #: What `value` with its segments means where an expression stands; None: there is no `value`.
+    Read = Callable[[robosc.Access], ex.Expression] | None
+
+
+class _Expressions:
+    """What both have in common: states, variables and enum values become references, literals stay."""
+
+    def __init__(
+        self,
+        trace: Trace,
+        declarations: Declarations,
+        variables: Mapping[InstanceVariable, rosgraph.NodeVariable],
+    ) -> None:
+        self._trace = trace
+        self._declarations = declarations
+        self._variables = variables
+        self._types = Types()
+
+    def _reference(self, access: robosc.Access, within: Instance | None) -> ex.Expression:
+        instances = self._trace.instances
+        if isinstance(access.item, robosc.State):
+            instance = instances.instance(access.component, within)
+            assert instance is not None
+            return sct.LocationReference(location=self._trace.locations[instance, access.item])
+        if isinstance(access.item, robosc.EnumValue):
+            return ex.EnumerationLiteralReference(literal=self._declarations.literal(access.item))
+        owned = instances.variable(access, within)
+        assert owned is not None
+        if owned in self._trace.variables:
+            return sct.VariableReference(variable=self._trace.variables[owned])
+        return rosgraph.NodeVariableReference(variable=self._variables[owned])
+
+    def _some_double(self, expressions: Sequence[ex.Expression]) -> bool:
+        return DOUBLE in [self._types(expression) for expression in expressions]
+
+
+class SctExpressions(_Expressions):
+    """Translates the expressions that the supervisor needs; what they read is in the trace already."""
+
+    def __init__(self, trace: Trace) -> None:
+        super().__init__(trace, trace.declarations, {})
+
+    def __call__(
+        self, expression: ex.Expression, within: Instance | None, transition: robosc.Transition | None = None
+    ) -> ex.Expression:
+        """A condition, or what a transition assigns, whose event's data it may read.
+
+        `within` is the instance whose text it is. Raises ModelError where a comparison of doubles has too many cases.
+        """
+
+        def translated(original: ex.Expression, operands: list[ex.Expression]) -> ex.Expression:
+            match original:
+                case robosc.Access(value=True):
+                    return self._input(original, within, transition)
+                case robosc.Access():
+                    return self._reference(original, within)
+                case ex.Equation() | ex.Inequation() if isinstance(original.left, ex.StringLiteral):
+                    # The supervisor needs no string, so that both sides are constants.
+                    return ex.BooleanLiteral(value=bool(evaluate(original, lambda reference: reference)))
+            if operator_of(original) is None:
+                return type(original)(value=original.value)  # type: ignore[attr-defined,call-arg]
+            made = with_operands(original, operands)
+            return _table(made, original) if isinstance(made, COMPARISONS) and self._some_double(operands) else made
+
+        return fold(translated, expression)
+
+    def _input(
+        self, access: robosc.Access, within: Instance | None, transition: robosc.Transition | None
+    ) -> sct.InputReference:
+        assert isinstance(transition, robosc.ResultTransition)
+        port = self._trace.instances.port(transition.communicationType, within)
+        event = event_of(transition.communicationType, transition.resultType)
+        path = property_path(access)
+        assert port is not None
+        assert event is not None
+        assert path is not None
+        return sct.InputReference(input=self._trace.inputs[Data(port, event, path)])
+
+
+class NodeExpressions(_Expressions):
+    """Translates expressions and makes every conversion from integer to double explicit.
+
+    `variables` are the node's own, those that the supervisor does not need.
+    """
+
+    def __call__(self, expression: ex.Expression, within: Instance | None, data: Read = None) -> ex.Expression:
+        """The expression on the node's side; `within` is the instance whose text it is."""
+
+        def translated(original: ex.Expression, operands: list[ex.Expression]) -> ex.Expression:
+            if isinstance(original, robosc.Access):
+                if not original.value:
+                    return self._reference(original, within)
+                assert data is not None
+                return data(original)
+            row = operator_of(original)
+            if row is None:
+                return type(original)(value=original.value)  # type: ignore[attr-defined,call-arg]
+            mixed = {Rule.ORDERING, Rule.EQUALITY, Rule.ARITHMETIC}
+            if row.rule is Rule.DOUBLE or (row.rule in mixed and self._some_double(operands)):
+                operands = [self.as_double(operand) for operand in operands]
+            return with_operands(original, operands)
+
+        return fold(translated, expression)
+
+    def as_double(self, expression: ex.Expression) -> ex.Expression:
+        """The expression itself where it is a double, else its conversion."""
+        if self._types(expression) == DOUBLE:
+            return expression
+        if isinstance(expression, ex.IntegerLiteral):
+            return ex.DoubleLiteral(value=float(expression.value))
+        return ex.DoubleConversion(operand=expression)
+
+
+def _table(comparison: ex.Expression, original: ex.Expression) -> ex.Expression:
+    try:
+        return tabulate(comparison)
+    except TooLargeError as error:
+        finding = Diagnostic(
+            *place(original),
+            severity=Severity.ERROR,
+            rule="integer-range",
+            message=f"this comparison of doubles depends on {error}, too many to tabulate",
+            hint="compare integers, or give the integers smaller ranges",
+        )
+        raise ModelError([finding]) from error

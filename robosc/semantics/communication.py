@@ -1,0 +1,117 @@
+"""The events of messages, services and actions, and the data that each of them carries: one table for all rooms."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+from robosc.metamodel import robosc, sct
+from robosc.ros_types.wire import Section
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+
+class PortEvent(NamedTuple):
+    """An event of a kind of communication.
+
+    `name` is what transitions call it (thesis table 5.1); empty: no transition can name it. Its data stands in a
+    `section` of the ROS type, and the `feature` of the communication declares its type; None and empty: it has no data.
+    """
+
+    kind: sct.EventKind
+    name: str
+    section: Section | None = None
+    feature: str = ""
+
+    @property
+    def is_sent(self) -> bool:
+        """Whether the controller sends the data, or a component gets it."""
+        return self.kind == sct.EventKind.trigger
+
+
+_RESET = PortEvent(sct.EventKind.reset, "")
+_CANCEL = PortEvent(sct.EventKind.cancel, "cancel")
+_ERROR = PortEvent(sct.EventKind.error, "error")
+
+#: The events of each kind of communication, in the order of its plant; of a message only one of the two happens.
+EVENTS: Mapping[type[robosc.CommunicationType], tuple[PortEvent, ...]] = {
+    robosc.Message: (
+        PortEvent(sct.EventKind.trigger, "request", Section.MESSAGE, "type"),
+        PortEvent(sct.EventKind.response, "response", Section.MESSAGE, "type"),
+    ),
+    robosc.Service: (
+        PortEvent(sct.EventKind.trigger, "request", Section.REQUEST, "requestType"),
+        _RESET,
+        PortEvent(sct.EventKind.response, "response", Section.RESPONSE, "responseType"),
+        _ERROR,
+    ),
+    robosc.Action: (
+        PortEvent(sct.EventKind.trigger, "request", Section.GOAL, "requestType"),
+        _RESET,
+        _CANCEL,
+        PortEvent(sct.EventKind.feedback, "feedback", Section.FEEDBACK, "feedbackType"),
+        PortEvent(sct.EventKind.response, "response", Section.RESULT, "responseType"),
+        _ERROR,
+    ),
+}
+#: In the order in which the language lists them.
+_NAMES = ("request", "response", "error", "feedback", "cancel")
+#: What the controller does: these events are controllable.
+CONTROLLABLE = (sct.EventKind.trigger, sct.EventKind.reset, sct.EventKind.cancel)
+
+
+def events(communication: robosc.CommunicationType | None) -> tuple[PortEvent, ...]:
+    """The events of a communication; of a message the one that its direction means."""
+    rows = EVENTS.get(type(communication), ())  # type: ignore[arg-type]
+    if isinstance(communication, robosc.Message):
+        return rows[:1] if communication.direction == robosc.MessageDirection.incoming else rows[1:]
+    return rows
+
+
+def event_names(communication: robosc.CommunicationType | None) -> list[str]:
+    """The names of the events that a transition can react to."""
+    return sorted((event.name for event in events(communication) if event.name), key=_NAMES.index)
+
+
+def event(communication: robosc.CommunicationType | None, name: robosc.ResultType | None) -> PortEvent | None:
+    """The event that a transition names; None where the communication has no such event."""
+    return next((row for row in events(communication) if row.name == str(name)), None)
+
+
+def event_of(reference: robosc.CommunicationReference | None, name: robosc.ResultType | None) -> PortEvent | None:
+    """The same for a reference in a text; None also where it is not resolved."""
+    return event(reference.communicationType if reference else None, name)
+
+
+def sent(communication: robosc.CommunicationType | None) -> PortEvent | None:
+    """The event with which data goes out of the controller; None where none goes out."""
+    return next((row for row in events(communication) if row.is_sent), None)
+
+
+def carried(communication: robosc.CommunicationType) -> list[tuple[PortEvent, robosc.DataType]]:
+    """The events that carry data, in the order of the text, each with the type that is declared for it."""
+    rows = sorted((row for row in events(communication) if row.section), key=_section_index)
+    types = ((row, data_type(communication, row)) for row in rows)
+    return [(row, declared) for row, declared in types if declared is not None]
+
+
+def data_type(communication: robosc.CommunicationType | None, row: PortEvent | None) -> robosc.DataType | None:
+    """The declared type of the data of an event; None where it has none."""
+    return getattr(communication, row.feature) if row is not None and row.feature else None
+
+
+def sent_type(communication: robosc.CommunicationType | None) -> robosc.DataType | None:
+    """The declared type of the data that goes out of the controller; None where none goes out."""
+    return data_type(communication, sent(communication))
+
+
+def section_of(declared: robosc.DataType) -> Section:
+    """The section of the ROS type that a type in the text of a communication stands for; elsewhere a message."""
+    rows = EVENTS.get(type(declared.eContainer()), ())
+    owner = declared.eContainer()
+    sections = (row.section for row in rows if row.feature and getattr(owner, row.feature) is declared)
+    return next(sections, None) or Section.MESSAGE
+
+
+def _section_index(row: PortEvent) -> int:
+    return row.section.index if row.section else 0
