@@ -1,15 +1,14 @@
-"""The rules that a model must follow beyond its syntax (thesis 4.5): one small module a rule or family.
+"""The rules that a model must follow beyond its syntax (thesis 4.5): a module of `rules` a family.
 
-A new rule is a new module in this folder with a function decorated by `rule`, a page in `docs/rules`, and models in
-`tests/checks`.
+A new rule is a function decorated by `rule` in `rules`, a page in `docs/rules`, and models in `tests/checks`. What
+rules have in common stands beside this file.
 """
 
 from __future__ import annotations
 
-from importlib import import_module
-from pkgutil import iter_modules
 from typing import TYPE_CHECKING
 
+from robosc.checks import rules as _rules  # noqa: F401 - registers them
 from robosc.checks.libraries import reachable, remembering
 from robosc.checks.rule import RULES
 from robosc.diagnostics import Diagnostic, in_order
@@ -20,9 +19,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
     from robosc.metamodel import robosc as rsc
-
-for _module in iter_modules(__path__):
-    import_module(f"{__name__}.{_module.name}")
 
 
 def check(

@@ -48,6 +48,11 @@ class Finding:
         )
 
 
+def on_line(element: ex.Located) -> str:
+    """` (line 12)`, or nothing where the element comes from no text."""
+    return f" (line {element.source.span.line})" if element.source else ""
+
+
 def _goes_on(expression: Span, unread: Span) -> bool:
     """Whether text that can't be read may belong to an expression, as the point of `1.` does and the `3` of `2 3`."""
     behind = expression.end_line == unread.line and 0 <= unread.column - expression.end_column <= 1

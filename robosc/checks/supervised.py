@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
+from robosc.checks.definitions import unit_of
 from robosc.checks.libraries import fact, instances, reachable
 from robosc.checks.rule import Finding
 from robosc.metamodel import robosc as rsc
@@ -46,7 +47,7 @@ def supervised_faults(base: rsc.Base, search: Search) -> Iterator[Finding]:
             of_libraries = {fault.element for library in reachable(base) for fault in _faults(library, search)}
         if fault.element in of_libraries:
             continue
-        unit = _root(fault.element)
+        unit = unit_of(fault.element)
         place = fault.element if unit is base else _reference(base, fault.reason, result)
         if (place, fault.element) not in reported:
             reported.add((place, fault.element))
@@ -92,10 +93,3 @@ def _reference(base: rsc.Base, reason: Reason, result: ConeOfInfluence) -> rsc.A
     while reason.within is not None and reason.within.unit is not base and reason.variable is not None:
         reason = result.variables[reason.variable]
     return reason.access
-
-
-def _root(element: ex.Located) -> Any:
-    around = element
-    while around.eContainer() is not None:
-        around = around.eContainer()
-    return around

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, NamedTuple
 
 from robosc.checks.supervised import Fault, can_be_needed
@@ -10,7 +11,7 @@ from robosc.metamodel import robosc as rsc
 from robosc.semantics.cone_of_influence import LARGEST_TABLE, ConeOfInfluence, Reason, accesses, conditions, read_type
 from robosc.semantics.operators import COMPARISONS
 from robosc.semantics.typing import DOUBLE, Types, value_type
-from robosc.semantics.walks import operands
+from robosc.semantics.walks import fold, operands
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -48,21 +49,18 @@ def table_faults(instances: Instances, result: ConeOfInfluence) -> Iterator[Faul
 def _in_expression(
     instances: Instances, expression: ex.Expression | None, within: Instance | None, assigned: Assigned | None
 ) -> Iterator[Fault]:
-    value = value_type(expression) if expression else None
-    types = Types(value)
+    types = Types(value_type(expression) if expression else None)
+    reads: dict[ex.Expression | None, bool] = {}
+    fold(lambda part, inside: isinstance(part, rsc.Access) or any(inside), expression, memo=reads)
     pending = [expression]
     while pending:
         part = pending.pop()
         if isinstance(part, COMPARISONS) and DOUBLE in {types(part.left), types(part.right)}:
             yield from _too_many(instances, part, _COMPARISON, within, assigned)
-        elif isinstance(part, ex.Multiplication) and all(_reads(side) for side in (part.left, part.right)):
+        elif isinstance(part, ex.Multiplication) and reads[part.left] and reads[part.right]:
             yield from _too_many(instances, part, _PRODUCT, within, assigned)
         else:
             pending += reversed(operands(part))
-
-
-def _reads(expression: ex.Expression) -> bool:
-    return next(accesses(expression), None) is not None
 
 
 def _too_many(
@@ -81,9 +79,7 @@ def _too_many(
         elif access.value and assigned is not None:
             path = tuple(segment.property for segment in access.segments if isinstance(segment, rsc.PropertySegment))
             ranges[path] = _size(read_type(assigned, access))
-    count = 1
-    for size in ranges.values():
-        count *= size
+    count = math.prod(ranges.values())
     if count > limit.most:
         yield Fault(
             expression,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from robosc.checks.definitions import component_of
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
 from robosc.semantics.naming import written
@@ -158,10 +159,5 @@ def _text(expression: ex.Expression) -> str:
     """What stands there, if it is short enough to be repeated; names of the own component without it."""
     if not isinstance(expression, rsc.Access):
         return "(…)"
-    around = expression.eContainer()
-    while around is not None and not isinstance(around, rsc.Component):
-        around = around.eContainer()
-    text = RoboscPrinter()(expression)
-    return (
-        text.removeprefix(f"{written(around.name)}.") if around is not None and around is expression.component else text
-    )
+    text, own = RoboscPrinter()(expression), component_of(expression)
+    return text.removeprefix(f"{written(own.name)}.") if own is not None and own is expression.component else text

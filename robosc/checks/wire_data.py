@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
-from robosc.checks.declarations import communications
+from robosc.checks.definitions import communication_of, communications
 from robosc.metamodel import robosc as rsc
 from robosc.metamodel.reflection import tree
 from robosc.ros_types.wire import Nested, Section
@@ -49,7 +49,7 @@ class Carried:
 
 def carried_data(base: rsc.Base) -> Iterator[Carried]:
     """The data of all communications with an interface that the base itself defines, in the order of the text."""
-    for _, communication in communications(base):
+    for communication in communications(base):
         interface = communication.interface
         if interface is not None and interface.package and interface.type:
             for event, declared in carried(communication):
@@ -96,7 +96,7 @@ class UsedData:
                 self._read((transition.communicationType.communicationType, event), assignment.value)
 
     def _provided(self, statement: rsc.ProvideStatement) -> None:
-        communication = statement.communicationType.communicationType if statement.communicationType else None
+        communication = communication_of(statement.communicationType)
         touched = self._touched.setdefault((communication, sent(communication)), [])
         touched += [part for _, part in tree(statement) if isinstance(part, rsc.ObjectPropertyValue)]
 

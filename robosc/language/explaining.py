@@ -9,7 +9,7 @@ from robosc.language.grammar import first, is_reserved
 from robosc.language.outline import RULES
 from robosc.language.text import Repair
 from robosc.language.tokens import Kind, Token
-from robosc.semantics.naming import written
+from robosc.semantics.naming import enumeration, written
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -107,12 +107,6 @@ def did_you_mean(word: str, known: Iterable[str], *, cutoff: float) -> Repair | 
 def _alike(rule: str) -> set[str]:
     """What a text by a rule can begin with, also as symbols that nothing keeps apart from longer ones."""
     return {spelling for word in first(rule) for spelling in (word, word.partition("(?!")[0])}
-
-
-def enumeration(parts: Iterable[str]) -> str:
-    """`a, b or c`."""
-    *others, last = parts
-    return f"{', '.join(others)} or {last}" if others else last
 
 
 def hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) -> Repair | str | None:

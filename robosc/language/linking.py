@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from robosc.language.explaining import BASIC_TYPES, did_you_mean, enumeration
+from robosc.language.explaining import BASIC_TYPES, did_you_mean
 from robosc.language.interface_types import declare, is_made, link_interface, ros_properties, ros_property
 from robosc.language.scopes import File, Names, Scope, by_name
 from robosc.language.skipped import Declared
 from robosc.language.text import Repair
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
-from robosc.semantics.naming import written
+from robosc.semantics.naming import enumeration, written
 from robosc.semantics.typing import (
     UNKNOWN,
     ArrayType,

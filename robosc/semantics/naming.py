@@ -59,6 +59,12 @@ def written(name: str) -> str:
     return f"^{name}" if name in ROBOSC_KEYWORDS else name
 
 
+def enumeration(parts: Iterable[str]) -> str:
+    """`a, b or c`."""
+    *others, last = parts
+    return f"{', '.join(others)} or {last}" if others else last
+
+
 class Names:
     """The names of one scope; one that is taken gets underscores.
 

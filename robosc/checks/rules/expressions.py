@@ -1,15 +1,28 @@
-"""`type` (thesis 4.5.11, table 4.1): where expressions stand in a model, and which type each must have there."""
+"""`type` (thesis 4.5.11, table 4.1) and `argument`: where expressions stand, and which type each must have there."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robosc.checks.automata import assigned_variable, behaviours, sends_message, transitions
+from robosc.checks.definitions import (
+    assigned_variable,
+    communication_of,
+    of_kind,
+    sends_message,
+    transitions,
+    variables,
+)
 from robosc.checks.expression_types import CONSTANT, ENUM_RULE, ExpressionCheck, Place
 from robosc.checks.rule import Finding, rule
+from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
+from robosc.metamodel.reflection import tree
+from robosc.semantics.cone_of_influence import accesses
+from robosc.semantics.evaluation import evaluate
+from robosc.semantics.operators import FUNCTIONS
 from robosc.semantics.typing import (
     BOOLEAN,
+    INTEGER,
     NONE,
     UNKNOWN,
     ArrayType,
@@ -17,13 +30,12 @@ from robosc.semantics.typing import (
     Type,
     declared_type,
     provided_data_type,
+    type_of,
 )
 from robosc.semantics.typing import value_type as value_type_in
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
-
-    from robosc.metamodel import expression as ex
 
 _GUARD = Place(None, "a guard reads what the component remembers, and `value` is the data of one event")
 _REQUIREMENT = Place(None, "a requirement reads what components remember, and `value` is the data of one event")
@@ -42,25 +54,22 @@ def types(base: rsc.Base) -> Iterator[Finding]:
                 yield from _boolean(definition.condition, "the condition of a requirement", _REQUIREMENT)
             case rsc.ProvideStatement():
                 yield from _provide(definition)
-    for _, behaviour in behaviours(base):
-        for declared in behaviour.automaton.definitions:
-            if isinstance(declared, rsc.Variable) and declared.initial:
-                check = ExpressionCheck(CONSTANT)
-                check.expect(declared.initial, _variable_type(declared), f"the initial value of `{declared.name}`")
-                yield from check.findings
-        for transition in transitions(behaviour.automaton):
-            yield from _transition(transition)
+    for declared in variables(base):
+        check = ExpressionCheck(CONSTANT)
+        check.expect(declared.initial, _variable_type(declared), f"the initial value of `{declared.name}`")
+        yield from check.findings
+    for _, transition in transitions(base):
+        yield from _transition(transition)
 
 
 def _enum(enum: rsc.EnumDataType) -> Iterator[Finding]:
     place = Place(declared_type(enum.type), restriction=ENUM_RULE)
-    for alternative in enum.rules:
-        if isinstance(alternative, rsc.EnumTransformationRule):
-            yield from _boolean(alternative.condition, "the condition of an enum rule", place)
+    for alternative in of_kind(rsc.EnumTransformationRule, enum.rules):
+        yield from _boolean(alternative.condition, "the condition of an enum rule", place)
 
 
 def _provide(statement: rsc.ProvideStatement) -> Iterator[Finding]:
-    communication = statement.communicationType.communicationType if statement.communicationType else None
+    communication = communication_of(statement.communicationType)
     check = ExpressionCheck(_PROVIDE)
     what = f"the data of `{communication.name}`" if communication else "the data"
     check.provided(statement.data, provided_data_type(communication), what)
@@ -95,7 +104,38 @@ def _variable_type(variable: rsc.Variable) -> Type:
 
 
 def _boolean(condition: ex.Expression | None, what: str, place: Place) -> Iterator[Finding]:
-    if condition is not None:
-        check = ExpressionCheck(place)
-        check.expect(condition, BOOLEAN, what)
-        yield from check.findings
+    check = ExpressionCheck(place)
+    check.expect(condition, BOOLEAN, what)
+    yield from check.findings
+
+
+@rule("argument")
+def arguments(base: rsc.Base) -> Iterator[Finding]:
+    """A function gets as many arguments as it has parameters, and a positive constant to divide by."""
+    for _, element in tree(base):
+        if not isinstance(element, ex.FunctionCall):
+            continue
+        row, given = FUNCTIONS[element.function], list(element.arguments)
+        names = [f"`{name}`" for name in "abcdef"[: row.parameters]]
+        if len(given) != row.parameters:
+            wanted = "argument" if row.parameters == 1 else "arguments"
+            yield Finding(
+                element,
+                f"`{row.symbol}` has {row.parameters} {wanted}, found {len(given)}",
+                f"write `{row.symbol}({', '.join(name.strip('`') for name in names)})`",
+            )
+            continue
+        for position in sorted(row.divisors):
+            if _is_no_divisor(given[position]):
+                yield Finding(
+                    given[position],
+                    f"argument {position + 1} of `{row.symbol}` must be a positive constant",
+                    "write an integer from 1 on, such as `10`",
+                )
+
+
+def _is_no_divisor(expression: ex.Expression) -> bool:
+    """Whether an integer is read from somewhere, or below 1; what is no integer the rule `type` reports."""
+    if type_of(expression) != INTEGER:
+        return False
+    return next(accesses(expression), None) is not None or evaluate(expression, lambda access: access) < 1  # type: ignore[operator]

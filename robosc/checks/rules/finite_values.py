@@ -1,11 +1,18 @@
-"""`integer-range` (thesis 4.5.3): what becomes finite in the supervisor says how far it goes, and keeps to it."""
+"""`variable-type` and `integer-range` (thesis 4.5.14 and 4.5.3): what the supervisor holds is finite."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robosc.checks.automata import assigned_variable, behaviours, sends_message, transitions
-from robosc.checks.declarations import data_types, variables
+from robosc.checks.definitions import (
+    assigned_variable,
+    communication_of,
+    data_types,
+    of_kind,
+    sends_message,
+    transitions,
+    variables,
+)
 from robosc.checks.rule import Finding, rule
 from robosc.checks.supervised import Fault, data_reads, supervised_faults
 from robosc.checks.tabulation import table_faults
@@ -13,7 +20,19 @@ from robosc.metamodel import robosc as rsc
 from robosc.semantics.communication import sent_type
 from robosc.semantics.cone_of_influence import ConeOfInfluence, Reason, accesses, read_type
 from robosc.semantics.evaluation import evaluate
-from robosc.semantics.typing import INTEGER, infer
+from robosc.semantics.printing import RoboscPrinter
+from robosc.semantics.typing import (
+    DOUBLE,
+    INTEGER,
+    NONE,
+    STRING,
+    ArrayType,
+    ObjectType,
+    access_types,
+    declared_type,
+    infer,
+    value_type,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -22,13 +41,64 @@ if TYPE_CHECKING:
     from robosc.semantics.instances import Instances
 
 
+@rule("variable-type")
+def variable_type(base: rsc.Base) -> Iterator[Finding]:
+    """A variable holds one value, and what the supervisor needs has finitely many values and comes from such data."""
+    for variable in variables(base):
+        found = declared_type(variable.type)
+        if found == NONE or isinstance(found, (ArrayType, ObjectType)):
+            what = "no value" if found == NONE else f"data of type {found}"
+            yield Finding(
+                variable,
+                f"variable `{variable.name}` holds {what}, expected one boolean, integer, double, string or enum value",
+                "leave it out, or declare it boolean to remember that something happened"
+                if found == NONE
+                else "declare a variable for each part that is used, such as `do part := value.…`",
+            )
+    yield from supervised_faults(base, _without_domain)
+
+
+def _without_domain(_: Instances, result: ConeOfInfluence) -> Iterator[Fault]:
+    for owned, reason in result.variables.items():
+        found = declared_type(owned.variable.type)
+        if found in {DOUBLE, STRING}:
+            name = f"{owned.instance.name}.{owned.variable.name}"
+            yield Fault(
+                owned.variable,
+                reason,
+                f"variable `{name}` is {found}, and the supervisor needs it, expected boolean, an integer with a range"
+                " or an enum: its states are finitely many",
+                _enum_repair(str(found)),
+            )
+    for assigned, access in data_reads(result):
+        types = access_types(access, value_type(access))
+        is_array = any(isinstance(kind, ArrayType) for kind in types)
+        if is_array or types[-1] in {DOUBLE, STRING}:
+            assert assigned.variable is not None
+            kind = "array data" if is_array else f"a {types[-1]}"
+            yield Fault(
+                access,
+                Reason(access, assigned.instance, assigned.variable),
+                f"`{assigned.variable.variable.name}`, which the supervisor needs, is computed from {kind},"
+                f" `{RoboscPrinter()(access)}`, expected booleans, integers with a range or enums",
+                _enum_repair(
+                    types[0].definition.name if isinstance(types[0], ObjectType) and is_array else str(types[-1])
+                ),
+            )
+
+
+def _enum_repair(base: str) -> str:
+    enum = f"datatype enum … from {base} to {{ value … -> … default -> … }}"
+    return f"turn it into an enum, `{enum}`, as the type of the data"
+
+
 @rule("integer-range")
 def integer_range(base: rsc.Base) -> Iterator[Finding]:
     """Integers that the supervisor needs have a range, ranges are not empty, and constants keep to them."""
     yield from supervised_faults(base, _without_range)
     yield from supervised_faults(base, table_faults)
-    for declared in data_types(base):
-        if isinstance(declared, rsc.IntegerDataType) and _is_reversed(declared):
+    for declared in of_kind(rsc.IntegerDataType, data_types(base)):
+        if _is_reversed(declared):
             yield Finding(
                 declared,
                 f"the range {_text(declared)} is empty, expected the lower bound first",
@@ -82,19 +152,17 @@ def _is_reversed(declared: rsc.IntegerDataType) -> bool:
 
 def _constants(base: rsc.Base) -> Iterator[tuple[ex.Expression | None, rsc.DataType | None, str]]:
     """Every expression that becomes the value of something, with the type and the name of that."""
-    for _, variable in variables(base):
+    for variable in variables(base):
         yield variable.initial, variable.type, variable.name
-    for _, behaviour in behaviours(base):
-        for transition in transitions(behaviour.automaton):
-            for assignment in transition.assignments if not sends_message(transition) else ():
-                assigned = assigned_variable(assignment)
-                if assigned is not None:
-                    yield assignment.value, assigned.type, assigned.name
-    for statement in base.definitions:
-        if isinstance(statement, rsc.ProvideStatement) and statement.communicationType:
-            communication = statement.communicationType.communicationType
-            if communication is not None:
-                yield from _provided(statement.data, sent_type(communication), communication.name)
+    for _, transition in transitions(base):
+        for assignment in transition.assignments if not sends_message(transition) else ():
+            assigned = assigned_variable(assignment)
+            if assigned is not None:
+                yield assignment.value, assigned.type, assigned.name
+    for statement in of_kind(rsc.ProvideStatement, base.definitions):
+        communication = communication_of(statement.communicationType)
+        if communication is not None:
+            yield from _provided(statement.data, sent_type(communication), communication.name)
 
 
 def _provided(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robosc.checks.declarations import communications
+from robosc.checks.definitions import communications, of_kind
 from robosc.checks.rule import Finding, rule
 from robosc.metamodel import robosc as rsc
 from robosc.semantics.communication import carried, sent_type
@@ -18,11 +18,10 @@ if TYPE_CHECKING:
 @rule("data-type")
 def data_type(base: rsc.Base) -> Iterator[Finding]:
     """Arrays stand in objects, enums are over data, objects are finite, and no enum goes out of the controller."""
-    for definition in base.definitions:
-        if isinstance(definition, rsc.EnumDataType):
-            yield from _base_of(definition)
+    for enum in of_kind(rsc.EnumDataType, base.definitions):
+        yield from _base_of(enum)
     yield from _endless(base)
-    for _, communication in communications(base):
+    for communication in communications(base):
         for _, declared in carried(communication):
             if isinstance(declared, rsc.Array):
                 yield Finding(

@@ -1,0 +1,123 @@
+"""What a robot or library itself defines, in the order of its text; what it imports is in `robosc.checks.libraries`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from robosc.metamodel import robosc as rsc
+from robosc.semantics.communication import carried, event_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from robosc.metamodel import expression as ex
+
+_Element = TypeVar("_Element", bound="ex.Located")
+
+
+def of_kind(kind: type[_Element], elements: Iterable[Any]) -> list[_Element]:
+    """Those elements that are of a kind."""
+    return [element for element in elements if isinstance(element, kind)]
+
+
+def components(base: rsc.Base) -> Iterator[tuple[rsc.Component, rsc.LocalComponent]]:
+    """The components that are not imported."""
+    for component in of_kind(rsc.Component, base.definitions):
+        if isinstance(component.type, rsc.LocalComponent):
+            yield component, component.type
+
+
+def behaviours(base: rsc.Base) -> Iterator[tuple[rsc.Component, rsc.ComponentBehaviour]]:
+    """Every behaviour of these components, of one component all of them."""
+    for component, local in components(base):
+        for behaviour in of_kind(rsc.ComponentBehaviour, local.definitions):
+            if behaviour.automaton:
+                yield component, behaviour
+
+
+def transitions(base: rsc.Base) -> Iterator[tuple[rsc.Component, rsc.Transition]]:
+    """Every transition of these behaviours, with its component."""
+    for component, behaviour in behaviours(base):
+        for definition in behaviour.automaton.definitions:
+            if isinstance(definition, rsc.State):
+                yield from ((component, transition) for transition in definition.transitions)
+            elif isinstance(definition, rsc.Transition):
+                yield component, definition
+
+
+def variables(base: rsc.Base) -> Iterator[rsc.Variable]:
+    """The variables of these behaviours."""
+    for _, behaviour in behaviours(base):
+        yield from of_kind(rsc.Variable, behaviour.automaton.definitions)
+
+
+def communications(base: rsc.Base) -> Iterator[rsc.CommunicationType]:
+    """The messages, services and actions of these components."""
+    for _, local in components(base):
+        yield from of_kind(rsc.CommunicationType, local.definitions)
+
+
+def states(automaton: rsc.Automaton) -> list[rsc.State]:
+    """The states of an automaton."""
+    return of_kind(rsc.State, automaton.definitions)
+
+
+def common_transitions(automaton: rsc.Automaton) -> list[rsc.Transition]:
+    """The transitions that every state of an automaton has."""
+    return of_kind(rsc.Transition, automaton.definitions)
+
+
+def sends_message(transition: rsc.Transition) -> bool:
+    """Whether a transition happens when the controller sends its component a message."""
+    if not isinstance(transition, rsc.ResultTransition) or transition.communicationType is None:
+        return False
+    event = event_of(transition.communicationType, transition.resultType)
+    is_message = isinstance(transition.communicationType.communicationType, rsc.Message)
+    return is_message and event is not None and event.is_sent
+
+
+def assigned_variable(assignment: rsc.Assignment) -> rsc.Variable | None:
+    """The variable of the own component that an assignment means; None for anything else."""
+    item = assignment.item.item if assignment.item else None
+    return item if isinstance(item, rsc.Variable) and component_of(item) is component_of(assignment) else None
+
+
+def component_of(element: ex.Located) -> rsc.Component | None:
+    """The component whose text an element stands in."""
+    around = element
+    while around is not None and not isinstance(around, rsc.Component):
+        around = around.eContainer()
+    return around
+
+
+def unit_of(element: ex.Located) -> Any:
+    """The robot or library in whose text an element stands."""
+    around = element
+    while around.eContainer() is not None:
+        around = around.eContainer()
+    return around
+
+
+def communication_of(reference: rsc.CommunicationReference | None) -> rsc.CommunicationType | None:
+    """What a reference stands for; None where there is none, or it is not resolved."""
+    return reference.communicationType if reference else None
+
+
+def data_types(base: rsc.Base) -> Iterator[rsc.DataType]:
+    """Every type that stands in the text of a base, those within arrays too."""
+    for outermost in _outermost(base):
+        around: rsc.DataType | None = outermost
+        while around is not None:
+            yield around
+            around = around.type if isinstance(around, rsc.Array) else None
+
+
+def _outermost(base: rsc.Base) -> Iterator[rsc.DataType | None]:
+    for definition in base.definitions:
+        if isinstance(definition, rsc.EnumDataType):
+            yield definition.type
+        elif isinstance(definition, rsc.ObjectDataType):
+            yield from (owner.type for owner in definition.properties)
+    for communication in communications(base):
+        yield from (declared for _, declared in carried(communication))
+    yield from (variable.type for variable in variables(base))

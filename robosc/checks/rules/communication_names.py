@@ -1,0 +1,112 @@
+"""`unique-communication` and `unique-topic` (thesis 4.5.12)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robosc.checks.definitions import of_kind
+from robosc.checks.libraries import fact, instances, reachable
+from robosc.checks.rule import Finding, rule
+from robosc.diagnostics import Severity
+from robosc.metamodel import robosc as rsc
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from robosc.metamodel import expression as ex
+    from robosc.semantics.instances import PortInstance
+
+
+@rule("unique-communication")
+def unique_communication(base: rsc.Base) -> Iterator[Finding]:
+    """No two communications of a robot or library have one name, except those of instances of one component."""
+    firsts: dict[str, PortInstance] = {}
+    for second in instances(base).ports():
+        if not second.communication.name:
+            continue
+        first = firsts.setdefault(second.communication.name, second)
+        pair = {first.communication, second.communication}
+        # Of two in one library, that library has the finding.
+        if len(pair) == 2 and not any(pair <= fact(_communications, library) for library in reachable(base)):
+            own = second.instance.unit is base
+            yield Finding(
+                second.communication if own else second.instance.component,
+                f"{_describe(second)} has the name of {_describe(first)}, expected a name of its own",
+                _new_name(first, second, base),
+            )
+
+
+def _communications(base: rsc.Base) -> set[rsc.CommunicationType]:
+    return {port.communication for port in instances(base).ports()}
+
+
+def _describe(port: PortInstance) -> str:
+    kind = type(port.communication).__name__.lower()
+    return f"{kind} `{port.communication.name}` of `{port.instance.name}`"
+
+
+def _new_name(first: PortInstance, second: PortInstance, base: rsc.Base) -> str:
+    own = [port for port in (second, first) if port.instance.unit is base]
+    if not own:
+        return "import only one of these components: names that come from libraries can't be changed here"
+    name = own[0].communication.name
+    new = f"{name}_2" if first.instance is second.instance else f"{name}_{own[0].instance.name.lower()}"
+    topic = own[0].communication.identifier
+    keep = "" if topic else f', and add `identifier: "{name}"` to keep its topic'
+    return f"rename it in `{own[0].instance.name}`, such as `{new}`{keep}"
+
+
+@rule("unique-topic", Severity.WARNING)
+def unique_topic(base: rsc.Base) -> Iterator[Finding]:
+    """No two components send messages on one topic, with or without a `/` before it, no import gives a name two."""
+    yield from _remapped_twice(base)
+    firsts: dict[str, PortInstance] = {}
+    for second in instances(base).ports():
+        message = second.communication
+        if not isinstance(message, rsc.Message) or message.direction != rsc.MessageDirection.outgoing:
+            continue
+        topic = second.instance.topic(message)
+        first = firsts.setdefault(topic.removeprefix("/"), second)
+        if first.instance is not second.instance:
+            yield Finding(
+                _place(second, base),
+                f"message `{message.name}` of `{second.instance.name}` and `{first.communication.name}` of"
+                f" `{first.instance.name}` share the topic `{topic}`, expected one each: what either component sends"
+                " arrives as both",
+                _own_topic(second, base),
+            )
+
+
+def _remapped_twice(base: rsc.Base) -> Iterator[Finding]:
+    for component in of_kind(rsc.Component, base.definitions):
+        if not isinstance(component.type, rsc.ImportedComponent):
+            continue
+        firsts: dict[rsc.CommunicationType, rsc.TopicRemapping] = {}
+        for second in component.type.remappings:
+            if second.communicationType is None:
+                continue  # a name that is nothing, and that may be meant to be any other
+            first = firsts.setdefault(second.communicationType, second)
+            if first is not second:
+                yield Finding(
+                    second,
+                    f"`{second.communicationType.name}` of `{component.name}` has the topic `{first.identifier}`"
+                    f" already, expected one topic: `{second.identifier}` has no effect",
+                    "remove one of the two",
+                )
+
+
+def _place(port: PortInstance, base: rsc.Base) -> ex.Located:
+    if port.instance.unit is base:
+        return port.communication
+    component = port.instance.component
+    assert isinstance(component.type, rsc.ImportedComponent)
+    remappings = component.type.remappings
+    return next((mapped for mapped in remappings if mapped.communicationType is port.communication), component)
+
+
+def _own_topic(port: PortInstance, base: rsc.Base) -> str:
+    name = port.communication.name
+    topic = f"/{port.instance.name.lower()}/{name}"
+    if port.instance.unit is base:
+        return f'give it a topic of its own, such as `identifier: "{topic}"`'
+    return f'give it a topic of its own, such as `with {{ {name}: "{topic}" }}` after the import'

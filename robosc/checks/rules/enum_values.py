@@ -1,0 +1,159 @@
+"""`enum-default`, `unique-enum-value` and `enum-state-overlap` (thesis 4.5.8, 4.5.12 and 4.5.13)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robosc.checks.definitions import of_kind, states, unit_of
+from robosc.checks.libraries import fact, imports, instances, reachable
+from robosc.checks.rule import Finding, rule
+from robosc.metamodel import robosc as rsc
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from robosc.semantics.instances import Instance
+
+
+@rule("enum-default")
+def enum_default(base: rsc.Base) -> Iterator[Finding]:
+    """An enum has exactly one default rule."""
+    for enum in of_kind(rsc.EnumDataType, base.definitions):
+        defaults = of_kind(rsc.EnumDefaultRule, enum.rules)
+        if not defaults:
+            yield Finding(
+                enum,
+                f"enum `{enum.name}` has no default rule, expected one for data that no other rule matches",
+                "add a last rule, such as `default -> other`",
+                relies_on=enum,
+            )
+        for other in defaults[1:]:
+            yield Finding(
+                other,
+                f"enum `{enum.name}` has a second default rule, expected one",
+                "give this rule a condition in place of `default`, or leave it out",
+            )
+
+
+@rule("unique-enum-value")
+def unique_enum_value(base: rsc.Base) -> Iterator[Finding]:
+    """No two enum values of a robot or library and its imports have one name."""
+    firsts: dict[str, rsc.EnumValue] = {}
+    for library in reachable(base, _has_values):
+        for value in _values(library):
+            firsts.setdefault(value.name, value)
+    for value in _values(base):
+        first = firsts.setdefault(value.name, value)
+        if first is not value:
+            yield Finding(
+                value,
+                f"{_describe(value, base)} has the name of {_describe(first, base)}, expected a name of its own",
+                _repair_repeated(value, first),
+            )
+    yield from _between_imports(base)
+
+
+def _between_imports(base: rsc.Base) -> Iterator[Finding]:
+    """Values of two libraries that only this base brings together; of one library's own imports it has the finding."""
+    firsts: dict[str, rsc.EnumValue] = {}
+    importing: dict[rsc.Library, rsc.Component] = {}
+    for component, library in imports(base):
+        importing.setdefault(library, component)
+    for library, component in importing.items():
+        for value in _reachable_values(library):
+            first = firsts.setdefault(value.name, value)
+            pair = {first, value}
+            if first is not value and not any(pair <= fact(_brought, other) for other in reachable(base)):
+                yield Finding(
+                    component,
+                    f"the import of `{library.name}` brings {_describe(value, base)}, which has the name of"
+                    f" {_describe(first, base)}, expected a name of its own",
+                    "import only one of these libraries: names that come from libraries can't be changed here",
+                )
+
+
+def _repair_repeated(value: rsc.EnumValue, first: rsc.EnumValue) -> str:
+    if _enum(value) is not _enum(first):
+        return f"rename it, such as `{value.name}_{_enum(value).name.lower()}`"
+    if all(isinstance(same.eContainer(), rsc.EnumTransformationRule) for same in (value, first)):
+        return f"join the two conditions by `or`, so that `{value.name}` stands once"
+    return (
+        f"the default gives `{value.name}` wherever no rule holds: leave the other rule out, and let rules that"
+        " follow it hold only where it did not"
+    )
+
+
+@rule("enum-state-overlap")
+def enum_state_overlap(base: rsc.Base) -> Iterator[Finding]:
+    """No enum value has the name of a state, in a robot or library and what it imports."""
+    named: dict[str, list[tuple[Instance, rsc.State]]] = {}
+    for instance in instances(base):
+        for state in states(instance.automaton) if instance.automaton else ():
+            named.setdefault(state.name, []).append((instance, state))
+    reported = set()
+    for value in _reachable_values(base):
+        unit = unit_of(value)
+        for instance, state in named.get(value.name, ()):
+            # What a library has together with its own imports, it has the finding of.
+            if any((value, state) in fact(_overlaps, library) for library in reachable(base)):
+                continue
+            place = value if unit is base else state if instance.unit is base else _import(base, instance, unit)
+            if place not in reported:
+                reported.add(place)
+                yield Finding(
+                    place,
+                    f"{_describe(value, base)} has the name of the state `{instance.name}.{state.name}`, expected names"
+                    " that differ",
+                    _repair_overlap(value, state, unit is base, instance.unit is base),
+                )
+
+
+def _overlaps(library: rsc.Library) -> set[tuple[rsc.EnumValue, rsc.State]]:
+    found = [state for instance in instances(library) if instance.automaton for state in states(instance.automaton)]
+    return {(value, state) for value in _reachable_values(library) for state in found if value.name == state.name}
+
+
+def _import(base: rsc.Base, instance: Instance, unit: rsc.Base) -> rsc.Component:
+    """The later one of the two imports that bring the state and the value."""
+    for component, library in reversed(list(imports(base))):
+        if component is instance.component or unit in [library, *reachable(library)]:
+            return component
+    return instance.component
+
+
+def _repair_overlap(value: rsc.EnumValue, state: rsc.State, own_value: bool, own_state: bool) -> str:
+    if own_value:
+        return f"rename the value, such as `{value.name}_{_enum(value).name.lower()}`"
+    if own_state:
+        return f"rename the state, such as `is_{state.name}`"
+    return "import only one of these libraries: names that come from libraries can't be changed here"
+
+
+def _values(base: rsc.Base) -> Iterator[rsc.EnumValue]:
+    """The enum values that the base itself declares, in the order of the text."""
+    for enum in of_kind(rsc.EnumDataType, base.definitions):
+        yield from (alternative.value for alternative in enum.rules if alternative.value and alternative.value.name)
+
+
+def _has_values(base: rsc.Base) -> bool:
+    return any(True for _ in _values(base))
+
+
+def _reachable_values(base: rsc.Base) -> list[rsc.EnumValue]:
+    """The enum values of a base, then those of all libraries that its imports reach."""
+    return [value for unit in [base, *reachable(base, _has_values)] for value in _values(unit)]
+
+
+def _brought(library: rsc.Library) -> set[rsc.EnumValue]:
+    return set(_reachable_values(library))
+
+
+def _enum(value: rsc.EnumValue) -> rsc.EnumDataType:
+    enum: rsc.EnumDataType = value.eContainer().eContainer()
+    return enum
+
+
+def _describe(value: rsc.EnumValue, seen_from: rsc.Base) -> str:
+    unit = unit_of(value)
+    where = "" if unit is seen_from else f" in library `{unit.name}`"
+    return f"value `{value.name}` of enum `{_enum(value).name}`{where}"

@@ -1,0 +1,178 @@
+"""`interface-link` (thesis 4.5.4), `-type`, `-unused`, `-unknown`, `-mix`: the model's and ROS' own view of types."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robosc.checks.definitions import communications, of_kind, unit_of
+from robosc.checks.libraries import imports, instances, reachable
+from robosc.checks.rule import Finding, interface_rule, rule
+from robosc.checks.wire_data import Carried, UsedData, Uses, carried_data, carries
+from robosc.checks.wire_faults import Fault, Unknown, faults, misfits, wire_type
+from robosc.diagnostics import Severity
+from robosc.metamodel import expression as ex
+from robosc.metamodel import robosc as rsc
+from robosc.metamodel.reflection import tree
+from robosc.ros_types.unknown import OWN_OBJECT, other_kinds
+from robosc.semantics.communication import carried
+from robosc.semantics.naming import written
+from robosc.semantics.typing import NONE, UNKNOWN, ObjectType, Type, declared_type
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from robosc.ros_types import RosTypes
+
+
+@rule("interface-link")
+def interface_link(base: rsc.Base) -> Iterator[Finding]:
+    """What has no wire type of its own links an interface: objects, actions, services that carry data."""
+    for communication in communications(base):
+        if communication.interface is None:
+            types = [declared_type(wire_type(declared)) for _, declared in carried(communication)]
+            reason = _reason(communication, types)
+            if reason:
+                yield Finding(
+                    communication,
+                    f"`{communication.name}` links no interface, expected one: {reason}",
+                    _missing_link(communication, base, types),
+                    relies_on=communication,
+                    relies_on_names=(rsc.CommunicationType,),
+                )
+
+
+def _reason(communication: rsc.CommunicationType, types: list[Type]) -> str | None:
+    named = next((kind for kind in types if isinstance(kind, ObjectType)), None)
+    if named is not None:
+        return f"its data is {named}, and only an interface says which ROS type that is"
+    if isinstance(communication, rsc.Action):
+        return "no ROS action type is meant by itself"
+    if isinstance(communication, rsc.Service) and any(kind not in {NONE, UNKNOWN} for kind in types):
+        return "only a service whose request and response are `none` has a ROS type of its own, `std_srvs/Empty`"
+    return None
+
+
+def _missing_link(communication: rsc.CommunicationType, base: rsc.Base, types: list[Type]) -> str:
+    """An interface that exists where there is one that fits by name, or is at least the only one."""
+    units = dict.fromkeys([base, *(library for _, library in imports(base))])
+    known = [interface for unit in units for interface in of_kind(rsc.Interface, unit.definitions)]
+    objects = [kind.definition.name for kind in types if isinstance(kind, ObjectType)]
+    fitting = [
+        interface for interface in known if any(name.startswith(interface.type or interface.name) for name in objects)
+    ]
+    if fitting:
+        return f"add `links {written(fitting[0].name)}` after its types"
+    name = communication.name
+    return (
+        f"declare `interface {name} use … from …` with the ROS type and its package, and add `links {written(name)}`"
+        " after its types"
+    )
+
+
+@interface_rule("interface-type")
+def interface_type(base: rsc.Base, interfaces: RosTypes) -> Iterator[Finding]:
+    """What the model uses of data is in the ROS type, and fits it."""
+    for element, message, hint, used in _faulty(base, interfaces):
+        if used:
+            yield Finding(element, message, hint)
+
+
+@interface_rule("interface-unused", Severity.WARNING)
+def interface_unused(base: rsc.Base, interfaces: RosTypes) -> Iterator[Finding]:
+    """What the model declares without using it is in the ROS type, too, and fits it."""
+    for element, message, hint, used in _faulty(base, interfaces):
+        if not used:
+            # A use may stand in text that could not be read.
+            yield Finding(element, message, hint, relies_on=base, relies_on_names=(ex.Located,))
+
+
+@interface_rule("interface-unknown", Severity.WARNING)
+def interface_unknown(base: rsc.Base, interfaces: RosTypes) -> Iterator[Finding]:
+    """The definitions of all ROS types that interfaces name are at hand."""
+    reported: set[tuple[object, str]] = set()
+    for data in carried_data(base):
+        if isinstance(data.interface.eContainer(), rsc.InterfaceTypeReference):
+            continue  # Whoever linked it has said that there is no such type.
+        for fault in _unknown(data, interfaces):
+            wanted: ex.Located | None = fault.property if isinstance(fault, Fault) else data.interface
+            other = data.declared if isinstance(fault, Fault) else data.communication
+            element = wanted if wanted is not None and unit_of(wanted) is base else other
+            if (element, fault.message) not in reported:
+                reported.add((element, fault.message))
+                yield Finding(element, fault.message, fault.hint)
+    for _, reference in tree(base):
+        if isinstance(reference, rsc.InterfaceTypeReference) and isinstance(reference.eContainer(), rsc.EnumDataType):
+            others = other_kinds(interfaces, reference.package, reference.rosType, "message")
+            if others and reference.type is not None:
+                what = f"{reference.package}/{reference.rosType}"
+                yield Finding(
+                    reference,
+                    f"{what} is a type of kind message and one of kind {' and '.join(others)}, expected one meaning:"
+                    " the message is taken",
+                    OWN_OBJECT,
+                )
+
+
+def _unknown(data: Carried, interfaces: RosTypes) -> list[Fault] | list[Unknown]:
+    found = faults(data, interfaces, {})
+    return [found] if isinstance(found, Unknown) else [fault for fault in found if fault.unknown]
+
+
+def _faulty(base: rsc.Base, interfaces: RosTypes) -> Iterator[tuple[ex.Located, str, str, bool]]:
+    """Where the base's text must change, why, how, and whether the model uses what is faulty there."""
+    found: dict[tuple[ex.Located, str, str], bool] = {}
+    units = {unit: list(carried_data(unit)) for unit in [base, *reachable(base, carries)]}
+    everything = UsedData([base, *reachable(base)] if any(units.values()) else ())
+    for unit, communicated in units.items():
+        itself = everything if unit is base else UsedData([unit, *reachable(unit)] if communicated else ())
+        for data in communicated:
+            uses, reported = everything.uses(data), {} if unit is base else itself.uses(data)
+            answer = faults(data, interfaces, uses)
+            for fault in () if isinstance(answer, Unknown) else answer:
+                if fault.unknown or (unit is not base and (fault.property is None or fault.property in reported)):
+                    continue  # the library's own matter
+                element = _place(base, data, fault, uses)
+                if element is not None:
+                    key = (element, fault.message, fault.hint)
+                    found[key] = found.get(key, False) or fault.is_used(uses)
+    yield from ((*key, used) for key, used in found.items())
+
+
+def _place(base: rsc.Base, data: Carried, fault: Fault, uses: Uses) -> ex.Located | None:
+    """The property, else what uses it, else the data that it is a part of: the first that is in the base's text."""
+    use = None if fault.property is None else uses.get(fault.property)
+    candidates: list[ex.Located | None] = [fault.property, use, data.declared]
+    return next((candidate for candidate in candidates if candidate is not None and unit_of(candidate) is base), None)
+
+
+@interface_rule("interface-mix", Severity.WARNING)
+def interface_mix(base: rsc.Base, interfaces: RosTypes) -> Iterator[Finding]:
+    """One of the two ROS fits all data of a model, as a controller runs in one of them."""
+    communications = {port.communication for port in instances(base).ports()}
+    units = [base, *reachable(base, carries)]
+    present = [(unit, data) for unit in units for data in carried_data(unit) if data.communication in communications]
+    used = UsedData([base, *reachable(base)] if present else ())
+    first: dict[str, tuple[rsc.Base, Carried]] = {}
+    for unit, data in present:
+        reasons = misfits(data, interfaces, used.uses(data))
+        if len(reasons) == len(interfaces.distributions):
+            continue  # The matter of `interface-type`.
+        for ros, reason in reasons.items():
+            others = [other_ros for other_ros in first if other_ros != ros]
+            first.setdefault(ros, (unit, data))
+            if others:
+                other_unit, other = first[others[0]]
+                if unit is not base and unit is other_unit:
+                    return  # the library's own matter
+                yield Finding(
+                    data.declared if unit is base else _import_of(base, unit),
+                    f"`{data.communication.name}` fits {others[0]} only and `{other.communication.name}` {ros} only,"
+                    " expected that one ROS fits both: a controller runs in one of them",
+                    f"use what both have, or leave one of them out: in {ros}, {reason}",
+                )
+                return
+
+
+def _import_of(base: rsc.Base, unit: rsc.Base) -> rsc.Component:
+    """The first imported component that brings the text of a library with it."""
+    return next(component for component, library in imports(base) if library is unit or unit in reachable(library))

@@ -1,0 +1,122 @@
+"""`unique-component`, `unique-datatype`, `unique-state`, `unique-variable`, `unique-property`, `single-behaviour`.
+
+Thesis 4.5.7 and 4.5.12.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING
+
+from robosc.checks.definitions import behaviours, components, of_kind, states
+from robosc.checks.rule import Finding, on_line, rule
+from robosc.metamodel import robosc as rsc
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator
+
+    from robosc.metamodel import expression as ex
+
+    #: The scopes of a text, each with what it is called and the elements that are to have names of their own in it.
+    Scopes = Callable[[rsc.Base], Iterable[tuple[str, Iterable[ex.NamedElement]]]]
+
+
+def _in_file(kind: type[rsc.Component | rsc.ComplexDataType]) -> Scopes:
+    return lambda base: [(f"`{base.name}`", of_kind(kind, base.definitions))]
+
+
+def _states(base: rsc.Base) -> Iterator[tuple[str, list[rsc.State]]]:
+    for component, behaviour in behaviours(base):
+        yield f"component `{component.name}`", states(behaviour.automaton)
+
+
+#: What has a name of its own: the rule, what it is in words, and among whom.
+_UNIQUE: tuple[tuple[str, str, Scopes], ...] = (
+    ("unique-component", "component", _in_file(rsc.Component)),
+    ("unique-datatype", "data type", _in_file(rsc.ComplexDataType)),
+    ("unique-state", "state", _states),
+)
+
+
+def _repeated_names(kind: str, scopes: Scopes, base: rsc.Base) -> Iterator[Finding]:
+    for where, elements in scopes(base):
+        for second, first in _repeated(elements):
+            yield _declared_again(kind, second, first, where)
+
+
+for _identifier, _kind, _scopes in _UNIQUE:
+    rule(_identifier)(partial(_repeated_names, _kind, _scopes))
+
+
+@rule("unique-variable")
+def unique_variable(base: rsc.Base) -> Iterator[Finding]:
+    """No variable of a component has the name of another one, or of a state: `Component.name` reaches both."""
+    for component, behaviour in behaviours(base):
+        where = f"component `{component.name}`"
+        first: dict[str, rsc.AccessibleItem] = {}
+        known = set()
+        for definition in of_kind(rsc.AccessibleItem, behaviour.automaton.definitions):
+            is_state = isinstance(definition, rsc.State)
+            # That a state has the name of another state is the matter of `unique-state`.
+            if definition.name in first and not (is_state and definition.name in known):
+                yield _declared_again("state" if is_state else "variable", definition, first[definition.name], where)
+            if is_state:
+                known.add(definition.name)
+            first.setdefault(definition.name, definition)
+
+
+@rule("unique-property")
+def unique_property(base: rsc.Base) -> Iterator[Finding]:
+    """No object has two properties of one name, and a provided object names each property once."""
+    for definition in base.definitions:
+        if isinstance(definition, rsc.ObjectDataType):
+            for second, first in _repeated(definition.properties):
+                yield _declared_again("property", second, first, f"object `{definition.name}`")
+        elif isinstance(definition, rsc.ProvideStatement):
+            yield from _provided_again(definition.data)
+
+
+def _provided_again(value: ex.Expression) -> Iterator[Finding]:
+    if not isinstance(value, rsc.ObjectValue):
+        return
+    named = set()
+    for given in value.properties:
+        if given.property is not None and given.property in named:
+            yield Finding(
+                given,
+                f"property `{given.property.name}` has a value already, expected one for each property",
+                "leave one of the two out",
+            )
+        named.add(given.property)
+        yield from _provided_again(given.value)
+
+
+@rule("single-behaviour")
+def single_behaviour(base: rsc.Base) -> Iterator[Finding]:
+    """A component has at most one behaviour."""
+    for component, local in components(base):
+        every = of_kind(rsc.ComponentBehaviour, local.definitions)
+        for other in every[1:]:
+            yield Finding(
+                other,
+                f"`{component.name}` has another behaviour already{on_line(every[0])}, expected one",
+                "move its states, variables and transitions to the first one, or to a component of their own",
+            )
+
+
+def _repeated(elements: Iterable[ex.NamedElement]) -> Iterator[tuple[ex.NamedElement, ex.NamedElement]]:
+    """Each element whose name an earlier one has, with the first that has it."""
+    first: dict[str, ex.NamedElement] = {}
+    for element in elements:
+        if element.name and first.setdefault(element.name, element) is not element:
+            yield element, first[element.name]
+
+
+def _declared_again(kind: str, second: ex.NamedElement, first: ex.NamedElement, where: str) -> Finding:
+    same = not isinstance(first, (rsc.State, rsc.Variable)) or type(first) is type(second)
+    other = f"another {kind}" if same else f"a {type(first).__name__.lower()}"
+    return Finding(
+        second,
+        f"{kind} `{second.name}` has the name of {other}{on_line(first)}, expected a name of its own in {where}",
+        f"rename one of the two, such as `{second.name}_2`",
+    )

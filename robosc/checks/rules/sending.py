@@ -1,0 +1,65 @@
+"""`data-provisioning` (thesis 4.5.1) and `requirement-target`: what is said of what the controller sends."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robosc.checks.definitions import communication_of, of_kind
+from robosc.checks.rule import Finding, rule
+from robosc.metamodel import robosc as rsc
+from robosc.semantics.communication import sent
+from robosc.semantics.typing import NONE, provided_data_type
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+#: For one that has taken an outgoing message for what the controller sends.
+_DIRECTIONS = (
+    "or, if the controller sends it, declare it as `incoming message {}`: incoming is what a component receives"
+)
+
+
+@rule("data-provisioning")
+def data_provisioning(base: rsc.Base) -> Iterator[Finding]:
+    """Data is provided only to what the controller sends, and only where data goes along."""
+    for statement in of_kind(rsc.ProvideStatement, base.definitions):
+        communication = communication_of(statement.communicationType)
+        if communication is not None and sent(communication) is None:
+            yield Finding(
+                statement.communicationType,
+                f"data is provided to `{communication.name}`, which the controller receives, expected a communication"
+                " that it sends: an incoming message, a service or an action",
+                "leave the provide statement out: the data of an outgoing message comes from its component;"
+                f" {_DIRECTIONS.format(communication.name)}",
+            )
+        elif communication is not None and provided_data_type(communication) == NONE:
+            what = "it" if isinstance(communication, rsc.Message) else "its request"
+            yield Finding(
+                statement.data or statement,
+                f"data is provided to `{communication.name}`, expected none: {what} is declared with the type `none`",
+                "leave the provide statement out: there is no data to send along",
+            )
+
+
+@rule("requirement-target")
+def requirement_target(base: rsc.Base) -> Iterator[Finding]:
+    """A requirement restricts something, and something that the controller sends."""
+    for requirement in of_kind(rsc.Requirement, base.definitions):
+        if requirement.target is None:
+            continue
+        if not requirement.target.communicationTypes:
+            yield Finding(
+                requirement.target,
+                "the requirement restricts nothing, expected at least one message, service or action in the braces",
+                "name what it restricts, or leave the requirement out",
+                relies_on=requirement,
+            )
+        for reference in requirement.target.communicationTypes:
+            communication = communication_of(reference)
+            if communication is not None and sent(communication) is None:
+                yield Finding(
+                    reference,
+                    f"`{communication.name}` comes from its component whenever that sends it, expected a communication"
+                    " that the controller starts: an incoming message, a service or an action",
+                    f"restrict what the controller does about it; {_DIRECTIONS.format(communication.name)}",
+                )

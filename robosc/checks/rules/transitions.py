@@ -1,0 +1,164 @@
+"""`result-type`, `nondeterminism`, `assignment-on-message-to-node`, `assignment-scope` and `repeated-assignment`.
+
+Thesis 4.5.2, 4.5.5 and 4.5.6.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, TypeAlias
+
+from robosc.checks.definitions import (
+    assigned_variable,
+    behaviours,
+    common_transitions,
+    communication_of,
+    sends_message,
+    states,
+    transitions,
+)
+from robosc.checks.rule import Finding, on_line, rule
+from robosc.diagnostics import Severity
+from robosc.metamodel import robosc as rsc
+from robosc.semantics.communication import event_names
+from robosc.semantics.naming import enumeration, written
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+_Event: TypeAlias = "tuple[rsc.Component | None, rsc.CommunicationType, str]"
+
+
+@rule("result-type")
+def result_type(base: rsc.Base) -> Iterator[Finding]:
+    """A transition names an event that its communication has."""
+    for _, transition in transitions(base):
+        if not isinstance(transition, rsc.ResultTransition):
+            continue
+        communication = communication_of(transition.communicationType)
+        event, allowed = str(transition.resultType), event_names(communication)
+        if communication is not None and event not in allowed:
+            prepositions = {name: "to" if name == "request" else "from" for name in allowed}
+            forms = [f"`on {name} {word} {written(communication.name)}`" for name, word in prepositions.items()]
+            direction = f"{communication.direction} " if isinstance(communication, rsc.Message) else ""
+            yield Finding(
+                transition,
+                f"{direction}{type(communication).__name__.lower()} `{communication.name}` has no {event}, expected"
+                f" {enumeration(f'`{name}`' for name in allowed)}",
+                f"write {enumeration(forms)}",
+            )
+
+
+@rule("nondeterminism")
+def nondeterminism(base: rsc.Base) -> Iterator[Finding]:
+    """A state reacts to an event in one way; the transitions that all states have are among its own."""
+    for component, behaviour in behaviours(base):
+        automaton = behaviour.automaton
+        order = {definition: number for number, definition in enumerate(automaton.definitions)}
+        common = common_transitions(automaton)
+        reported: set[rsc.Transition] = set()
+        yield from _repeated([(transition, None) for transition in common], component, reported)
+        for state in states(automaton):
+            before = [(transition, None) for transition in common if order[transition] < order[state]]
+            after = [(transition, None) for transition in common if order[transition] > order[state]]
+            own = [(transition, state) for transition in state.transitions]
+            yield from _repeated([*before, *own, *after], component, reported)
+
+
+def _repeated(
+    transitions: list[tuple[rsc.Transition, rsc.State | None]],
+    component: rsc.Component,
+    reported: set[rsc.Transition],
+) -> Iterator[Finding]:
+    """Each transition on an event that an earlier one is on, given in the order of the text, once."""
+    firsts: dict[_Event, tuple[rsc.Transition, rsc.State | None]] = {}
+    for second, state in transitions:
+        event = _event(second)
+        if event is None:
+            continue
+        first, other = firsts.setdefault(event, (second, state))
+        if first is not second and second not in reported:
+            reported.add(second)
+            where = state or other
+            place = f"state `{component.name}.{where.name}`" if where else f"every state of `{component.name}`"
+            yield Finding(
+                second,
+                f"{place} reacts to the {event[2]} of `{event[1].name}` already{on_line(first)}, expected one"
+                " transition for it",
+                "leave one of the two out, or join them: a second step can be a `transition if …` of the next state"
+                if state is other
+                else "leave one of the two out: a transition outside the states is one of every state",
+            )
+
+
+def _event(transition: rsc.Transition) -> _Event | None:
+    """What a transition reacts to; None for a silent one, and for an event that does not exist (`result-type`)."""
+    if not isinstance(transition, rsc.ResultTransition) or transition.communicationType is None:
+        return None
+    reference, event = transition.communicationType, str(transition.resultType)
+    known = event in event_names(reference.communicationType)
+    return (reference.component, reference.communicationType, event) if known else None
+
+
+@rule("assignment-on-message-to-node")
+def assignment_on_message_to_node(base: rsc.Base) -> Iterator[Finding]:
+    """Sending a message to a component assigns nothing: no data comes in with it."""
+    for component, transition in transitions(base):
+        if transition.assignments and isinstance(transition, rsc.ResultTransition) and sends_message(transition):
+            name = transition.communicationType.communicationType.name
+            yield Finding(
+                transition.assignments[0],
+                f"`{component.name}` assigns a value when it is sent `{name}`, expected no assignment: a message"
+                " to a component brings no data back",
+                "leave `do …` out; a state that the transition goes to can remember that the message was sent",
+            )
+
+
+@rule("assignment-scope")
+def assignment_scope(base: rsc.Base) -> Iterator[Finding]:
+    """Only variables of the own component are assigned; those of others can be read."""
+    for component, transition in transitions(base):
+        for assignment in transition.assignments:
+            target = assignment.item
+            unresolved = target is None or (target.item is None and not target.value)
+            if not unresolved and assigned_variable(assignment) is None:
+                yield Finding(
+                    target,
+                    f"{_describe(target)} is assigned a value, expected a variable of `{component.name}`",
+                    _repair(target, component),
+                )
+
+
+@rule("repeated-assignment", Severity.WARNING)
+def repeated_assignment(base: rsc.Base) -> Iterator[Finding]:
+    """A transition assigns a variable once."""
+    for _, transition in transitions(base):
+        assigned = set()
+        for assignment in transition.assignments:
+            variable = assigned_variable(assignment)
+            if variable is not None and variable in assigned:
+                yield Finding(
+                    assignment,
+                    f"`{variable.name}` is assigned a value by this transition already, expected one: the last one"
+                    " counts",
+                    "leave out the one that is not meant: assignments of one transition are simultaneous",
+                )
+            assigned.add(variable)
+
+
+def _describe(target: rsc.Access) -> str:
+    item = target.item
+    if item is None:
+        return "`value`"
+    if isinstance(item, rsc.EnumValue):
+        return f"enum value `{item.name}`"
+    owner = f" of `{target.component.name}`" if target.component and not isinstance(item, rsc.Component) else ""
+    return f"{type(item).__name__.lower()} `{item.name}`{owner}"
+
+
+def _repair(target: rsc.Access, component: rsc.Component) -> str:
+    item = target.item
+    if isinstance(item, rsc.State) and target.component is component:
+        return f"write `goto {item.name}`"
+    if isinstance(item, rsc.Variable) and target.component:
+        return f"assign it in `{target.component.name}`, by a transition of its own that reads `{component.name}`"
+    return f"declare `variable … : …` in the behaviour of `{component.name}` and assign that"
