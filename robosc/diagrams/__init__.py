@@ -5,11 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.diagrams import notations
-from robosc.diagrams.behaviour import behaviour_graph
+from robosc.diagrams.automata import behaviour_graph, plants_graph
+from robosc.diagrams.class_drawing import draw
 from robosc.diagrams.classes import ClassDiagram
-from robosc.diagrams.drawing import draw
-from robosc.diagrams.plants import plants_graph
-from robosc.diagrams.rendering import environment
 from robosc.diagrams.ros_graph import ros_graph
 
 if TYPE_CHECKING:
@@ -42,5 +40,6 @@ def metamodel_diagram(name: str, notation: str) -> str:
     if name not in METAMODELS or notation not in NOTATIONS:
         raise ValueError(f"no diagram of {name} in {notation}: it is {METAMODELS} in {NOTATIONS}")
     classes = ClassDiagram.of(name)
-    template = environment(markup=notation == "svg").get_template(f"classes.{notation}.j2")
-    return template.render(diagram=classes, drawing=draw(classes) if notation == "svg" else None)
+    if notation == "svg":
+        return notations.render("picture.svg.j2", picture=draw(classes))
+    return notations.render(f"classes.{notation}.j2", diagram=classes)

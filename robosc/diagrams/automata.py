@@ -1,4 +1,4 @@
-"""Automata as groups of a diagram, whatever model they come from."""
+"""Automata as groups of a diagram: those of components, as their text has them, and the plants of an sct model."""
 
 from __future__ import annotations
 
@@ -6,72 +6,208 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from robosc.diagnostics.visible import visible
-from robosc.diagrams.graph import Arrow, Group, Node
+from robosc.diagrams.graph import Arrow, Graph, Group, Node
+from robosc.metamodel import expression as ex
+from robosc.metamodel import robosc, sct
+from robosc.semantics.edges import edges_from
+from robosc.semantics.instances import Instances
+from robosc.semantics.naming import written
+from robosc.semantics.printing import RoboscPrinter, SctPrinter
+from robosc.semantics.roles import event_name, plant_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from robosc.diagrams.graph import Label
+    from robosc.semantics.instances import Instance
 
-#: Stands for the source of what may happen in every state.
-EVERY = -1
+    State = robosc.State | sct.Location
+
+
+def behaviour_graph(base: robosc.Base) -> Graph:
+    """The components of a robot or a library that have a behaviour, imported ones included, each as a group."""
+    instances = Instances(base)
+    shown = [instance for instance in instances if instance.automaton is not None]
+    groups = [_Component(instance, instances).group(f"c{number}") for number, instance in enumerate(shown, 1)]
+    return Graph(f"{visible(base.name)}: behaviour", groups)
+
+
+def plants_graph(model: sct.SupervisoryControlModel) -> Graph:
+    """All plants of an sct model, each as a group, in the order of the model."""
+    groups = [_Plant(plant).group(f"p{number}") for number, plant in enumerate(model.plants, 1)]
+    return Graph(f"{visible(model.name)}: plants", groups)
 
 
 @dataclass(frozen=True)
-class State:
-    """A state by its name."""
+class _Step:
+    """From a state, or every one (None), to another, or (None) to where it is."""
 
-    name: str
-    initial: bool
-    marked: bool
-
-
-@dataclass(frozen=True)
-class Step:
-    """From one state, or EVERY, to another, by their numbers; None stays where it is."""
-
-    source: int
-    target: int | None
+    source: State | None
+    target: State | None
     label: Label
 
+    @property
+    def stays(self) -> bool:
+        return self.target is None or self.source is self.target
 
-def automaton(key: str, title: str, remarks: Sequence[str], states: Sequence[State], steps: Sequence[Step]) -> Group:
-    """The group that shows an automaton: steps that stay are rows of their state, those between two states one arrow.
+
+def _automaton(key: str, title: str, remarks: Sequence[str], states: Sequence[State], steps: Sequence[_Step]) -> Group:
+    """The group of an automaton: steps that stay are rows of their state, those between two states one arrow.
 
     The group's nodes have keys that begin with its own.
     """
-    nodes = [_node(key, number, state, steps) for number, state in enumerate(states)]
-    common = _rows(EVERY, steps)
-    if any(step.source == EVERY for step in steps):
-        nodes.insert(0, Node(_key(key, EVERY), "every", "everywhere", common))
-    between: dict[tuple[int, int], list[Label]] = {}
+    keys: dict[State | None, str] = {None: f"{key}_every"}
+    keys |= {state: f"{key}_{number}" for number, state in enumerate(states, 1)}
+    rows: dict[State | None, list[Label]] = {state: [] for state in keys}
+    between: dict[tuple[str, str], list[Label]] = {}
     for step in steps:
-        if step.target is not None and step.source != step.target:
-            between.setdefault((step.source, step.target), []).append(_visible(step.label))
-    arrows = [
-        Arrow(_key(key, source), _key(key, target), tuple(labels)) for (source, target), labels in between.items()
+        label = tuple(map(visible, step.label))
+        if step.stays:
+            rows[step.source].append(label)
+        else:
+            between.setdefault((keys[step.source], keys[step.target]), []).append(label)
+    nodes = [
+        Node(keys[state], "state", visible(state.name), rows[state], initial=state.initial, marked=state.marked)
+        for state in states
     ]
-    return Group(key, visible(title), [visible(remark) for remark in remarks], nodes, arrows)
+    if any(step.source is None for step in steps):
+        nodes.insert(0, Node(keys[None], "every", "everywhere", rows[None]))
+    arrows = [Arrow(source, target, tuple(labels)) for (source, target), labels in between.items()]
+    return Group(key, visible(title), list(map(visible, remarks)), nodes, arrows)
 
 
-def _node(key: str, number: int, state: State, steps: Sequence[Step]) -> Node:
-    return Node(
-        _key(key, number),
-        "state",
-        visible(state.name),
-        _rows(number, steps),
-        initial=state.initial,
-        marked=state.marked,
-    )
+class _Component(RoboscPrinter):
+    """Says what one component does, its own names without the component before them."""
+
+    def __init__(self, instance: Instance, instances: Instances) -> None:
+        self.instance = instance
+        self.instances = instances
+
+    def group(self, key: str) -> Group:
+        assert self.instance.automaton is not None
+        definitions = self.instance.automaton.definitions
+        states = [definition for definition in definitions if isinstance(definition, robosc.State)]
+        sources: list[tuple[robosc.State | None, robosc.Transition]] = [
+            (None, definition) for definition in definitions if isinstance(definition, robosc.Transition)
+        ]
+        sources += [(state, transition) for state in states for transition in state.transitions]
+        return _automaton(
+            key,
+            self.instance.name,
+            [self.variable(definition) for definition in definitions if isinstance(definition, robosc.Variable)],
+            states,
+            [_Step(source, transition.target, self.label(transition)) for source, transition in sources],
+        )
+
+    def variable(self, variable: robosc.Variable) -> str:
+        initial = "" if variable.initial is None else f" = {self(variable.initial)}"
+        return f"{variable.name}: {_type(variable.type)}{initial}"
+
+    def label(self, transition: robosc.Transition) -> Label:
+        match transition:
+            case robosc.ResultTransition():
+                kind = transition.resultType.name
+                word = "to" if kind == "request" else "from"
+                first = f"on {kind} {word} {self.communication(transition.communicationType)}"
+            case robosc.TauTransition():
+                first = "transition" if transition.guard is None else f"transition if {self(transition.guard)}"
+        return (first, *self.assignments(transition.assignments))
+
+    def assignments(self, assignments: Sequence[robosc.Assignment]) -> list[str]:
+        texts = [f"{self(assignment.item)} := {self(assignment.value)}" for assignment in assignments]
+        # A line for each, with the comma that parts it from the next.
+        return ("do " + ",\n".join(texts)).split("\n") if texts else []
+
+    def communication(self, reference: robosc.CommunicationReference) -> str:
+        """Its name; with its component where two share the name and it is the other's."""
+        port = self.instances.port(reference, self.instance)
+        assert port is not None
+        name = written(port.communication.name)
+        others = sum(other.communication.name == port.communication.name for other in self.instances.ports())
+        return name if port.instance is self.instance or others == 1 else f"{written(port.instance.name)}.{name}"
+
+    def atom(self, expression: ex.Expression) -> str:
+        """A name of the component itself without the component."""
+        text = super().atom(expression)
+        if isinstance(expression, robosc.Access) and expression.component is not None:
+            owner = self.instances.instance(expression.component, self.instance)
+            if owner is self.instance:
+                return text.removeprefix(f"{written(expression.component.name)}.")
+        return text
 
 
-def _rows(source: int, steps: Sequence[Step]) -> list[Label]:
-    return [_visible(step.label) for step in steps if step.source == source and step.target in (None, source)]
+class _Plant(SctPrinter):
+    """Says what one plant does, its own names without the plant before them."""
+
+    def __init__(self, plant: sct.Plant) -> None:
+        self.plant = plant
+
+    def group(self, key: str) -> Group:
+        locations = self.plant.locations
+        steps = [
+            _Step(location, edge.target, self.label(edge)) for location in locations for edge in edges_from(location)
+        ]
+        return _automaton(
+            key,
+            self.plant.name,
+            [
+                f"{variable.name}: {_type(variable.type)} = {self(variable.initial)}"
+                for variable in self.plant.variables
+            ],
+            locations,
+            _joined(steps, len(locations), alike=self.plant.kind == sct.PlantKind.data),
+        )
+
+    def label(self, edge: sct.Edge) -> Label:
+        own = plant_of(edge.event) is self.plant
+        guard = [] if edge.guard is None else [f"if {self(edge.guard)}"]
+        updates = [
+            f"{self(sct.VariableReference(variable=update.variable))} := {self(update.value)}"
+            for update in edge.updates
+        ]
+        return (edge.event.name if own else event_name(edge.event), *guard, *updates)
+
+    def atom(self, expression: ex.Expression) -> str:
+        """A location or variable of the plant itself by its bare name; an input by its own, as its event is near."""
+        match expression:
+            case sct.LocationReference() if expression.location.eContainer() is self.plant:
+                return expression.location.name
+            case sct.VariableReference() if expression.variable.eContainer() is self.plant:
+                return expression.variable.name
+            case sct.InputReference():
+                return expression.input.name
+        return super().atom(expression)
 
 
-def _visible(label: Label) -> Label:
-    return tuple(visible(line) for line in label)
+def _joined(steps: list[_Step], locations: int, *, alike: bool) -> list[_Step]:
+    """What happens in every location in one way, said once: it leads to the same one from all, or stays in each.
+
+    With two locations a cycle between them is told apart from that, unless the locations are `alike` on purpose.
+    """
+    if locations < (2 if alike else 3):
+        return steps
+    ways: dict[tuple[Label, State | None], set[State | None]] = {}
+    for step in steps:
+        ways.setdefault((step.label, step.target), set()).add(step.source)
+        if step.stays:
+            ways.setdefault((step.label, None), set()).add(step.source)
+    common = [way for way, sources in ways.items() if len(sources) == locations]
+    rest = [
+        step
+        for step in steps
+        if (step.label, step.target) not in common and not (step.stays and (step.label, None) in common)
+    ]
+    return [*(_Step(None, target, label) for label, target in common), *rest]
 
 
-def _key(group: str, number: int) -> str:
-    return f"{group}_every" if number == EVERY else f"{group}_{number + 1}"
+def _type(kind: robosc.DataType | ex.Type) -> str:
+    match kind:
+        case ex.EnumerationType():
+            return kind.enumeration.name
+        case robosc.ComplexDataTypeReference():
+            return written(kind.type.name)
+        case robosc.Array():
+            return f"array({_type(kind.type)})"
+        case ex.IntegerType() | robosc.IntegerDataType() if kind.minimum is not None:
+            return f"integer({kind.minimum}..{kind.maximum})"
+    return type(kind).__name__.removesuffix("Type").removesuffix("Data").lower()

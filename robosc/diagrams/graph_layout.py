@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING
 import networkx as nx
 
 from robosc.diagrams.layers import Link, arrange
-from robosc.diagrams.shapes import text_width
+from robosc.diagrams.picture import text_width
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from robosc.diagrams.graph import Arrow, Group, Label, Node
     from robosc.diagrams.layers import Arrangement
-    from robosc.diagrams.shapes import Point
+    from robosc.diagrams.picture import Point
 
 TITLE_SIZE, ROW_SIZE = 13, 11
 #: Heights of the part of a node with its title, and of a line below it.

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 from typing import TYPE_CHECKING
 
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
 from robosc.diagrams.graph_drawing import draw
-from robosc.diagrams.rendering import environment
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -34,33 +36,35 @@ _PLAIN = re.compile(r"[^A-Za-z0-9_ .,/()=+*-]")
 def mermaid(graph: Graph) -> str:
     """A state diagram where groups have titles, else a flow chart."""
     name = "states" if _is_states(graph) else "ros"
-    return _render(f"{name}.mermaid.j2", graph, shapes=_MERMAID_SHAPES)
+    return render(f"{name}.mermaid.j2", graph=graph, shapes=_MERMAID_SHAPES)
 
 
 def dot(graph: Graph) -> str:
     """A graph for Graphviz, a cluster for each group that has a title."""
-    return _render("graph.dot.j2", graph, shapes=_DOT_SHAPES, states=_is_states(graph))
+    return render("graph.dot.j2", graph=graph, shapes=_DOT_SHAPES, states=_is_states(graph))
 
 
 def svg(graph: Graph) -> str:
     """A picture, laid out here."""
-    return environment(markup=True).get_template("graph.svg.j2").render(picture=draw(graph))
+    return render("picture.svg.j2", picture=draw(graph))
 
 
 def _is_states(graph: Graph) -> bool:
     return all(group.title for group in graph.groups)
 
 
-def _render(name: str, graph: Graph, **values: object) -> str:
-    templates = environment(markup=False)
-    templates.filters |= {
-        "dot": _dot,
-        "dot_labels": _dot_labels,
-        "dot_node": _dot_node,
-        "mermaid": _mermaid,
-        "mermaid_labels": _mermaid_labels,
-    }
-    return templates.get_template(name).render(graph=graph, **values)
+def render(template: str, **values: object) -> str:
+    """What a template of this folder makes of values, which are escaped in SVG."""
+    environment = Environment(
+        loader=FileSystemLoader(Path(__file__).with_name("templates")),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+        autoescape=".svg." in template,  # noqa: S701 - the other notations are no XML
+    )
+    environment.filters |= {"dot": _dot, "dot_labels": _dot_labels, "dot_node": _dot_node, "mermaid": _mermaid}
+    return environment.get_template(template).render(**values)
 
 
 def _mermaid(text: str | Label) -> str:
@@ -69,14 +73,9 @@ def _mermaid(text: str | Label) -> str:
     return "<br/>".join(_PLAIN.sub(lambda found: f"#{ord(found[0])};", line) for line in lines)
 
 
-def _mermaid_labels(labels: Sequence[Label]) -> str:
-    return "<br/>".join(map(_mermaid, labels))
-
-
-def _dot(text: str | Label) -> str:
-    """A quoted string: lines centred, backslashes, quotes and entities without a meaning."""
-    lines = [text] if isinstance(text, str) else text
-    return '"' + r"\n".join(map(_dot_line, lines)) + '"'
+def _dot(text: str) -> str:
+    """A quoted string in which backslashes, quotes and entities have no meaning."""
+    return f'"{_dot_line(text)}"'
 
 
 def _dot_line(text: str) -> str:
