@@ -12,9 +12,9 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from robosc.configuration import ControlLoop
-from robosc.m2m.sct_to_engine.intervals import interval_of
 from robosc.m2t.c import engine
 from robosc.m2t.c.names import CNames
+from robosc.semantics.domains import domain
 from robosc.semantics.roles import Roles
 
 if TYPE_CHECKING:
@@ -235,7 +235,7 @@ def _program(model: SupervisoryControlModel, source: Path) -> Path:
 def _inputs(model: SupervisoryControlModel, names: CNames) -> Iterator[str]:
     """Sets each input to any of its values."""
     for each in (input_ for plant in model.plants for input_ in plant.inputs):
-        low, high = interval_of(each.type)
+        low, high = domain(each.type)
         member = f"robot.inputs.{names.member(each)}"
         value = f"INT64_C({low}) + (int64_t)(chance() % UINT64_C({high - low + 1}))"
         yield f"    {member} = (__typeof__({member}))({value});"

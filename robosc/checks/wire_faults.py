@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from robosc.metamodel import robosc as rsc
 from robosc.ros_types.unknown import MAKE_KNOWN, REPAIR, why_unknown
-from robosc.ros_types.wire import INTEGER_RANGES, Basic, DefinitionError, Fields, Nested, Section, Sequence, WireType
+from robosc.ros_types.wire import PRIMITIVES, Basic, DefinitionError, Fields, Nested, Section, Sequence, WireType
 from robosc.semantics.naming import written
 from robosc.semantics.typing import declared_type
 
@@ -17,17 +17,6 @@ if TYPE_CHECKING:
 
     from robosc.checks.wire_data import Carried, Uses
     from robosc.ros_types import RosDistribution, RosTypes
-
-_INTEGERS = frozenset(INTEGER_RANGES)
-#: The wire types that hold values of a type, and the type to write for them.
-_FITTING: dict[type[rsc.DataType], tuple[frozenset[str], str]] = {
-    rsc.BooleanDataType: (frozenset({"bool"}), "boolean"),
-    rsc.IntegerDataType: (_INTEGERS, "integer"),
-    rsc.DoubleDataType: (frozenset({"float32", "float64"}), "double"),
-    rsc.StringDataType: (frozenset({"string"}), "string"),
-}
-#: The wire types whose values convert to a type without harm, on the way into the controller.
-_CONVERTING: dict[type[rsc.DataType], frozenset[str]] = {rsc.DoubleDataType: _INTEGERS}
 
 
 @dataclass(frozen=True)
@@ -119,7 +108,7 @@ class _Comparison:
         elif isinstance(carried, rsc.ComplexDataTypeReference):
             if isinstance(carried.type, rsc.ObjectDataType):
                 yield from self._object(carried.type, fields, name)
-        elif carried is not None and type(carried) in _FITTING:
+        elif isinstance(carried, rsc.BasicDataType) and not isinstance(carried, rsc.NoneDataType):
             field = next(iter(fields)) if len(fields) == 1 else "data"
             if field not in fields:
                 yield Fault(None, f"{name} has no field for a lone {_text(carried)}: {_listed(fields)}", _lone(fields))
@@ -167,10 +156,12 @@ class _Comparison:
         self._around.pop()
 
     def _holds(self, wire: WireType, declared: rsc.DataType) -> bool:
-        kind = type(declared)
-        if not isinstance(wire, Basic) or kind not in _FITTING:
+        """Whether a wire type holds values of a type; on the way into the controller integers become doubles."""
+        primitive = PRIMITIVES.get(wire.name) if isinstance(wire, Basic) else None
+        if primitive is None or not isinstance(declared, rsc.BasicDataType):
             return False
-        return wire.name in _FITTING[kind][0] or (self._is_received and wire.name in _CONVERTING.get(kind, ()))
+        text = _text(declared)
+        return primitive.name == text or (self._is_received and (primitive.name, text) == ("integer", "double"))
 
 
 def _name(ros_type: Nested, part: Section) -> str:
@@ -226,4 +217,5 @@ def _type_for(wire: WireType) -> str | None:
         return None if element is None else f"array({element})"
     if isinstance(wire, Nested):
         return str(wire)
-    return next((fitting for names, fitting in _FITTING.values() if wire.name in names), None)
+    primitive = PRIMITIVES.get(wire.name)
+    return None if primitive is None else primitive.name

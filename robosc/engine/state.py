@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
-from robosc.m2m.sct_to_engine.intervals import interval_of
 from robosc.metamodel import engine
 from robosc.metamodel import expression as ex
+from robosc.semantics.domains import domain
 
 if TYPE_CHECKING:
     from robosc.metamodel import sct
@@ -23,7 +23,7 @@ class Domain:
     """
 
     def __init__(self, kind: ex.Type) -> None:
-        self.low, self.high = interval_of(kind)
+        self.low, self.high = domain(kind)
         self._names: list[str] | None = None
         match kind:
             case engine.LocationType(plant=plant):

@@ -8,7 +8,7 @@ from robosc.metamodel import robosc as rsc
 from robosc.metamodel.reflection import contents, tree
 from robosc.ros_types import DefinitionError, Section
 from robosc.ros_types.unknown import OWN_OBJECT, other_kinds, why_unknown
-from robosc.ros_types.wire import INTEGER_RANGES, Basic, Sequence
+from robosc.ros_types.wire import PRIMITIVES, Basic, Sequence
 from robosc.semantics.communication import section_of
 
 if TYPE_CHECKING:
@@ -18,6 +18,12 @@ if TYPE_CHECKING:
 
 #: Small integers bring their range with them.
 _NARROW = ("int8", "uint8", "int16", "uint16")
+_TYPES = {
+    "boolean": rsc.BooleanDataType,
+    "integer": rsc.IntegerDataType,
+    "double": rsc.DoubleDataType,
+    "string": rsc.StringDataType,
+}
 
 
 def declare(reference: rsc.InterfaceTypeReference, interfaces: RosTypes) -> tuple[str, str] | None:
@@ -107,11 +113,10 @@ def _data_type(wire: WireType, distribution: RosDistribution) -> rsc.DataType | 
 
 
 def _basic(name: str) -> rsc.DataType | None:
-    if name in INTEGER_RANGES:
-        minimum, maximum = INTEGER_RANGES[name] if name in _NARROW else (None, None)
-        return rsc.IntegerDataType(minimum=minimum, maximum=maximum)
-    if name == "bool":
-        return rsc.BooleanDataType()
-    if name in {"float32", "float64"}:
-        return rsc.DoubleDataType()
-    return rsc.StringDataType() if name == "string" else None
+    primitive = PRIMITIVES.get(name)
+    if primitive is None:
+        return None
+    made: rsc.DataType = _TYPES[primitive.name]()
+    if isinstance(made, rsc.IntegerDataType) and primitive.range is not None and name in _NARROW:
+        made.minimum, made.maximum = primitive.range
+    return made

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 
 class DefinitionError(ValueError):
@@ -33,13 +33,26 @@ class Section(Enum):
         return self.value[1]
 
 
-#: The values of each whole number; a `byte` is that of ROS 1.
-INTEGER_RANGES = {
-    **{f"int{bits}": (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1) for bits in (8, 16, 32, 64)},
-    **{f"uint{bits}": (0, 2**bits - 1) for bits in (8, 16, 32, 64)},
-    "byte": (-128, 127),
-    "char": (0, 255),
+class Primitive(NamedTuple):
+    """A type without fields: the type of RoboSC that has its values, and the least and the greatest whole number."""
+
+    name: str
+    range: tuple[int, int] | None = None
+
+
+#: All of them but `wstring`, which no data of a model can have; a `byte` is that of ROS 1.
+PRIMITIVES = {
+    "bool": Primitive("boolean"),
+    **{f"int{bits}": Primitive("integer", (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1)) for bits in (8, 16, 32, 64)},
+    **{f"uint{bits}": Primitive("integer", (0, 2**bits - 1)) for bits in (8, 16, 32, 64)},
+    "byte": Primitive("integer", (-128, 127)),
+    "char": Primitive("integer", (0, 255)),
+    "float32": Primitive("double"),
+    "float64": Primitive("double"),
+    "string": Primitive("string"),
 }
+#: The values of each whole number.
+INTEGER_RANGES = {name: primitive.range for name, primitive in PRIMITIVES.items() if primitive.range is not None}
 
 #: The folder in a package that holds the definitions of a kind; the same word ends the names of its files.
 FOLDERS = {"message": "msg", "service": "srv", "action": "action"}

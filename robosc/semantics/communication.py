@@ -60,6 +60,15 @@ _NAMES = ("request", "response", "error", "feedback", "cancel")
 CONTROLLABLE = (sct.EventKind.trigger, sct.EventKind.reset, sct.EventKind.cancel)
 
 
+#: Quality of service where the configuration says nothing: how many messages wait in a queue.
+QUEUE_DEPTH = 10
+
+
+def is_sensor_data(package: str) -> bool:
+    """Whether ROS 2 receives messages of a package by its quality of service for sensors: best effort, the newest."""
+    return package == "sensor_msgs"
+
+
 def events(communication: robosc.CommunicationType | None) -> tuple[PortEvent, ...]:
     """The events of a communication; of a message the one that its direction means."""
     rows = EVENTS.get(type(communication), ())  # type: ignore[arg-type]

@@ -1,11 +1,12 @@
-"""Which values a type has: the finite domain of each type of an sct model, as an interval of whole numbers."""
+"""Which values a type has, as an interval of whole numbers, and the integers of a machine that hold them."""
 
 from __future__ import annotations
 
+from itertools import count
 from typing import NamedTuple
 
+from robosc.metamodel import engine, sct
 from robosc.metamodel import expression as ex
-from robosc.metamodel import sct
 
 
 class Interval(NamedTuple):
@@ -41,11 +42,13 @@ BOOLEAN = Interval(0, 1)
 
 
 def domain(declared: sct.Plant | ex.Type) -> Interval:
-    """The values of a type, or the positions of a plant's locations.
+    """The values of a type of an sct or engine model, or the positions of a plant's locations.
 
     Raises TypeError for a type without bounds: doubles, strings, integers without range.
     """
     match declared:
+        case engine.LocationType():
+            return domain(declared.plant)
         case sct.Plant():
             return Interval(0, len(declared.locations) - 1)
         case ex.BooleanType():
@@ -60,3 +63,38 @@ def domain(declared: sct.Plant | ex.Type) -> Interval:
 def truth(can_be_false: bool, can_be_true: bool) -> Interval:
     """The values of a condition, at least one of which it has."""
     return Interval(0 if can_be_false else 1, 1 if can_be_true else 0)
+
+
+class Width(NamedTuple):
+    """An integer type: its width in bits, and whether it has a sign (two's complement)."""
+
+    bits: int
+    signed: bool
+
+    @property
+    def values(self) -> Interval:
+        """What it holds."""
+        half = 1 << (self.bits - 1)
+        return Interval(-half, half - 1) if self.signed else Interval(0, 2 * half - 1)
+
+
+_WIDTHS = [Width(8, signed=False)] + [Width(bits, signed) for bits in (8, 16, 32, 64) for signed in (True, False)]
+
+
+def storage(values: Interval) -> Width:
+    """The smallest type that stores the values; of two the signed one, but of those of 8 bits.
+
+    Raises OverflowError where not even 64 bits with a sign do.
+    """
+    for width in _WIDTHS[:-1]:
+        if width.values.holds(values):
+            return width
+    raise OverflowError(f"no integer type holds {values.low} to {values.high}")
+
+
+def working_width(values: Interval, least: int = 16) -> Width:
+    """The signed type in which an operator computes whose operands and result have these values.
+
+    It has at least `least` bits, and at most as many as are needed, even if no machine has them.
+    """
+    return next(width for power in count() if (width := Width(least << power, signed=True)).values.holds(values))

@@ -4,20 +4,28 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from robosc.metamodel import sct
+
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from robosc.metamodel import sct
+
+def edges_from(location: sct.Location, event: sct.Event | None = None) -> list[sct.Edge]:
+    """Its own edges, then those that every location of its plant has; with `event` only those for this event."""
+    edges = [*location.edges, *location.eContainer().edges]
+    return edges if event is None else [edge for edge in edges if edge.event is event]
 
 
-def edges_from(location: sct.Location) -> list[sct.Edge]:
-    """Its own edges, then those that every location of its plant has."""
-    return [*location.edges, *location.eContainer().edges]
+def edges_of(plant: sct.Plant, event: sct.Event | None = None) -> list[sct.Edge]:
+    """All edges of a plant, each once; with `event` only those for this event."""
+    edges = [*(edge for location in plant.locations for edge in location.edges), *plant.edges]
+    return edges if event is None else [edge for edge in edges if edge.event is event]
 
 
-def edges_of(plant: sct.Plant) -> list[sct.Edge]:
-    """All edges of a plant, each once."""
-    return [*(edge for location in plant.locations for edge in location.edges), *plant.edges]
+def origin(edge: sct.Edge) -> sct.Location | None:
+    """The location that an edge leaves; None where it leaves each of its plant's."""
+    owner = edge.eContainer()
+    return owner if isinstance(owner, sct.Location) else None
 
 
 def edges_by_event(plants: Iterable[sct.Plant]) -> dict[sct.Event, dict[sct.Plant, list[sct.Edge]]]:

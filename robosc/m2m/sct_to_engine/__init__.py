@@ -1,6 +1,6 @@
 """From an sct model with its supervisor to what a controller executes: passes over terms, each in a file of its name.
 
-`intervals` and `terms` are what the passes work on. The order is that of `transform`.
+`terms` are what the passes work on. The order is that of `transform`.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from robosc.m2m.sct_to_engine.build_expressions import build_expression, build_value
 from robosc.m2m.sct_to_engine.collect_events import collect_edges, collect_events, collect_groups, collect_sources
-from robosc.m2m.sct_to_engine.combine_guards import combine_guards, within
+from robosc.m2m.sct_to_engine.combine_guards import combine_guards
 from robosc.m2m.sct_to_engine.find_readers import find_readers
 from robosc.m2m.sct_to_engine.lower_expressions import Lowering
 from robosc.m2m.sct_to_engine.merge_effects import EffectTerms, merge_effects
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from robosc.m2m.sct_to_engine.collect_events import EdgeTable
-    from robosc.m2m.sct_to_engine.combine_guards import GuardTerms, Variables
+    from robosc.m2m.sct_to_engine.combine_guards import GuardTerms
     from robosc.metamodel import expression as ex
 
 #: A robot of up to so many events is asked for all of them whenever something happened: to keep an eye on who is
@@ -73,9 +73,9 @@ def _transform(model: sct.SupervisoryControlModel, polled: int) -> engine.Engine
     events = collect_events(model, edges, inputs)
     incremental = len(events) > polled and any(event.role != engine.Role.incoming for event in events.values())
     lower = Lowering(Terms(), variables, inputs)
-    guards = combine_guards(model, edges, variables, lower)
+    guards = combine_guards(model, edges, lower)
     shared = share_conditions(guards, events, lower.terms, incremental=incremental)
-    effects = {event: merge_effects(edges[event], variables, lower) for event in events}
+    effects = {event: merge_effects(edges[event], lower) for event in events}
     made = engine.EngineModel(
         name=model.name,
         model=model,
@@ -85,7 +85,7 @@ def _transform(model: sct.SupervisoryControlModel, polled: int) -> engine.Engine
         groups=collect_groups(model, events),
         conditions=list(shared.conditions.values()),
         events=list(events.values()),
-        choices=_choices(model, events, edges, variables, lower),
+        choices=_choices(model, events, edges, lower),
         settlingBound=Roles(model).settling_bound,
         incremental=incremental,
     )
@@ -113,22 +113,18 @@ def _choices(
     model: sct.SupervisoryControlModel,
     events: Mapping[sct.Event, engine.Event],
     edges: EdgeTable,
-    variables: Variables,
     lower: Lowering,
 ) -> list[engine.Choice]:
     """The choices of the data to send; tells each trigger whose data is chosen its own."""
     roles, choices = Roles(model), {}
     for alternatives in roles.data:
         plant = plant_of(alternatives[0])
-        variable = variables.get(plant)
         choices[plant] = engine.Choice(
             name=plant.name,
             plant=plant,
-            variable=variable,
+            variable=lower.variables.get(plant),
             alternatives=[
-                engine.Alternative(
-                    event=events[event], chosen=_expression(_stays(edges, event, plant, variable, lower))
-                )
+                engine.Alternative(event=events[event], chosen=_expression(_stays(edges, event, plant, lower)))
                 for event in alternatives
             ],
         )
@@ -137,15 +133,13 @@ def _choices(
     return list(choices.values())
 
 
-def _stays(
-    edges: EdgeTable, event: sct.Event, plant: sct.Plant, variable: engine.StateVariable | None, lower: Lowering
-) -> Term:
+def _stays(edges: EdgeTable, event: sct.Event, plant: sct.Plant, lower: Lowering) -> Term:
     """Where an event would leave its plant in its location."""
     taken = edges[event].get(plant, {})
     if None in taken:
-        return lower.terms.at(variable, taken[None].target)
+        return lower.within(plant, [taken[None].target])
     loops = [location for location, edge in taken.items() if edge.target is location]
-    return within(loops, plant.locations, variable, lower)
+    return lower.within(plant, loops)
 
 
 def _expression(condition: Term) -> ex.Expression | None:

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from robosc.m2m.sct_to_engine.intervals import Width, working_width
 from robosc.m2m.sct_to_engine.terms import COMPLEMENTS
 from robosc.metamodel import engine, sct
 from robosc.metamodel import expression as ex
-from robosc.semantics.domains import Interval
+from robosc.semantics.domains import Interval, Width, working_width
 from robosc.semantics.operators import FUNCTIONS
 
 if TYPE_CHECKING:

@@ -6,6 +6,7 @@ from pathlib import PurePath
 from typing import TYPE_CHECKING
 
 from robosc.metamodel import engine, sct
+from robosc.semantics.edges import edges_by_event, origin
 from robosc.semantics.printing import RobotPrinter
 from robosc.semantics.roles import Roles, event_name, plant_of, provide_numbers
 
@@ -39,12 +40,8 @@ _SENTENCES = {
 def collect_edges(model: sct.SupervisoryControlModel) -> EdgeTable:
     """The edges of each event."""
     table: EdgeTable = {event: {} for plant in model.plants for event in plant.events}
-    for plant in model.plants:
-        for location in plant.locations:
-            for edge in location.edges:
-                table[edge.event].setdefault(plant, {})[location] = edge
-        for edge in plant.edges:
-            table[edge.event][plant] = {None: edge}
+    for event, by_plant in edges_by_event(model.plants).items():
+        table[event] = {plant: {origin(edge): edge for edge in edges} for plant, edges in by_plant.items()}
     return table
 
 

@@ -10,7 +10,7 @@ from robosc.metamodel import expression as ex
 from robosc.semantics.walks import operands
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Collection, Mapping, Sequence
 
 #: An expression, and whether it is meant as it stands (else its negation).
 _Wanted = tuple[ex.Expression, bool]
@@ -29,7 +29,7 @@ class Lowering:
         inputs: Mapping[sct.Input, engine.Input],
     ) -> None:
         self.terms = terms
-        self._variables = variables
+        self.variables = variables
         self._inputs = inputs
         self._done: dict[_Wanted, Term] = {}
 
@@ -50,6 +50,25 @@ class Lowering:
                 pending.append((wanted, parts))
                 pending += [(part, None) for part in reversed(parts)]
         return self._done[expression, True]
+
+    def within(
+        self,
+        plant: sct.Plant,
+        locations: Collection[sct.Location | None],
+        possible: Sequence[sct.Location | None] | None = None,
+    ) -> Term:
+        """That a plant is in one of the locations, given that it is in a possible one, said the shorter way.
+
+        All of these are possible, and each once; None: all locations of the plant are.
+        """
+        possible = plant.locations if possible is None else possible
+        holds = 2 * len(locations) <= len(possible)
+        chosen = set(locations)
+        variable = self.variables.get(plant)
+        return self.terms.junction(
+            engine.Or if holds else engine.And,
+            [self.terms.at(variable, place, holds=holds) for place in possible if place and (place in chosen) is holds],
+        )
 
     def _made(self, wanted: _Wanted, parts: list[Term]) -> Term:
         expression, positive = wanted
@@ -76,11 +95,11 @@ class Lowering:
                 owner: ex.Enumeration = expression.literal.eContainer()
                 return self.terms.constant(owner, list(owner.literals).index(expression.literal))
             case sct.VariableReference():
-                return self.terms.reference(self._variables[expression.variable])
+                return self.terms.reference(self.variables[expression.variable])
             case sct.InputReference():
                 return self.terms.reference(self._inputs[expression.input])
             case sct.LocationReference():
-                return self.terms.at(self._variables.get(expression.location.eContainer()), expression.location)
+                return self.terms.at(self.variables.get(expression.location.eContainer()), expression.location)
         raise ValueError(f"an sct model holds no {type(expression).__name__}")
 
 

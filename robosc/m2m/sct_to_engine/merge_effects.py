@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from heapq import heapify, heappop, heappush
 from typing import TYPE_CHECKING
 
-from robosc.m2m.sct_to_engine.combine_guards import within
 from robosc.metamodel import engine, sct
 from robosc.semantics.domains import Interval
 
@@ -14,7 +13,6 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
 
     from robosc.m2m.sct_to_engine.collect_events import Edges
-    from robosc.m2m.sct_to_engine.combine_guards import Variables
     from robosc.m2m.sct_to_engine.lower_expressions import Lowering
     from robosc.m2m.sct_to_engine.terms import Term
 
@@ -48,29 +46,24 @@ class EffectTerms:
     copied: Collection[engine.StateVariable]
 
 
-def merge_effects(edges: Mapping[sct.Plant, Edges], variables: Variables, lower: Lowering) -> EffectTerms:
+def merge_effects(edges: Mapping[sct.Plant, Edges], lower: Lowering) -> EffectTerms:
     """The effect of an event whose plants take these edges.
 
     Variables come first, ordered so that each is read before it is written; where that is impossible the value before
     is to be read from a copy. Locations come last: no other step needs one after it has changed.
     """
-    updates = [
-        step for plant, taken in edges.items() for step in _updates(taken, variables.get(plant), variables, lower)
-    ]
-    moves = [step for plant, taken in edges.items() for step in _moves(plant, taken, variables.get(plant), lower)]
-    steps = _ordered(updates)
+    steps = _ordered([step for plant, taken in edges.items() for step in _updates(plant, taken, lower)])
+    moves = [step for plant, taken in edges.items() for step in _moves(plant, taken, lower)]
     return EffectTerms([*steps, *moves], _read_late(steps))
 
 
-def _updates(
-    edges: Edges, place: engine.StateVariable | None, variables: Variables, lower: Lowering
-) -> list[StepTerms]:
+def _updates(plant: sct.Plant, edges: Edges, lower: Lowering) -> list[StepTerms]:
     """Updates that are the same on all edges, one by one; else by location."""
     groups: dict[tuple[tuple[engine.StateVariable, Term], ...], list[sct.Location | None]] = {}
     for location, edge in edges.items():
         values: Values = {}
         for update in edge.updates:
-            variable = variables[update.variable]
+            variable = lower.variables[update.variable]
             value = lower.terms.saturation(lower(update.value), Interval(variable.minimum, variable.maximum))
             if value is not lower.terms.reference(variable):
                 values[variable] = value
@@ -78,7 +71,7 @@ def _updates(
     if len(groups) == 1:
         return [StepTerms([(None, {variable: value})]) for values in groups for variable, value in values]
     cases = [(locations, _in_order(dict(values))) for values, locations in groups.items()]
-    return _by_location(cases, list(edges), place, lower)
+    return _by_location(plant, cases, list(edges), lower)
 
 
 def _in_order(values: Values) -> Values:
@@ -86,8 +79,9 @@ def _in_order(values: Values) -> Values:
     return {variable: value for step in _ordered(singles) for variable, value in step.cases[0][1].items()}
 
 
-def _moves(plant: sct.Plant, edges: Edges, variable: engine.StateVariable | None, lower: Lowering) -> list[StepTerms]:
+def _moves(plant: sct.Plant, edges: Edges, lower: Lowering) -> list[StepTerms]:
     """The change of location. Staying counts as going to the same location, so that one assignment often does."""
+    variable = lower.variables.get(plant)
     if variable is None:
         return []
     targets: dict[sct.Location, list[sct.Location | None]] = {}
@@ -99,25 +93,23 @@ def _moves(plant: sct.Plant, edges: Edges, variable: engine.StateVariable | None
     ]
     if len(cases) == 1:
         return [StepTerms([(None, values)]) for _, values in cases if values]
-    return _by_location(cases, list(edges), variable, lower)
+    return _by_location(plant, cases, list(edges), lower)
 
 
 def _by_location(
+    plant: sct.Plant,
     cases: Sequence[tuple[Sequence[sct.Location | None], Values]],
     possible: Sequence[sct.Location | None],
-    variable: engine.StateVariable | None,
     lower: Lowering,
 ) -> list[StepTerms]:
     """A step with the cases that change something; the last needs no condition where all do."""
     acting = [(locations, values) for locations, values in cases if values]
     others = len(acting) == len(cases)
     found: list[tuple[Term | None, Values]] = [
-        (
-            None if others and position == len(acting) - 1 else within(locations, possible, variable, lower),
-            values,
-        )
-        for position, (locations, values) in enumerate(acting)
+        (lower.within(plant, locations, possible), values) for locations, values in acting
     ]
+    if others:
+        found[-1] = None, acting[-1][1]
     return [StepTerms(found)] if found else []
 
 

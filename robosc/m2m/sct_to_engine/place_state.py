@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, TypeVar
 
-from robosc.m2m.sct_to_engine.intervals import interval_of, storage
 from robosc.metamodel import engine, sct
 from robosc.metamodel import expression as ex
+from robosc.semantics.domains import domain, storage
 from robosc.semantics.naming import Names
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ def place_inputs(model: sct.SupervisoryControlModel) -> dict[sct.Input, engine.I
     placed = {}
     for plant in model.plants:
         for declared in plant.inputs:
-            low, high = interval_of(declared.type)
+            low, high = domain(declared.type)
             initial = min(max(0, low), high)
             name = f"{plant.name}.{declared.name}"
             placed[declared] = _keep(engine.Input(input=declared, name=name, initial=initial), declared.type)
@@ -69,6 +69,6 @@ def _keep(declared: _Declared, kind: ex.Type) -> _Declared:
         case ex.BooleanType():
             kind = ex.BooleanType()
     declared.type = kind
-    declared.minimum, declared.maximum = interval_of(kind)
-    declared.bits, declared.signed = storage(interval_of(kind))
+    declared.minimum, declared.maximum = domain(kind)
+    declared.bits, declared.signed = storage(domain(kind))
     return declared

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final
 
-from robosc.m2m.sct_to_engine.intervals import interval_of
 from robosc.metamodel import engine, sct
 from robosc.metamodel import expression as ex
-from robosc.semantics.domains import BOOLEAN, Interval
+from robosc.semantics.domains import BOOLEAN, Interval, domain
 from robosc.semantics.operators import BY_CLASS, FUNCTIONS
 
 if TYPE_CHECKING:
@@ -104,7 +103,7 @@ class Terms:
 
     def reference(self, declared: engine.Declaration) -> Term:
         """What a variable or an input holds."""
-        values = interval_of(declared.type)
+        values = domain(declared.type)
         match declared.type:
             case ex.BooleanType():
                 sort: Sort = None

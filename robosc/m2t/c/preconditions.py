@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 
 from robosc.diagnostics import Diagnostic, Severity
 from robosc.m2m.sct_to_engine import lowering
-from robosc.m2m.sct_to_engine.intervals import Width
 from robosc.metamodel import expression as ex
 from robosc.metamodel.places import place
 from robosc.metamodel.reflection import contents
+from robosc.semantics.domains import Width
 from robosc.semantics.edges import edges_of
 
 if TYPE_CHECKING:

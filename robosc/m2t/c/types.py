@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from robosc.m2m.sct_to_engine.intervals import Width, interval_of, storage
 from robosc.metamodel import expression as ex
+from robosc.semantics.domains import Width, domain, storage
 
 
 def integer_type(bits: int, *, signed: bool) -> str:
@@ -15,7 +15,7 @@ def type_name(kind: ex.Type) -> str:
     """The C type that stores a value of a type of an sct or engine model."""
     if isinstance(kind, ex.BooleanType):
         return "bool"
-    width = storage(interval_of(kind))
+    width = storage(domain(kind))
     return integer_type(width.bits, signed=width.signed)
 
 

@@ -27,8 +27,6 @@ if TYPE_CHECKING:
     from robosc.runtime.core.proxies import ActionProxy, Answer
     from robosc.runtime.core.settings import Parameter, Settings, Value
 
-#: Messages that wait where nothing else is configured.
-DEPTH = 10
 #: Seconds that a node waits at most before it looks whether it was interrupted, and for what it sent at its end.
 LONGEST_WAIT = 0.1
 FAREWELL = 0.5

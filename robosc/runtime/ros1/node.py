@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING, Any
 from robosc.metamodel import rosgraph
 from robosc.ros_types import Section
 from robosc.runtime.core.event_loop import EventLoop
-from robosc.runtime.core.node import DEPTH, FAREWELL, LONGEST_WAIT, Node, StartError
+from robosc.runtime.core.node import FAREWELL, LONGEST_WAIT, Node, StartError
 from robosc.runtime.core.port import CallHandlers, Endpoint, GoalHandlers
+from robosc.semantics.communication import QUEUE_DEPTH
 from robosc.semantics.naming import below_layer
 
 #: Where Debian has the Python of ROS 1; appended, so that nothing of this Python's own is hidden.
@@ -85,7 +86,7 @@ class Ros1Node(Node):
     def open_reports(self, names: Sequence[str]) -> None:
         for name in names:
             kept = name == "definition"
-            self._reports[name] = rospy.Publisher(f"~{name}", String, queue_size=1 if kept else DEPTH, latch=kept)
+            self._reports[name] = rospy.Publisher(f"~{name}", String, queue_size=1 if kept else QUEUE_DEPTH, latch=kept)
 
     def close(self) -> None:
         rospy.signal_shutdown("the controller has ended")
@@ -135,7 +136,9 @@ class Ros1Node(Node):
     def _subscribe(self, subscription: rosgraph.Subscription, receive: Callable[[Message], None]) -> None:
         self.subscribe(subscription.topic, self._types[subscription.interface], receive)
 
-    def subscribe(self, name: str, kind: Any, receive: Callable[[Message], None], depth: int | None = DEPTH) -> Any:
+    def subscribe(
+        self, name: str, kind: Any, receive: Callable[[Message], None], depth: int | None = QUEUE_DEPTH
+    ) -> Any:
         """Calls `receive` in the event loop's thread; of more than `depth` messages that wait, the oldest gives way."""
 
         def post(message: Message) -> None:
@@ -250,7 +253,7 @@ class Ros1Node(Node):
 
 def advertise(name: str, kind: Any, *, latch: bool = False) -> Any:
     """A publisher on a topic."""
-    return rospy.Publisher(name, kind, queue_size=DEPTH, latch=latch, tcp_nodelay=True)
+    return rospy.Publisher(name, kind, queue_size=QUEUE_DEPTH, latch=latch, tcp_nodelay=True)
 
 
 class _Answer:

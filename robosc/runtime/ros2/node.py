@@ -11,8 +11,9 @@ from robosc.metamodel import rosgraph
 from robosc.ros_types import Section
 from robosc.runtime.core.clients import POLL
 from robosc.runtime.core.event_loop import EventLoop
-from robosc.runtime.core.node import DEPTH, FAREWELL, LONGEST_WAIT, Node, StartError
+from robosc.runtime.core.node import FAREWELL, LONGEST_WAIT, Node, StartError
 from robosc.runtime.core.port import CallHandlers, Endpoint, GoalHandlers
+from robosc.semantics.communication import QUEUE_DEPTH, is_sensor_data
 from robosc.semantics.naming import below_layer
 
 try:
@@ -109,7 +110,7 @@ class Ros2Node(Node):
     def open_reports(self, names: Sequence[str]) -> None:
         for name in names:
             kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-            quality = kept if name == "definition" else QoSProfile(depth=DEPTH)
+            quality = kept if name == "definition" else QoSProfile(depth=QUEUE_DEPTH)
             self._reports[name] = self.node.create_publisher(String, f"~/{name}", quality)
 
     def close(self) -> None:
@@ -165,7 +166,7 @@ class Ros2Node(Node):
 
     def quality(self, name: str, usual: Any = None) -> Any:
         """The quality of service of a topic, service or action: what the configuration does not say is as usual."""
-        usual = usual or QoSProfile(depth=DEPTH)
+        usual = usual or QoSProfile(depth=QUEUE_DEPTH)
         chosen = self._configuration.qos.get(name.removeprefix("/"))
         if chosen is None:
             return usual
@@ -177,7 +178,7 @@ class Ros2Node(Node):
         return made
 
     def _received_quality(self, element: rosgraph.Subscription | rosgraph.Publisher) -> Any:
-        sensor = element.interface.package == "sensor_msgs"
+        sensor = is_sensor_data(element.interface.package)
         return self.quality(element.topic, qos_profile_sensor_data if sensor else None)
 
     def _publisher(self, publisher: rosgraph.Publisher) -> Any:
@@ -211,7 +212,7 @@ class Ros2Node(Node):
     ) -> None:
         # What is sent on is reliable, whatever is received.
         chosen = self._configuration.qos.get(element.topic.removeprefix("/"))
-        sent = QoSProfile(depth=(chosen.depth if chosen else None) or DEPTH)
+        sent = QoSProfile(depth=(chosen.depth if chosen else None) or QUEUE_DEPTH)
         kind, received = self._types[element.interface], self._received_quality(element)
         _Relay(self.node, _Route(kind, source, target, received, sent), passes)
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from robosc.configuration import QualityOfService
 from robosc.m2t.ros.packages import controller_package, launch_path
+from robosc.semantics.communication import QUEUE_DEPTH, is_sensor_data
 from robosc.semantics.naming import below_layer
 
 if TYPE_CHECKING:
@@ -21,7 +22,6 @@ _FOLDERS = {"message": "msg", "service": "srv", "action": "action"}
 #: The services and topics of an action: what a layer re-maps is these, not the action's own name.
 _ACTION = [f"_action/{part}" for part in ("send_goal", "cancel_goal", "get_result", "feedback", "status")]
 _TESTED = ["launch_testing", "launch_testing_ament_cmake", "rclpy", "rosgraph_msgs"]
-_DEPTH = 10
 _DURABILITY = {None: "", "volatile": ".durability_volatile()", "transient_local": ".transient_local()"}
 
 
@@ -57,7 +57,7 @@ class Ros2:
             "headers": self._headers(node, headers, strings=configuration.publish_state_information),
             **_build(libraries, types, started, _TESTED if tests else []),
             "subscription_qos": lambda topic: _quality(_usual(topic), topic.topic, configuration),
-            "publisher_qos": lambda topic: _quality(f"rclcpp::QoS({_DEPTH})", topic.topic, configuration),
+            "publisher_qos": lambda topic: _quality(f"rclcpp::QoS({QUEUE_DEPTH})", topic.topic, configuration),
             "client_qos": lambda client: _quality(_client(client), client.name, configuration),
         }
 
@@ -73,7 +73,7 @@ class Ros2:
             "controller_side": lambda name: f"~/{below_layer(name)}",
             # The durability of what is handed on is that of who publishes.
             "received_qos": lambda topic: _quality(_usual(topic), topic.topic, configuration, with_durability=False),
-            "sent_qos": lambda topic: f"rclcpp::QoS({_chosen(topic.topic, configuration).depth or _DEPTH})",
+            "sent_qos": lambda topic: f"rclcpp::QoS({_chosen(topic.topic, configuration).depth or QUEUE_DEPTH})",
             "client_qos": lambda call: _quality(_client(call), call.name, configuration),
         }
 
@@ -99,12 +99,12 @@ def _build(
 
 def _usual(topic: Subscription | Inward | Outward) -> str:
     """The quality of service in which messages of a topic are received, where the configuration says nothing."""
-    return "rclcpp::SensorDataQoS()" if topic.interface.package == "sensor_msgs" else f"rclcpp::QoS({_DEPTH})"
+    return "rclcpp::SensorDataQoS()" if is_sensor_data(topic.interface.package) else f"rclcpp::QoS({QUEUE_DEPTH})"
 
 
 def _client(client: Client | Call) -> str:
     """The quality of service of calls, or of feedback, where the configuration says nothing."""
-    return f"rclcpp::QoS({_DEPTH})" if client.cancel else "rclcpp::ServicesQoS()"
+    return f"rclcpp::QoS({QUEUE_DEPTH})" if client.cancel else "rclcpp::ServicesQoS()"
 
 
 def _chosen(name: str, configuration: Configuration) -> QualityOfService:
