@@ -1,23 +1,26 @@
-"""What the templates of a layer print: all that passes it, in both directions, as text of C++."""
+"""What the templates of a layer print beside what it shares with a controller: what passes it, and what it blocks."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from robosc.m2m.sct_to_engine import transform
 from robosc.m2t.c.comments import string_literal
 from robosc.m2t.ros.events import Reasons
 from robosc.m2t.ros.expressions import CppPrinter
 from robosc.m2t.ros.names import CppNames
 from robosc.m2t.ros.node import Node
-from robosc.metamodel import rosgraph, sct
+from robosc.metamodel import sct
+from robosc.metamodel.engine import Role
 from robosc.semantics.edges import edges_from
-from robosc.semantics.roles import Roles, plant_of
+from robosc.semantics.roles import plant_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from robosc.m2t.ros.node import EventHandler
+    from robosc.metamodel import rosgraph
 
 
 @dataclass(frozen=True)
@@ -48,43 +51,8 @@ class Gate:
     explanation: str | None
 
 
-@dataclass(frozen=True)
-class Inward:
-    """A message from the robot to the controller, and the event that it is."""
-
-    word: str
-    topic: str
-    interface: rosgraph.Interface
-    event: EventHandler
-    unread: bool
-
-
-@dataclass(frozen=True)
-class Outward:
-    """A message from the controller to the robot."""
-
-    word: str
-    topic: str
-    interface: rosgraph.Interface
-    gate: Gate
-
-
-@dataclass(frozen=True)
-class Call:
-    """A service or action that the controller uses; only an action has feedback and is cancelled by an event."""
-
-    word: str
-    name: str
-    interface: rosgraph.Interface
-    gate: Gate
-    response: EventHandler
-    error: EventHandler
-    feedback: EventHandler | None
-    cancel: str | None
-
-
 class LayerNode:
-    """The layer of one graph: `node` is what it has in common with the controller's node."""
+    """The layer of one graph: `node` is what it shares with the controller's node."""
 
     def __init__(self, graph: rosgraph.RosGraph) -> None:
         self.node = Node(graph)
@@ -92,76 +60,43 @@ class LayerNode:
         self._names = CppNames(graph)
         self._printer = CppPrinter(self._names)
         self._reasons = Reasons(graph.model)
-        self.inward = [
-            Inward(
-                self._word(source.receptions[0].event), topic.topic, topic.interface, topic.receptions[0], topic.unread
-            )
-            for source, topic in zip(graph.subscriptions, self.node.subscriptions, strict=True)
-        ]
-        self.outward = [
-            Outward(
-                self._word(topic.sendings[0].event), topic.topic, topic.interface, self._gate(topic.sendings[0].event)
-            )
-            for topic in graph.publishers
-        ]
-        sources: list[rosgraph.ServiceClient | rosgraph.ActionClient] = [*graph.serviceClients, *graph.actionClients]
-        self.calls = [
-            Call(
-                self._word(source.request.event),
-                source.identifier,
-                source.interface,
-                self._gate(source.request.event),
-                client.response,
-                client.error,
-                client.feedback,
-                client.cancel,
-            )
-            for source, client in zip(sources, self.node.clients, strict=True)
-        ]
-        sent = [message for topic in self.node.publishers for message in topic.messages]
-        sent += [client.request for client in self.node.clients]
+        sendings = [sending for publisher in graph.publishers for sending in publisher.sendings]
+        sendings += [service.request for service in graph.serviceClients]
+        sendings += [action.request for action in graph.actionClients]
+        messages = [message for publisher in self.node.publishers for message in publisher.messages]
+        messages += [client.request for client in self.node.clients]
+        #: What the controller sends, by the enumerator of its event.
+        self.gates = {
+            message.event: self._gate(message.word, sending.event)
+            for message, sending in zip(messages, sendings, strict=True)
+        }
         #: Events of the controller and internal ones that change the node's own data.
-        self.changing = [*self.node.internal, *(message.reaction for message in sent if message.reaction)]
+        self.changing = [*self.node.internal, *(message.reaction for message in messages if message.reaction)]
         #: Events that choose provided data, which is none of the layer's business.
-        self.ignored = [self._names.c.enumerator(event) for events in Roles(graph.model).data for event in events]
-
-    @property
-    def services(self) -> list[Call]:
-        """The services."""
-        return [call for call in self.calls if call.interface.kind == rosgraph.InterfaceKind.service]
-
-    @property
-    def actions(self) -> list[Call]:
-        """The actions."""
-        return [call for call in self.calls if call.interface.kind == rosgraph.InterfaceKind.action]
-
-    @property
-    def gates(self) -> list[Gate]:
-        """What the controller sends."""
-        return [*(topic.gate for topic in self.outward), *(call.gate for call in self.calls)]
+        events = transform(graph.model).events
+        self.ignored = [self._names.c.enumerator(event.event) for event in events if event.role == Role.data]
 
     @property
     def received(self) -> list[EventHandler]:
         """What comes from the robot."""
-        answers = [handler for call in self.calls for handler in (call.feedback, call.response, call.error) if handler]
-        return [*(topic.event for topic in self.inward), *answers]
+        messages = [topic.receptions[0] for topic in self.node.subscriptions]
+        clients = self.node.clients
+        return [*messages, *(end for call in clients for end in (call.feedback, call.response, call.error) if end)]
 
     def remapped(self, parts_of_actions: Sequence[str]) -> list[str]:
         """The robot's names that a controller is started with others for; an action is re-mapped part by part."""
-        names = [topic.topic for topic in self.inward] + [topic.topic for topic in self.outward]
-        names += [service.name for service in self.services]
-        return names + [f"{action.name}/{part}" for action in self.actions for part in parts_of_actions]
+        node = self.node
+        names = [topic.topic for topic in node.subscriptions] + [topic.topic for topic in node.publishers]
+        names += [service.name for service in node.services]
+        return names + [f"{action.name}/{part}" for action in node.actions for part in parts_of_actions]
 
-    def _word(self, event: sct.Event) -> str:
-        return self._names.c.member(plant_of(event))
-
-    def _gate(self, event: sct.Event) -> Gate:
+    def _gate(self, word: str, event: sct.Event) -> Gate:
         """How an event is passed or blocked."""
         plant = plant_of(event)
         required = [requirement for requirement in self._model.requirements if requirement.event == event]
         explanation = self._reasons.explanation(event)
         return Gate(
-            self._names.c.member(plant),
+            word,
             self._names.c.enumerator(event),
             plant.origin or plant.name,
             self._reasons.requirements(event),

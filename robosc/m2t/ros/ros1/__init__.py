@@ -48,15 +48,15 @@ class Ros1:
 
     def layer(self, layer: LayerNode, configuration: Configuration, types: set[str]) -> dict[str, Any]:
         """What only the templates of a layer read; `types` are the packages of the types that it uses."""
-        dependencies = {"rosconsole", "roscpp", *types, *(["actionlib_msgs"] if layer.actions else [])}
+        dependencies = {"rosconsole", "roscpp", *types, *(["actionlib_msgs"] if layer.node.actions else [])}
         strings = bool(layer.gates) or configuration.publish_state_information
         run = configuration.supervisor.controller.run
         return {
             "headers": self._headers(
-                layer.node, {"ros/callback_queue.h"} if layer.services else set(), strings=strings
+                layer.node, {"ros/callback_queue.h"} if layer.node.services else set(), strings=strings
             ),
             **_build(dependencies, controller_package(configuration) - dependencies),
-            "threads": bool(layer.services),
+            "threads": bool(layer.node.services),
             "names": [(name, below_layer(name)) for name in layer.remapped(_ACTION)],
             "launch_path": launch_path(configuration),
             # ROS 1 wants a name for the controller's node: the one in the configuration, else the executable's.

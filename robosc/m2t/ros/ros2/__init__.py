@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
 
     from robosc.configuration import Configuration
-    from robosc.m2t.ros.layer import Call, Inward, LayerNode, Outward
-    from robosc.m2t.ros.node import Client, Node, Subscription
+    from robosc.m2t.ros.layer import LayerNode
+    from robosc.m2t.ros.node import Client, Node, Publisher, Subscription
     from robosc.metamodel import rosgraph
 
 _FOLDERS = {"message": "msg", "service": "srv", "action": "action"}
@@ -63,7 +63,7 @@ class Ros2:
 
     def layer(self, layer: LayerNode, configuration: Configuration, types: set[str]) -> dict[str, Any]:
         """What only the templates of a layer read; `types` are the packages of the types that it uses."""
-        types = types | ({"action_msgs"} if layer.actions else set())
+        types = types | ({"action_msgs"} if layer.node.actions else set())
         strings = bool(layer.gates) or configuration.publish_state_information
         return {
             "headers": self._headers(layer.node, set(), strings=strings),
@@ -97,12 +97,12 @@ def _build(
     }
 
 
-def _usual(topic: Subscription | Inward | Outward) -> str:
+def _usual(topic: Subscription | Publisher) -> str:
     """The quality of service in which messages of a topic are received, where the configuration says nothing."""
     return "rclcpp::SensorDataQoS()" if is_sensor_data(topic.interface.package) else f"rclcpp::QoS({QUEUE_DEPTH})"
 
 
-def _client(client: Client | Call) -> str:
+def _client(client: Client) -> str:
     """The quality of service of calls, or of feedback, where the configuration says nothing."""
     return f"rclcpp::QoS({QUEUE_DEPTH})" if client.cancel else "rclcpp::ServicesQoS()"
 

@@ -91,42 +91,42 @@ class Layer {
     usher_settle(&supervisor_);
 
     const std::string self = ros::this_node::getName();
-    message_stop_ = std::make_unique<MessageRelay<std_msgs::Empty>>(
+    stop_relay_ = std::make_unique<MessageRelay<std_msgs::Empty>>(
         "/stop", self + "/controller/stop",
-        [this](const auto& message) { return on_message_stop(message); });
-    message_resume_ = std::make_unique<MessageRelay<std_msgs::Empty>>(
+        [this](const auto& message) { return on_stop(message); });
+    resume_relay_ = std::make_unique<MessageRelay<std_msgs::Empty>>(
         "/resume", self + "/controller/resume",
-        [this](const auto& message) { return on_message_resume(message); });
-    message_battery_ = std::make_unique<MessageRelay<std_msgs::Int16>>(
+        [this](const auto& message) { return on_resume(message); });
+    battery_relay_ = std::make_unique<MessageRelay<std_msgs::Int16>>(
         "battery", self + "/controller/battery",
-        [this](const auto& message) { return on_message_battery(message); });
-    message_scan_ = std::make_unique<MessageRelay<sensor_msgs::LaserScan>>(
+        [this](const auto& message) { return on_battery(message); });
+    scan_relay_ = std::make_unique<MessageRelay<sensor_msgs::LaserScan>>(
         "/scan", self + "/controller/scan",
-        [this](const auto& message) { return on_message_scan(message); });
-    message_speed_ = std::make_unique<MessageRelay<std_msgs::Float32>>(
+        [this](const auto& message) { return on_scan(message); });
+    speed_relay_ = std::make_unique<MessageRelay<std_msgs::Float32>>(
         self + "/controller/speed", "/speed",
-        [this](const auto&) { return pass_message_speed(); });
-    message_label_ = std::make_unique<MessageRelay<std_msgs::String>>(
+        [this](const auto&) { return pass_speed(); });
+    label_relay_ = std::make_unique<MessageRelay<std_msgs::String>>(
         self + "/controller/label", "label",
-        [this](const auto&) { return pass_message_label(); });
-    ServiceProxy<std_srvs::SetBool>::Handlers service_light;
-    service_light.call = [this](const auto&) { return pass_service_light(); };
-    service_light.busy = [this] { block(usher_service_light_c_trigger, "Lamp.light", BlockReasons::busy()); };
-    service_light.response = [this](const auto& message) { on_service_light_response(message); };
-    service_light.error = [this](const std::string& why) { on_service_light_error(why); };
-    service_light_ = std::make_unique<ServiceProxy<std_srvs::SetBool>>(
-        node_, callers_, self + "/controller/lamp/light", "/lamp/light", service_timeout, service_light);
-    ActionProxy<nav2_msgs::NavigateToPoseAction>::Handlers action_go_to;
-    action_go_to.goal = [this](const auto&) { return pass_action_go_to(); };
-    action_go_to.busy = [this] { block(usher_action_go_to_c_trigger, "Navigation.go_to", BlockReasons::busy()); };
-    action_go_to.feedback = [this](const auto& message) { on_action_go_to_feedback(message); };
-    action_go_to.response = [this](const auto& message) { on_action_go_to_response(message); };
-    action_go_to.error = [this](const std::string& why) { on_action_go_to_error(why); };
-    action_go_to.refused = [](const std::string& why) {
+        [this](const auto&) { return pass_label(); });
+    ServiceProxy<std_srvs::SetBool>::Handlers light_handlers;
+    light_handlers.call = [this](const auto&) { return pass_light(); };
+    light_handlers.busy = [this] { block(usher_service_light_c_trigger, "Lamp.light", BlockReasons::busy()); };
+    light_handlers.response = [this](const auto& message) { on_light_response(message); };
+    light_handlers.error = [this](const std::string& why) { on_light_error(why); };
+    light_proxy_ = std::make_unique<ServiceProxy<std_srvs::SetBool>>(
+        node_, callers_, self + "/controller/lamp/light", "/lamp/light", service_timeout, light_handlers);
+    ActionProxy<nav2_msgs::NavigateToPoseAction>::Handlers go_to_handlers;
+    go_to_handlers.goal = [this](const auto&) { return pass_go_to(); };
+    go_to_handlers.busy = [this] { block(usher_action_go_to_c_trigger, "Navigation.go_to", BlockReasons::busy()); };
+    go_to_handlers.feedback = [this](const auto& message) { on_go_to_feedback(message); };
+    go_to_handlers.response = [this](const auto& message) { on_go_to_response(message); };
+    go_to_handlers.error = [this](const std::string& why) { on_go_to_error(why); };
+    go_to_handlers.refused = [](const std::string& why) {
       ROS_WARN("%s: %s", "/go_to", why.c_str());
     };
-    action_go_to_ = std::make_unique<ActionProxy<nav2_msgs::NavigateToPoseAction>>(
-        self + "/controller/go_to", "/go_to", action_timeout, action_go_to);
+    go_to_proxy_ = std::make_unique<ActionProxy<nav2_msgs::NavigateToPoseAction>>(
+        self + "/controller/go_to", "/go_to", action_timeout, go_to_handlers);
     timer_ =
         node_.createSteadyTimer(ros::WallDuration(period), [this](const ros::SteadyTimerEvent&) { publish_state(); });
     spinner_.start();
@@ -135,19 +135,19 @@ class Layer {
  private:
   // What the robot tells. The supervisor hears it first; then internal transitions and cancels that became possible run.
 
-  bool on_message_stop(const std_msgs::Empty&) {
+  bool on_stop(const std_msgs::Empty&) {
     usher_perform(&supervisor_, usher_message_stop_u_response);
     usher_settle(&supervisor_);
     return true;
   }
 
-  bool on_message_resume(const std_msgs::Empty&) {
+  bool on_resume(const std_msgs::Empty&) {
     usher_perform(&supervisor_, usher_message_resume_u_response);
     usher_settle(&supervisor_);
     return true;
   }
 
-  bool on_message_battery(const std_msgs::Int16& message) {
+  bool on_battery(const std_msgs::Int16& message) {
     supervisor_.inputs.message_battery_i_response = Integer(message.data).within(0, 100).to<std::uint8_t>();
     if (log_.active()) log_.note(Integer(message.data));
     usher_perform(&supervisor_, usher_message_battery_u_response);
@@ -155,7 +155,7 @@ class Layer {
     return true;
   }
 
-  bool on_message_scan(const sensor_msgs::LaserScan& message) {
+  bool on_scan(const sensor_msgs::LaserScan& message) {
     if (usher_enabled(&supervisor_, usher_message_scan_u_response)) {
       ArrayReader read;
       auto next = data_;
@@ -176,20 +176,20 @@ class Layer {
     return true;
   }
 
-  void on_service_light_response(const std_srvs::SetBool::Response& message) {
+  void on_light_response(const std_srvs::SetBool::Response& message) {
     data_.Lamp.lit = bool(message.success);
     if (log_.active()) log_.note(Json::object().add("success", bool(message.success)));
     usher_perform(&supervisor_, usher_service_light_u_response);
     usher_settle(&supervisor_);
   }
 
-  void on_service_light_error(const std::string& why) {
+  void on_light_error(const std::string& why) {
     ROS_WARN("%s: %s", "/lamp/light", why.c_str());
     usher_perform(&supervisor_, usher_service_light_u_error);
     usher_settle(&supervisor_);
   }
 
-  void on_action_go_to_feedback(const nav2_msgs::NavigateToPoseFeedback& message) {
+  void on_go_to_feedback(const nav2_msgs::NavigateToPoseFeedback& message) {
     if (supervisor_.state.component_Navigation == usher_component_Navigation_going) {
       data_.Navigation.seen = to_Distance(message);
     }
@@ -198,12 +198,12 @@ class Layer {
     usher_settle(&supervisor_);
   }
 
-  void on_action_go_to_response(const nav2_msgs::NavigateToPoseResult&) {
+  void on_go_to_response(const nav2_msgs::NavigateToPoseResult&) {
     usher_perform(&supervisor_, usher_action_go_to_u_response);
     usher_settle(&supervisor_);
   }
 
-  void on_action_go_to_error(const std::string& why) {
+  void on_go_to_error(const std::string& why) {
     ROS_WARN("%s: %s", "/go_to", why.c_str());
     usher_perform(&supervisor_, usher_action_go_to_u_error);
     usher_settle(&supervisor_);
@@ -213,7 +213,7 @@ class Layer {
 
   // requirement speed needs Guard.clear
   // requirement speed needs Guard.charge > 20
-  bool pass_message_speed() {
+  bool pass_speed() {
     if (usher_perform(&supervisor_, usher_message_speed_c_trigger)) {
       usher_settle(&supervisor_);
       return true;
@@ -229,7 +229,7 @@ class Layer {
     return false;
   }
 
-  bool pass_message_label() {
+  bool pass_label() {
     if (usher_perform(&supervisor_, usher_message_label_c_trigger)) {
       usher_settle(&supervisor_);
       return true;
@@ -240,7 +240,7 @@ class Layer {
   }
 
   // requirement light needs Guard.clear
-  bool pass_service_light() {
+  bool pass_light() {
     if (usher_perform(&supervisor_, usher_service_light_c_trigger)) {
       usher_settle(&supervisor_);
       return true;
@@ -258,7 +258,7 @@ class Layer {
   }
 
   // requirement go_to needs Guard.clear
-  bool pass_action_go_to() {
+  bool pass_go_to() {
     if (usher_perform(&supervisor_, usher_action_go_to_c_trigger)) {
       usher_settle(&supervisor_);
       return true;
@@ -302,7 +302,7 @@ class Layer {
       case usher_data_speed_c_none:
         return;
       case usher_action_go_to_c_cancel:
-        action_go_to_->cancel();
+        go_to_proxy_->cancel();
         direction = "out";
         break;
       case usher_message_speed_c_trigger:
@@ -406,14 +406,14 @@ class Layer {
   ros::Publisher definition_report_;
 
   ros::Publisher blocked_report_;
-  std::unique_ptr<MessageRelay<std_msgs::Empty>> message_stop_;
-  std::unique_ptr<MessageRelay<std_msgs::Empty>> message_resume_;
-  std::unique_ptr<MessageRelay<std_msgs::Int16>> message_battery_;
-  std::unique_ptr<MessageRelay<sensor_msgs::LaserScan>> message_scan_;
-  std::unique_ptr<MessageRelay<std_msgs::Float32>> message_speed_;
-  std::unique_ptr<MessageRelay<std_msgs::String>> message_label_;
-  std::unique_ptr<ServiceProxy<std_srvs::SetBool>> service_light_;
-  std::unique_ptr<ActionProxy<nav2_msgs::NavigateToPoseAction>> action_go_to_;
+  std::unique_ptr<MessageRelay<std_msgs::Empty>> stop_relay_;
+  std::unique_ptr<MessageRelay<std_msgs::Empty>> resume_relay_;
+  std::unique_ptr<MessageRelay<std_msgs::Int16>> battery_relay_;
+  std::unique_ptr<MessageRelay<sensor_msgs::LaserScan>> scan_relay_;
+  std::unique_ptr<MessageRelay<std_msgs::Float32>> speed_relay_;
+  std::unique_ptr<MessageRelay<std_msgs::String>> label_relay_;
+  std::unique_ptr<ServiceProxy<std_srvs::SetBool>> light_proxy_;
+  std::unique_ptr<ActionProxy<nav2_msgs::NavigateToPoseAction>> go_to_proxy_;
   ros::SteadyTimer timer_;
   ros::AsyncSpinner spinner_{2, &calls_};
 };

@@ -98,44 +98,44 @@ class Layer : public rclcpp::Node {
     usher_init(&supervisor_, nullptr, &hooks);
     usher_settle(&supervisor_);
 
-    message_stop_ = std::make_unique<MessageRelay<std_msgs::msg::Empty>>(
+    stop_relay_ = std::make_unique<MessageRelay<std_msgs::msg::Empty>>(
         *this, guard_, "/stop", "~/controller/stop", rclcpp::QoS(10), rclcpp::QoS(10),
-        [this](const auto& message) { return on_message_stop(message); });
-    message_resume_ = std::make_unique<MessageRelay<std_msgs::msg::Empty>>(
+        [this](const auto& message) { return on_stop(message); });
+    resume_relay_ = std::make_unique<MessageRelay<std_msgs::msg::Empty>>(
         *this, guard_, "/resume", "~/controller/resume", rclcpp::QoS(10).best_effort(), rclcpp::QoS(10),
-        [this](const auto& message) { return on_message_resume(message); });
-    message_battery_ = std::make_unique<MessageRelay<std_msgs::msg::Int16>>(
+        [this](const auto& message) { return on_resume(message); });
+    battery_relay_ = std::make_unique<MessageRelay<std_msgs::msg::Int16>>(
         *this, guard_, "battery", "~/controller/battery", rclcpp::QoS(10), rclcpp::QoS(10),
-        [this](const auto& message) { return on_message_battery(message); });
-    message_scan_ = std::make_unique<MessageRelay<sensor_msgs::msg::LaserScan>>(
+        [this](const auto& message) { return on_battery(message); });
+    scan_relay_ = std::make_unique<MessageRelay<sensor_msgs::msg::LaserScan>>(
         *this, guard_, "/scan", "~/controller/scan", rclcpp::SensorDataQoS(), rclcpp::QoS(10),
-        [this](const auto& message) { return on_message_scan(message); });
-    message_speed_ = std::make_unique<MessageRelay<std_msgs::msg::Float32>>(
+        [this](const auto& message) { return on_scan(message); });
+    speed_relay_ = std::make_unique<MessageRelay<std_msgs::msg::Float32>>(
         *this, guard_, "~/controller/speed", "/speed", rclcpp::QoS(10).keep_last(20).best_effort(), rclcpp::QoS(20),
-        [this](const auto&) { return pass_message_speed(); });
-    message_label_ = std::make_unique<MessageRelay<std_msgs::msg::String>>(
+        [this](const auto&) { return pass_speed(); });
+    label_relay_ = std::make_unique<MessageRelay<std_msgs::msg::String>>(
         *this, guard_, "~/controller/label", "label", rclcpp::QoS(10), rclcpp::QoS(10),
-        [this](const auto&) { return pass_message_label(); });
-    ServiceProxy<std_srvs::srv::SetBool>::Handlers service_light;
-    service_light.call = [this](const auto&) { return pass_service_light(); };
-    service_light.busy = [this] { block(usher_service_light_c_trigger, "Lamp.light", BlockReasons::busy()); };
-    service_light.response = [this](const auto& message) { on_service_light_response(message); };
-    service_light.error = [this](const std::string& why) { on_service_light_error(why); };
-    service_light_ = std::make_unique<ServiceProxy<std_srvs::srv::SetBool>>(
+        [this](const auto&) { return pass_label(); });
+    ServiceProxy<std_srvs::srv::SetBool>::Handlers light_handlers;
+    light_handlers.call = [this](const auto&) { return pass_light(); };
+    light_handlers.busy = [this] { block(usher_service_light_c_trigger, "Lamp.light", BlockReasons::busy()); };
+    light_handlers.response = [this](const auto& message) { on_light_response(message); };
+    light_handlers.error = [this](const std::string& why) { on_light_error(why); };
+    light_proxy_ = std::make_unique<ServiceProxy<std_srvs::srv::SetBool>>(
         *this, guard_, "~/controller/lamp/light", "/lamp/light",
-        rclcpp::ServicesQoS().keep_last(20), service_timeout, service_light);
-    ActionProxy<nav2_msgs::action::NavigateToPose>::Handlers action_go_to;
-    action_go_to.goal = [this](const auto&) { return pass_action_go_to(); };
-    action_go_to.busy = [this] { block(usher_action_go_to_c_trigger, "Navigation.go_to", BlockReasons::busy()); };
-    action_go_to.feedback = [this](const auto& message) { on_action_go_to_feedback(message); };
-    action_go_to.response = [this](const auto& message) { on_action_go_to_response(message); };
-    action_go_to.error = [this](const std::string& why) { on_action_go_to_error(why); };
-    action_go_to.refused = [this](const std::string& why) {
+        rclcpp::ServicesQoS().keep_last(20), service_timeout, light_handlers);
+    ActionProxy<nav2_msgs::action::NavigateToPose>::Handlers go_to_handlers;
+    go_to_handlers.goal = [this](const auto&) { return pass_go_to(); };
+    go_to_handlers.busy = [this] { block(usher_action_go_to_c_trigger, "Navigation.go_to", BlockReasons::busy()); };
+    go_to_handlers.feedback = [this](const auto& message) { on_go_to_feedback(message); };
+    go_to_handlers.response = [this](const auto& message) { on_go_to_response(message); };
+    go_to_handlers.error = [this](const std::string& why) { on_go_to_error(why); };
+    go_to_handlers.refused = [this](const std::string& why) {
       RCLCPP_WARN(get_logger(), "%s: %s", "/go_to", why.c_str());
     };
-    action_go_to_ = std::make_unique<ActionProxy<nav2_msgs::action::NavigateToPose>>(
+    go_to_proxy_ = std::make_unique<ActionProxy<nav2_msgs::action::NavigateToPose>>(
         *this, guard_, "~/controller/go_to", "/go_to",
-        rclcpp::QoS(10).keep_last(20).best_effort(), action_timeout, action_go_to);
+        rclcpp::QoS(10).keep_last(20).best_effort(), action_timeout, go_to_handlers);
     timer_ = create_wall_timer(period, guard_([this] { publish_state(); }));
   }
 
@@ -151,19 +151,19 @@ class Layer : public rclcpp::Node {
  private:
   // What the robot tells. The supervisor hears it first; then internal transitions and cancels that became possible run.
 
-  bool on_message_stop(const std_msgs::msg::Empty&) {
+  bool on_stop(const std_msgs::msg::Empty&) {
     usher_perform(&supervisor_, usher_message_stop_u_response);
     usher_settle(&supervisor_);
     return true;
   }
 
-  bool on_message_resume(const std_msgs::msg::Empty&) {
+  bool on_resume(const std_msgs::msg::Empty&) {
     usher_perform(&supervisor_, usher_message_resume_u_response);
     usher_settle(&supervisor_);
     return true;
   }
 
-  bool on_message_battery(const std_msgs::msg::Int16& message) {
+  bool on_battery(const std_msgs::msg::Int16& message) {
     supervisor_.inputs.message_battery_i_response = Integer(message.data).within(0, 100).to<std::uint8_t>();
     if (log_.active()) log_.note(Integer(message.data));
     usher_perform(&supervisor_, usher_message_battery_u_response);
@@ -171,7 +171,7 @@ class Layer : public rclcpp::Node {
     return true;
   }
 
-  bool on_message_scan(const sensor_msgs::msg::LaserScan& message) {
+  bool on_scan(const sensor_msgs::msg::LaserScan& message) {
     if (usher_enabled(&supervisor_, usher_message_scan_u_response)) {
       ArrayReader read;
       auto next = data_;
@@ -192,20 +192,20 @@ class Layer : public rclcpp::Node {
     return true;
   }
 
-  void on_service_light_response(const std_srvs::srv::SetBool::Response& message) {
+  void on_light_response(const std_srvs::srv::SetBool::Response& message) {
     data_.Lamp.lit = bool(message.success);
     if (log_.active()) log_.note(Json::object().add("success", bool(message.success)));
     usher_perform(&supervisor_, usher_service_light_u_response);
     usher_settle(&supervisor_);
   }
 
-  void on_service_light_error(const std::string& why) {
+  void on_light_error(const std::string& why) {
     RCLCPP_WARN(get_logger(), "%s: %s", "/lamp/light", why.c_str());
     usher_perform(&supervisor_, usher_service_light_u_error);
     usher_settle(&supervisor_);
   }
 
-  void on_action_go_to_feedback(const nav2_msgs::action::NavigateToPose::Feedback& message) {
+  void on_go_to_feedback(const nav2_msgs::action::NavigateToPose::Feedback& message) {
     if (supervisor_.state.component_Navigation == usher_component_Navigation_going) {
       data_.Navigation.seen = to_Distance(message);
     }
@@ -214,12 +214,12 @@ class Layer : public rclcpp::Node {
     usher_settle(&supervisor_);
   }
 
-  void on_action_go_to_response(const nav2_msgs::action::NavigateToPose::Result&) {
+  void on_go_to_response(const nav2_msgs::action::NavigateToPose::Result&) {
     usher_perform(&supervisor_, usher_action_go_to_u_response);
     usher_settle(&supervisor_);
   }
 
-  void on_action_go_to_error(const std::string& why) {
+  void on_go_to_error(const std::string& why) {
     RCLCPP_WARN(get_logger(), "%s: %s", "/go_to", why.c_str());
     usher_perform(&supervisor_, usher_action_go_to_u_error);
     usher_settle(&supervisor_);
@@ -229,7 +229,7 @@ class Layer : public rclcpp::Node {
 
   // requirement speed needs Guard.clear
   // requirement speed needs Guard.charge > 20
-  bool pass_message_speed() {
+  bool pass_speed() {
     if (usher_perform(&supervisor_, usher_message_speed_c_trigger)) {
       usher_settle(&supervisor_);
       return true;
@@ -245,7 +245,7 @@ class Layer : public rclcpp::Node {
     return false;
   }
 
-  bool pass_message_label() {
+  bool pass_label() {
     if (usher_perform(&supervisor_, usher_message_label_c_trigger)) {
       usher_settle(&supervisor_);
       return true;
@@ -256,7 +256,7 @@ class Layer : public rclcpp::Node {
   }
 
   // requirement light needs Guard.clear
-  bool pass_service_light() {
+  bool pass_light() {
     if (usher_perform(&supervisor_, usher_service_light_c_trigger)) {
       usher_settle(&supervisor_);
       return true;
@@ -274,7 +274,7 @@ class Layer : public rclcpp::Node {
   }
 
   // requirement go_to needs Guard.clear
-  bool pass_action_go_to() {
+  bool pass_go_to() {
     if (usher_perform(&supervisor_, usher_action_go_to_c_trigger)) {
       usher_settle(&supervisor_);
       return true;
@@ -318,7 +318,7 @@ class Layer : public rclcpp::Node {
       case usher_data_speed_c_none:
         return;
       case usher_action_go_to_c_cancel:
-        action_go_to_->cancel();
+        go_to_proxy_->cancel();
         direction = "out";
         break;
       case usher_message_speed_c_trigger:
@@ -414,14 +414,14 @@ class Layer : public rclcpp::Node {
   rclcpp::Publisher<std_msgs::msg::String>::SharedPtr definition_report_;
 
   rclcpp::Publisher<std_msgs::msg::String>::SharedPtr blocked_report_;
-  std::unique_ptr<MessageRelay<std_msgs::msg::Empty>> message_stop_;
-  std::unique_ptr<MessageRelay<std_msgs::msg::Empty>> message_resume_;
-  std::unique_ptr<MessageRelay<std_msgs::msg::Int16>> message_battery_;
-  std::unique_ptr<MessageRelay<sensor_msgs::msg::LaserScan>> message_scan_;
-  std::unique_ptr<MessageRelay<std_msgs::msg::Float32>> message_speed_;
-  std::unique_ptr<MessageRelay<std_msgs::msg::String>> message_label_;
-  std::unique_ptr<ServiceProxy<std_srvs::srv::SetBool>> service_light_;
-  std::unique_ptr<ActionProxy<nav2_msgs::action::NavigateToPose>> action_go_to_;
+  std::unique_ptr<MessageRelay<std_msgs::msg::Empty>> stop_relay_;
+  std::unique_ptr<MessageRelay<std_msgs::msg::Empty>> resume_relay_;
+  std::unique_ptr<MessageRelay<std_msgs::msg::Int16>> battery_relay_;
+  std::unique_ptr<MessageRelay<sensor_msgs::msg::LaserScan>> scan_relay_;
+  std::unique_ptr<MessageRelay<std_msgs::msg::Float32>> speed_relay_;
+  std::unique_ptr<MessageRelay<std_msgs::msg::String>> label_relay_;
+  std::unique_ptr<ServiceProxy<std_srvs::srv::SetBool>> light_proxy_;
+  std::unique_ptr<ActionProxy<nav2_msgs::action::NavigateToPose>> go_to_proxy_;
   rclcpp::TimerBase::SharedPtr timer_;
   Hangup hangup_;
   CallbackGuard guard_;
