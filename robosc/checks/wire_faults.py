@@ -7,7 +7,7 @@ from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from robosc.metamodel import robosc as rsc
-from robosc.ros_types.unknown import MAKE_KNOWN, REPAIR, why_unknown
+from robosc.ros_types import MAKE_KNOWN, REPAIR
 from robosc.ros_types.wire import PRIMITIVES, Basic, DefinitionError, Fields, Nested, Section, Sequence, WireType
 from robosc.semantics.naming import written
 from robosc.semantics.typing import declared_type
@@ -53,7 +53,7 @@ def faults(data: Carried, interfaces: RosTypes, uses: Uses) -> list[Fault] | Unk
     except DefinitionError:
         answers = []
     if not answers:
-        return Unknown(*why_unknown(interfaces, data.ros_type.package, data.ros_type.name, data.part))
+        return Unknown(*interfaces.why_unknown(data.ros_type.package, data.ros_type.name, data.part))
     return min(answers, key=lambda answer: (sum(fault.is_used(uses) for fault in answer), len(answer)))
 
 

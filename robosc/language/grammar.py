@@ -149,6 +149,11 @@ def _fact(node: Any, facts: Mapping[int, _Facts]) -> _Facts:
     return found
 
 
+def pattern(rule: str) -> str:
+    """The regular expression of a rule that matches a word, such as a string, or a comment."""
+    return str(_peg(rule).to_match)
+
+
 def is_reserved(word: str) -> bool:
     """Whether a word is a keyword, so that it needs a `^` where it could be one."""
     return _peg("UnreservedName").regex.match(word) is None

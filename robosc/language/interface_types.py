@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING
 
 from robosc.metamodel import robosc as rsc
 from robosc.metamodel.reflection import contents, tree
-from robosc.ros_types import DefinitionError, Section
-from robosc.ros_types.unknown import OWN_OBJECT, other_kinds, why_unknown
+from robosc.ros_types import OWN_OBJECT, DefinitionError, Section
 from robosc.ros_types.wire import PRIMITIVES, Basic, Sequence
 from robosc.semantics.communication import section_of
 
@@ -30,8 +29,8 @@ def declare(reference: rsc.InterfaceTypeReference, interfaces: RosTypes) -> tupl
     """Gives a reference the object that it stands for; a message and a hint where the ROS type is not known."""
     if next(_definitions(reference, interfaces), None) is None:
         part = section_of(reference)
-        message, hint = why_unknown(interfaces, reference.package, reference.rosType, part)
-        if part is Section.MESSAGE and other_kinds(interfaces, reference.package, reference.rosType, part.kind):
+        message, hint = interfaces.why_unknown(reference.package, reference.rosType, part)
+        if part is Section.MESSAGE and interfaces.other_kinds(reference.package, reference.rosType, part.kind):
             hint = OWN_OBJECT
         return message, hint
     reference.definition = rsc.ObjectDataType(name=reference.rosType, source=reference.source)

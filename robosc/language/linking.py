@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from robosc.language.explaining import BASIC_TYPES, did_you_mean
 from robosc.language.interface_types import declare, is_made, link_interface, ros_properties, ros_property
-from robosc.language.scopes import File, Names, Scope, by_name
-from robosc.language.skipped import Declared
+from robosc.language.scopes import Declared, File, Names, Scope, by_name
 from robosc.language.text import Repair
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc

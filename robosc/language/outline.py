@@ -11,7 +11,7 @@ from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from robosc.language.grammar import first, first_words, following, is_reserved
-from robosc.language.skipped import Declared
+from robosc.language.scopes import Declared
 from robosc.language.tokens import Kind, Token
 
 if TYPE_CHECKING:

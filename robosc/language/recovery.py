@@ -14,7 +14,7 @@ from robosc.language.building import Builder
 from robosc.language.explaining import expected, found, hint
 from robosc.language.grammar import Failure, first_words, is_reserved, parse
 from robosc.language.outline import DECLARED, DEFINITIONS, PROPERTIES, RULES, Block, Brace, Outline
-from robosc.language.skipped import Declared, SkippedRegions
+from robosc.language.scopes import Declared, SkippedRegions
 from robosc.language.text import Repair
 from robosc.language.tokens import Kind, Token, Tokens, too_complex
 

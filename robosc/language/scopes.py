@@ -1,19 +1,20 @@
-"""Which names can be used where: the scoping rules of the language reference."""
+"""Which names can be used where: the scoping rules of the language reference, and what skipped text may declare."""
 
 from __future__ import annotations
 
 from bisect import bisect_right
 from dataclasses import dataclass, field
+from enum import Enum, auto
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
-from robosc.language.skipped import Declared, SkippedRegions
 from robosc.metamodel import robosc as rsc
 from robosc.semantics.instances import Instance, Instances
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
+    from robosc.diagnostics import Span
     from robosc.language.building import Name
     from robosc.language.text import Text
     from robosc.semantics.instances import Resolved
@@ -28,6 +29,49 @@ def by_name(elements: Iterable[Any]) -> dict[str, Any]:
     for element in elements:
         names.setdefault(element.name, element)
     return names
+
+
+class Declared(Enum):
+    """What a declaration gives a name to."""
+
+    COMPONENT = auto()
+    INTERFACE = auto()
+    DATA_TYPE = auto()
+    PROPERTY = auto()
+    ENUM_VALUE = auto()
+    COMMUNICATION = auto()
+    MEMBER = auto()  # a variable or a state
+
+
+@dataclass
+class SkippedRegions:
+    """The names that skipped text seems to declare, and where it stands.
+
+    `nameless` are the kinds of which a declaration was skipped whose name can't be seen, and where; `mended` says
+    whether braces had to be added or taken away. `skipped` are the ranges of the text that were skipped,
+    `uncertain` those of items that are whole, but that something unknown follows (offsets, the end exclusive).
+    """
+
+    names: set[str] = field(default_factory=set)
+    nameless: list[tuple[Declared, Span]] = field(default_factory=list)
+    mended: bool = False
+    skipped: list[tuple[int, int]] = field(default_factory=list)
+    uncertain: list[tuple[int, int]] = field(default_factory=list)
+
+    def may_declare(self, name: str, kinds: tuple[Declared, ...], within: Span | None = None) -> bool:
+        """Whether a name of one of these kinds that is not found may be declared in skipped text.
+
+        Only a declaration within a definition can declare a member of it, unless braces were mended: then nobody knows
+        what was meant to stand where.
+        """
+        if name in self.names:
+            return True
+        span = None if self.mended else within
+        return any(kind in kinds and (span is None or span.contains(place)) for kind, place in self.nameless)
+
+    def is_uncertain(self, offset: int) -> bool:
+        """Whether what stands at an offset may not mean what it seems to."""
+        return any(start <= offset < end for start, end in self.uncertain)
 
 
 @dataclass(frozen=True)
@@ -127,6 +171,17 @@ class File:
         return {file.base: file for file in self._files}
 
 
+class _Content(NamedTuple):
+    """What a component declares, by name."""
+
+    communications: Names
+    members: Names
+    states: Names
+
+
+_NOTHING = _Content({}, {}, {})
+
+
 class Scope:
     """The names of one robot or library, whose imports are linked already."""
 
@@ -135,9 +190,7 @@ class Scope:
         self._file = file
         self._imports = [library for library in file.libraries.values() if library is not None]
         self._instances = Instances(base, resolved)
-        self._members: dict[rsc.Component, Names] = {}
-        self._states: dict[rsc.Component, Names] = {}
-        self._communications: dict[rsc.Component, Names] = {}
+        self._contents: dict[rsc.Component, _Content | None] = {}
         #: Whether a component is imported of which nothing is known.
         self.incomplete = any(self.members(component) is None for component in self.components.values())
 
@@ -154,35 +207,29 @@ class Scope:
 
     def members(self, component: rsc.Component) -> Names | None:
         """The variables and states of a component; None where its import is broken."""
-        if component not in self._members:
+        content = self._content(component)
+        return None if content is None else content.members
+
+    def states(self, component: rsc.Component) -> Names:
+        """The states of a component; empty where its import is broken."""
+        return (self._content(component) or _NOTHING).states
+
+    def communications(self, component: rsc.Component) -> Names | None:
+        """The communications of a component; None where its import is broken."""
+        content = self._content(component)
+        return None if content is None else content.communications
+
+    def _content(self, component: rsc.Component) -> _Content | None:
+        if component not in self._contents:
             instance = self._instances.instance(component, None)
-            if instance is None:
-                return None
-            self._members[component] = by_name(_members(instance))
-        return self._members[component]
+            self._contents[component] = None if instance is None else _content(instance)
+        return self._contents[component]
 
     def origin(self, component: rsc.Component) -> rsc.Component:
         """The component whose text declares the members of a component that is not broken."""
         while isinstance(component.type, rsc.ImportedComponent):
             component = component.type.definition
         return component
-
-    def states(self, component: rsc.Component) -> Names:
-        """The states of a component; empty where its import is broken."""
-        if component not in self._states:
-            instance = self._instances.instance(component, None)
-            members = _members(instance) if instance is not None else ()
-            self._states[component] = by_name(member for member in members if isinstance(member, rsc.State))
-        return self._states[component]
-
-    def communications(self, component: rsc.Component) -> Names | None:
-        """The communications of a component; None where its import is broken."""
-        if component not in self._communications:
-            instance = self._instances.instance(component, None)
-            if instance is None:
-                return None
-            self._communications[component] = by_name(instance.communications)
-        return self._communications[component]
 
     def communicating(self, name: str) -> list[tuple[rsc.Component, rsc.CommunicationType]]:
         """Each component that has a communication of a name, and the communication."""
@@ -201,9 +248,10 @@ class Scope:
         return [name for instance in self._instances for name in self.communications(instance.component) or ()]
 
 
-def _members(instance: Instance) -> Iterable[rsc.Variable | rsc.State]:
+def _content(instance: Instance) -> _Content:
     # A component with two behaviours is an error of another rule; its names are still names.
     behaviours = [part for part in instance.local.definitions if isinstance(part, rsc.ComponentBehaviour)]
     definitions = [definition for behaviour in behaviours for definition in behaviour.automaton.definitions]
-    yield from (definition for definition in definitions if isinstance(definition, rsc.Variable))
-    yield from (definition for definition in definitions if isinstance(definition, rsc.State))
+    states = [definition for definition in definitions if isinstance(definition, rsc.State)]
+    variables = [definition for definition in definitions if isinstance(definition, rsc.Variable)]
+    return _Content(by_name(instance.communications), by_name([*variables, *states]), by_name(states))

@@ -8,17 +8,17 @@ from enum import Enum, auto
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
-from robosc.language.grammar import first, first_words, following, words_of
+from robosc.language.grammar import first, first_words, following, pattern, words_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
 _TOKEN = re.compile(
-    r"""[ \t\n\r]+|//[^\n]*|/\*[\s\S]*?\*/
+    rf"""[ \t\n\r]+|{pattern("Comment")}
     |(?P<OPEN_COMMENT>/\*[\s\S]*)
     |(?P<WORD>\^?[^\W\d]\w*)
     |(?P<NUMBER>\d+(?:\.\d+)?\w*)
-    |(?P<STRING>"(?:[^"\\\n]|\\.)*"|'(?:[^'\\\n]|\\.)*')
+    |(?P<STRING>{pattern("String")})
     |(?P<OPEN_STRING>["'][^\n]*)
     |(?P<SYMBOL>:=|->|=>|=<|==|!=|<=|>=|<>|&&|\|\||\.\.|[\s\S])
     """,

@@ -11,8 +11,6 @@ from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc, rosgraph, sct
 from robosc.ros_types import RosTypes
 from robosc.semantics.communication import data_type, event_of, events
-from robosc.semantics.cone_of_influence import transitions
-from robosc.semantics.instances import Instance, InstanceVariable, PortInstance
 from robosc.semantics.naming import Names
 
 if TYPE_CHECKING:
@@ -20,6 +18,7 @@ if TYPE_CHECKING:
 
     from robosc.m2m.trace import Trace
     from robosc.semantics.communication import PortEvent
+    from robosc.semantics.instances import Instance, InstanceVariable, PortInstance
 
     #: What an access to `value` means where it stands.
     Value: TypeAlias = Callable[[robosc.Access], ex.Expression]
@@ -72,9 +71,9 @@ class _Transformation:
 
     def run(self) -> rosgraph.RosGraph:
         for instance in self.instances:
-            for definition in instance.automaton.definitions if instance.automaton else ():
-                if isinstance(definition, robosc.Variable):
-                    self.variable(InstanceVariable(instance, definition))
+            for owned in instance.variables:
+                if owned not in self.trace.variables:
+                    self.variable(owned)
         for port in self.instances.ports():
             if isinstance(port.communication, robosc.Message):
                 self.message(port)
@@ -87,8 +86,6 @@ class _Transformation:
     # Data that the node keeps
 
     def variable(self, owned: InstanceVariable) -> None:
-        if owned in self.trace.variables:
-            return
         variable = rosgraph.NodeVariable(
             name=owned.variable.name,
             component=owned.instance.name,
@@ -253,8 +250,7 @@ class _Transformation:
     # What events change in the node
 
     def reactions(self, instance: Instance) -> None:
-        assert instance.automaton is not None or not list(transitions(instance))
-        for transition, state in transitions(instance):
+        for transition, state in instance.transitions:
             assigned = self.instances.assignments(transition, instance)
             assignments = {owned: assignment for owned, assignment in assigned.items() if owned in self.variables}
             if not assignments:

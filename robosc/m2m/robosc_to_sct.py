@@ -10,7 +10,7 @@ from robosc.m2m.trace import Trace
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc, sct
 from robosc.semantics.communication import CONTROLLABLE, data_type, events
-from robosc.semantics.cone_of_influence import cone_of_influence, transitions
+from robosc.semantics.cone_of_influence import cone_of_influence
 from robosc.semantics.instances import Instance, Instances, InstanceVariable, PortInstance
 from robosc.semantics.naming import Names
 from robosc.semantics.printing import RoboscPrinter, conjunction, disjunction
@@ -71,7 +71,7 @@ class _Transformation:
             if instance.automaton is not None:
                 self.behaviour(instance)
         for instance in self.instances:
-            for variable in self.needed_variables(instance):
+            for variable in self.variables(instance):
                 self.trace.variables[variable].initial = self.declarations.initial(variable.variable)
             if instance.automaton is not None:
                 self.edges(instance)
@@ -146,12 +146,12 @@ class _Transformation:
         self.trace.behaviours[instance] = plant
         self.trace.origins[plant] = instance.component
         names = Names()
-        for state in _states(instance):
+        for state in instance.states:
             location = _location(plant, names.fresh(state.name), initial=state.initial, marked=state.marked)
             location.source = state.source
             self.trace.locations[instance, state] = location
             self.trace.origins[location] = state
-        for owned in self.needed_variables(instance):
+        for owned in self.variables(instance):
             variable = sct.DiscreteVariable(
                 name=names.fresh(owned.variable.name),
                 type=self.declarations.type(owned.variable.type),
@@ -160,7 +160,7 @@ class _Transformation:
             plant.variables.append(variable)
             self.trace.variables[owned] = variable
             self.trace.origins[variable] = owned.variable
-        taus = (transition for transition, _ in transitions(instance) if isinstance(transition, robosc.TauTransition))
+        taus = (transition for transition, _ in instance.transitions if isinstance(transition, robosc.TauTransition))
         for number, transition in enumerate(taus, start=1):
             event = sct.Event(
                 name=names.fresh(f"c_tau{number}"),
@@ -172,25 +172,20 @@ class _Transformation:
             self.trace.taus[instance, transition] = event
             self.trace.origins[event] = transition
 
-    def needed_variables(self, instance: Instance) -> list[InstanceVariable]:
-        definitions = instance.automaton.definitions if instance.automaton else ()
-        declared = (
-            InstanceVariable(instance, definition)
-            for definition in definitions
-            if isinstance(definition, robosc.Variable)
-        )
-        return [owned for owned in declared if owned in self.trace.cone.variables]
+    def variables(self, instance: Instance) -> list[InstanceVariable]:
+        """Those in the cone of influence."""
+        return [variable for variable in instance.variables if variable in self.trace.cone.variables]
 
     def edges(self, instance: Instance) -> None:
-        everywhere = [transition for transition, state in transitions(instance) if state is None]
+        everywhere = [transition for transition, state in instance.transitions if state is None]
         mentioned = [
             event
             for event in dict.fromkeys(
-                self.trace.event_of(transition, instance) for transition, _ in transitions(instance)
+                self.trace.event_of(transition, instance) for transition, _ in instance.transitions
             )
             if event.kind in _NEVER_BLOCKED
         ]
-        for state in _states(instance):
+        for state in instance.states:
             location = self.trace.locations[instance, state]
             for transition in [*state.transitions, *everywhere]:
                 self.edge(location, transition, instance)
@@ -307,11 +302,6 @@ class _Transformation:
     def shown(self, port: PortInstance) -> str:
         name = port.communication.name
         return f"{port.instance.name}.{name}" if self.communication_name(port) != name else name
-
-
-def _states(instance: Instance) -> list[robosc.State]:
-    definitions = instance.automaton.definitions if instance.automaton else ()
-    return [definition for definition in definitions if isinstance(definition, robosc.State)]
 
 
 def _location(plant: sct.Plant, name: str, *, initial: bool = False, marked: bool = False) -> sct.Location:

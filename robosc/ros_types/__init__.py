@@ -7,13 +7,14 @@ computer, and among the standard types. Both ROS are asked: they disagree about 
 from __future__ import annotations
 
 import os
+from difflib import get_close_matches
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robosc.files.resources import locate
 from robosc.ros_types.folders import Share, Workspace
-from robosc.ros_types.wire import DefinitionError, Fields, Section, WireType
+from robosc.ros_types.wire import FOLDERS, DefinitionError, Fields, Section, WireType
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -23,6 +24,13 @@ if TYPE_CHECKING:
 
 __all__ = ["DefinitionError", "Fields", "RosDistribution", "RosTypes", "Section", "WireType"]
 
+REPAIR = "repair it: until then nothing is checked against it"
+MAKE_KNOWN = (
+    "give the folder of its package with --interface-path, or list it in ROBOSC_INTERFACE_PATH; until then nothing is"
+    " checked against it"
+)
+#: How to read the data of a service or action where only a message can be named.
+OWN_OBJECT = "for the data of a service or action, declare an object with the fields that you use and an enum over it"
 #: The field that holds a basic value of a section with several fields.
 _DATA = "data"
 _SHIPPED = locate("ros_types/definitions")
@@ -56,6 +64,13 @@ class RosDistribution:
             found = (source.fields(package, name, section) for source in self._sources)
             self._known[key] = next((fields for fields in found if fields is not None), None)
         return self._known[key]
+
+    def defines(self, package: str, name: str, section: Section) -> bool:
+        """Whether there is a section of a type, also one that can't be read."""
+        try:
+            return self.fields(package, name, section) is not None
+        except DefinitionError:
+            return True
 
     def names(self, package: str, kind: str) -> list[str]:
         """The names of the types of a kind (`message`, `service`, `action`) that are known of a package, sorted."""
@@ -98,6 +113,36 @@ class RosTypes:
             if fields is not None and len(fields) == 1:
                 return next(iter(fields))
         return _DATA
+
+    def other_kinds(self, package: str, name: str, kind: str) -> list[str]:
+        """The other kinds of which there is a type of that name: `service`, `action`."""
+        return [
+            other
+            for other in FOLDERS
+            if other != kind and any(name in distribution.names(package, other) for distribution in self.distributions)
+        ]
+
+    def why_unknown(self, package: str, name: str, section: Section) -> tuple[str, str]:
+        """A message and a hint about a type of which no distribution gives this section."""
+        kind = section.kind
+        for distribution in self.distributions:
+            try:
+                distribution.fields(package, name, section)
+            except DefinitionError as fault:
+                return f"the definition of {package}/{name} can't be read: {fault}", REPAIR
+        for other in Section:
+            if other.kind != kind and any(known.defines(package, name, other) for known in self.distributions):
+                message = f"{package}/{name} is of kind {other.kind}, expected a type of kind {kind}"
+                return message, f"name a type of kind {kind}"
+        if not any(known.names(package, other) for known in self.distributions for other in FOLDERS):
+            packages = sorted({found for known in self.distributions for found in known.packages()})
+            close = get_close_matches(package, packages, n=1, cutoff=0.8)
+            hint = f"did you mean `{close[0]}`? Else {MAKE_KNOWN}" if close else MAKE_KNOWN
+            return f"the package `{package}` is unknown", hint
+        names = sorted({found for known in self.distributions for found in known.names(package, kind)})
+        close = get_close_matches(name, names, n=1)
+        hint = f"did you mean `{close[0]}`?" if close else MAKE_KNOWN
+        return f"no {kind} type `{name}` of the package `{package}` is known", hint
 
 
 def _environment(variable: str) -> list[Path]:

@@ -92,7 +92,7 @@ def cone_of_influence(instances: Instances) -> ConeOfInfluence:
 def conditions(instances: Instances) -> Iterator[tuple[ex.Expression | None, Instance | None]]:
     """Every expression that the supervisor itself evaluates, with the instance whose text it is."""
     for instance in instances:
-        for transition, _ in transitions(instance):
+        for transition, _ in instance.transitions:
             if isinstance(transition, robosc.TauTransition):
                 yield transition.guard, instance
     for definition in instances.base.definitions:
@@ -100,20 +100,10 @@ def conditions(instances: Instances) -> Iterator[tuple[ex.Expression | None, Ins
             yield definition.condition, None
 
 
-def transitions(instance: Instance) -> Iterator[tuple[robosc.Transition, robosc.State | None]]:
-    """The transitions of an instance in the order of the text, each with its state; None: every state has it."""
-    for definition in instance.automaton.definitions if instance.automaton else ():
-        if isinstance(definition, robosc.State):
-            for transition in definition.transitions:
-                yield transition, definition
-        elif isinstance(definition, robosc.Transition):
-            yield definition, None
-
-
 def all_assignments(instances: Instances) -> Iterator[Assigned]:
     """Every assignment of every instance, in the order of the text."""
     for instance in instances:
-        for transition, _ in transitions(instance):
+        for transition, _ in instance.transitions:
             for assignment in transition.assignments:
                 variable = instances.variable(assignment.item, instance) if assignment.item else None
                 yield Assigned(instance, transition, assignment, variable)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, TypeAlias
 from robosc.metamodel import robosc
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterable, Iterator
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,6 +42,32 @@ class Instance:
             definition for definition in self.local.definitions if isinstance(definition, robosc.ComponentBehaviour)
         )
         return next((behaviour.automaton for behaviour in behaviours), None)
+
+    @property
+    def states(self) -> list[robosc.State]:
+        """The states of its behaviour, in the order of the text."""
+        return [definition for definition in self._definitions if isinstance(definition, robosc.State)]
+
+    @property
+    def variables(self) -> list[InstanceVariable]:
+        """The variables of its behaviour, in the order of the text."""
+        declared = (definition for definition in self._definitions if isinstance(definition, robosc.Variable))
+        return [InstanceVariable(self, variable) for variable in declared]
+
+    @property
+    def transitions(self) -> list[tuple[robosc.Transition, robosc.State | None]]:
+        """The transitions of its behaviour in the order of the text, each with its state; None: every state has it."""
+        found: list[tuple[robosc.Transition, robosc.State | None]] = []
+        for definition in self._definitions:
+            if isinstance(definition, robosc.State):
+                found += ((transition, definition) for transition in definition.transitions)
+            elif isinstance(definition, robosc.Transition):
+                found.append((definition, None))
+        return found
+
+    @property
+    def _definitions(self) -> Iterable[robosc.AutomatonDefinition]:
+        return self.automaton.definitions if self.automaton else ()
 
     def topic(self, communication: robosc.CommunicationType) -> str:
         """The ROS name of one of its communications: re-mapped, given, or the communication's own name."""

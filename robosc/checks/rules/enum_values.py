@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robosc.checks.definitions import of_kind, states, unit_of
+from robosc.checks.definitions import of_kind, unit_of
 from robosc.checks.libraries import fact, imports, instances, reachable
 from robosc.checks.rule import Finding, rule
 from robosc.metamodel import robosc as rsc
@@ -88,7 +88,7 @@ def enum_state_overlap(base: rsc.Base) -> Iterator[Finding]:
     """No enum value has the name of a state, in a robot or library and what it imports."""
     named: dict[str, list[tuple[Instance, rsc.State]]] = {}
     for instance in instances(base):
-        for state in states(instance.automaton) if instance.automaton else ():
+        for state in instance.states:
             named.setdefault(state.name, []).append((instance, state))
     reported = set()
     for value in _reachable_values(base):
@@ -109,7 +109,7 @@ def enum_state_overlap(base: rsc.Base) -> Iterator[Finding]:
 
 
 def _overlaps(library: rsc.Library) -> set[tuple[rsc.EnumValue, rsc.State]]:
-    found = [state for instance in instances(library) if instance.automaton for state in states(instance.automaton)]
+    found = [state for instance in instances(library) for state in instance.states]
     return {(value, state) for value in _reachable_values(library) for state in found if value.name == state.name}
 
 

@@ -14,8 +14,7 @@ from robosc.checks.definitions import (
     variables,
 )
 from robosc.checks.rule import Finding, rule
-from robosc.checks.supervised import Fault, data_reads, supervised_faults
-from robosc.checks.tabulation import table_faults
+from robosc.checks.supervised import Fault, data_reads, supervised_faults, table_faults
 from robosc.metamodel import robosc as rsc
 from robosc.semantics.communication import sent_type
 from robosc.semantics.cone_of_influence import ConeOfInfluence, Reason, accesses, read_type

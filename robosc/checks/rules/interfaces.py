@@ -13,7 +13,7 @@ from robosc.diagnostics import Severity
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
 from robosc.metamodel.reflection import tree
-from robosc.ros_types.unknown import OWN_OBJECT, other_kinds
+from robosc.ros_types import OWN_OBJECT
 from robosc.semantics.communication import carried
 from robosc.semantics.naming import written
 from robosc.semantics.typing import NONE, UNKNOWN, ObjectType, Type, declared_type
@@ -102,7 +102,7 @@ def interface_unknown(base: rsc.Base, interfaces: RosTypes) -> Iterator[Finding]
                 yield Finding(element, fault.message, fault.hint)
     for _, reference in tree(base):
         if isinstance(reference, rsc.InterfaceTypeReference) and isinstance(reference.eContainer(), rsc.EnumDataType):
-            others = other_kinds(interfaces, reference.package, reference.rosType, "message")
+            others = interfaces.other_kinds(reference.package, reference.rosType, "message")
             if others and reference.type is not None:
                 what = f"{reference.package}/{reference.rosType}"
                 yield Finding(

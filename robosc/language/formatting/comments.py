@@ -7,13 +7,14 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from robosc.language.formatting.documents import INDENTATION, Comment
+from robosc.language.grammar import pattern
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from robosc.language.grammar import Node
 
-_COMMENT = re.compile(r"//[^\n]*|/\*[\s\S]*?\*/")
+_COMMENT = re.compile(pattern("Comment"))
 
 
 @dataclass(frozen=True)

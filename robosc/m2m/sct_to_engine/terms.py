@@ -249,10 +249,6 @@ class Terms:
             return self.constant(int, low)
         return self._make(engine.Saturation, (value,), bounds, int, Interval(low, high))
 
-    def shared(self, condition: engine.Condition, value: Term) -> Term:
-        """A reference to a shared condition with this value."""
-        return self._make(engine.ConditionReference, (), condition, None, value.values)
-
     def _make(
         self, kind: type[ex.Expression], operands: Sequence[Term], leaf: Hashable, sort: Sort, values: Interval
     ) -> Term:
