@@ -1,76 +1,162 @@
-"""What makes a rosgraph model one that nodes can be generated from."""
+"""What makes a rosgraph model one that nodes can be generated from.
+
+Among that: all that a graph reads of one message, or writes into one, can be parts of one and the same data.
+"""
 
 from __future__ import annotations
 
+from collections import defaultdict
 from typing import TYPE_CHECKING, Any
 
+from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
-from robosc.metamodel.expression_types import ExpressionTypes
+from robosc.metamodel.model_checks import demand, fitting_operands, typed
 from robosc.metamodel.reflection import tree
-from robosc.metamodel.rosgraph_shapes import shape_faults
-from robosc.semantics.typing import BOOLEAN, declared_type
+from robosc.semantics.typing import declared_type
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
 
-Fault = tuple[Any, str]
-_INTERFACES = {
-    rosgraph.Subscription: rosgraph.InterfaceKind.message,
-    rosgraph.Publisher: rosgraph.InterfaceKind.message,
-    rosgraph.ServiceClient: rosgraph.InterfaceKind.service,
-    rosgraph.ActionClient: rosgraph.InterfaceKind.action,
-}
+    from robosc.metamodel.model_checks import Check, Checks, Fault, Model
+
+#: What a field of ROS is in a model.
+_BASIC = (ex.BooleanType, ex.IntegerType, ex.DoubleType, ex.StringType)
 
 
-def rosgraph_faults(graph: rosgraph.RosGraph, elements: Sequence[Any]) -> Iterator[Fault]:
-    """What is wrong with the graph, of which `elements` are all, each before what it contains."""
-    types = ExpressionTypes()
-    types.add(elements)
-    yield from types.faults
-    for element in elements:
-        yield from _typed_faults(element, types)
-        yield from _reference_faults(element)
-        yield from _event_faults(element, graph)
-    yield from shape_faults(graph, elements)
-
-
-def _typed_faults(element: Any, types: ExpressionTypes) -> Iterator[Fault]:
-    match element:
-        case rosgraph.NodeVariable():
-            yield from types.unless(element.initial, declared_type(element.type))
-        case rosgraph.FieldAssignment():
-            yield from types.unless(element.value, declared_type(element.type))
-        case rosgraph.InputAssignment():
-            yield from types.unless(element.value, declared_type(element.input.type))
-            if any(isinstance(step, rosgraph.IndexStep) for _, step in tree(element.value)):
-                yield element, "an input is no element of an array, which need not be there"
-        case rosgraph.NodeAssignment():
-            yield from types.unless(element.value, declared_type(element.variable.type))
-        case rosgraph.ConversionRule():
-            yield from types.unless(element.condition, BOOLEAN)
-
-
-def _reference_faults(element: Any) -> Iterator[Fault]:
-    match element:
-        case rosgraph.Conversion():
-            literals = [element.default, *(rule.literal for rule in element.rules)]
-            for literal in dict.fromkeys(literals):
-                if literal.eContainer() is not element.enumeration:
-                    yield element, f"'{literal.name}' is no literal of {element.enumeration.name}"
-        case rosgraph.Reception():
-            for assignment in element.inputs:
-                if assignment.input not in element.event.inputs:
-                    yield assignment, f"'{element.event.name}' does not carry the input '{assignment.input.name}'"
-        case rosgraph.ProvidedData() if element.location.eContainer().kind != sct.PlantKind.data:
-            yield element, f"'{element.location.name}' is no location of a data plant"
-        case rosgraph.Reaction() if len({location.eContainer() for location in element.locations}) > 1:
-            yield element, "the locations are of several plants"
-
-
-def _event_faults(element: Any, graph: rosgraph.RosGraph) -> Iterator[Fault]:
+def _own_event(element: Any, model: Model) -> Iterator[Fault]:
     event = getattr(element, "event", None)
-    if isinstance(event, sct.Event) and event.eContainer().eContainer() is not graph.model:
+    if isinstance(event, sct.Event) and event.eContainer().eContainer() is not model.root.model:
         yield element, f"the event '{event.name}' is another model's"
-    wanted = _INTERFACES.get(type(element))
-    if wanted is not None and element.interface.kind != wanted:
-        yield element, f"'{element.interface.type}' is a {element.interface.kind}, but a {wanted} is wanted"
+
+
+def _interface(wanted: rosgraph.InterfaceKind) -> Check:
+    message = f"'{{0.interface.type}}' is a {{0.interface.kind}}, but a {wanted} is wanted"
+    return demand(lambda user: user.interface.kind == wanted, message)
+
+
+def _literals(conversion: rosgraph.Conversion, _model: Model) -> Iterator[Fault]:
+    for literal in dict.fromkeys([conversion.default, *(rule.literal for rule in conversion.rules)]):
+        if literal.eContainer() is not conversion.enumeration:
+            yield conversion, f"'{literal.name}' is no literal of {conversion.enumeration.name}"
+
+
+def _inputs(reception: rosgraph.Reception, _model: Model) -> Iterator[Fault]:
+    for assignment in reception.inputs:
+        if assignment.input not in reception.event.inputs:
+            yield assignment, f"'{reception.event.name}' does not carry the input '{assignment.input.name}'"
+
+
+class _Shape:
+    """What is known of one message: an object, an array or a basic value at the end of each path."""
+
+    def __init__(self) -> None:
+        self._kinds: dict[tuple[str | int, ...], str] = {}
+
+    def add(self, element: Any, path: Sequence[str | int], kind: ex.Type | None) -> Iterator[Fault]:
+        """Adds what is at the end of a path; `kind` is None where that is an object or an array as a whole."""
+        for length, step in enumerate(path):
+            yield from self._at(element, tuple(path[:length]), "an array" if isinstance(step, int) else "an object")
+        if kind is not None:
+            yield from self._at(element, tuple(path), type(kind).__name__)
+
+    def _at(self, element: Any, path: tuple[str | int, ...], kind: str) -> Iterator[Fault]:
+        known = self._kinds.setdefault(path, kind)
+        if known != kind:
+            place = f"'{'.'.join(map(str, path))}'" if path else "the message"
+            yield element, f"{place} is read or written as {kind} here, but as {known} elsewhere"
+
+
+def _converted_shape(conversion: rosgraph.Conversion, _model: Model) -> Iterator[Fault]:
+    shape = _Shape()
+    for read in _reads(rule.condition for rule in conversion.rules):
+        yield from shape.add(read, _path(read), read.type)
+
+
+def _sent_shape(sending: rosgraph.Sending, _model: Model) -> Iterator[Fault]:
+    shape = _Shape()
+    for alternative in sending.alternatives:
+        for field in alternative.fields:
+            yield from shape.add(field, list(field.path), field.type)
+
+
+def _received_shapes(graph: rosgraph.RosGraph, _model: Model) -> Iterator[Fault]:
+    sources = [list(subscription.receptions) for subscription in graph.subscriptions]
+    sources += [[client.response] for client in graph.serviceClients]
+    sources += [[reception] for client in graph.actionClients for reception in (client.feedback, client.response)]
+    reactions: dict[Any, list[Any]] = defaultdict(list)
+    for reaction in graph.reactions:
+        reactions[reaction.event] += [assignment.value for assignment in reaction.assignments]
+    read_anywhere = set()
+    for receptions in sources:
+        shape = _Shape()
+        for reception in receptions:
+            read_anywhere.add(reception.event)
+            for access in _reads([*(input_.value for input_ in reception.inputs), *reactions[reception.event]]):
+                yield from _received(shape, access)
+    for event, values in reactions.items():
+        if event not in read_anywhere:
+            yield from ((read, f"'{event.name}' comes with no data") for read in _reads(values))
+
+
+def _received(shape: _Shape, access: rosgraph.WireAccess) -> Iterator[Fault]:
+    path = _path(access)
+    if access.type is not None and not path:
+        yield access, "a message is no basic value"
+    yield from shape.add(access, path, access.type)
+    owner = access.eContainer()
+    if isinstance(owner, rosgraph.ConversionCall):
+        for read in _reads(rule.condition for rule in owner.conversion.rules):
+            yield from shape.add(access, [*path, *_path(read)], read.type)
+
+
+def _reads(values: Iterable[ex.Expression]) -> Iterator[rosgraph.WireAccess]:
+    for value in values:
+        yield from (access for _, access in tree(value) if isinstance(access, rosgraph.WireAccess))
+
+
+def _path(access: rosgraph.WireAccess) -> list[str | int]:
+    return [
+        step.index if isinstance(step, rosgraph.IndexStep) else str(getattr(step, "name", "")) for step in access.steps
+    ]
+
+
+_BASIC_FIELD = demand(
+    lambda field: field.type is None or isinstance(field.type, _BASIC), "{0.type.eClass.name} is no type of a field"
+)
+_NO_ELEMENT = demand(
+    lambda assignment: not any(isinstance(step, rosgraph.IndexStep) for _, step in tree(assignment.value)),
+    "an input is no element of an array, which need not be there",
+)
+_DATA = demand(
+    lambda provided: provided.location.eContainer().kind == sct.PlantKind.data,
+    "'{0.location.name}' is no location of a data plant",
+)
+_ONE_PLANT = demand(
+    lambda reaction: len({location.eContainer() for location in reaction.locations}) <= 1,
+    "the locations are of several plants",
+)
+_WHOLE = demand(
+    lambda access: access.type is not None or isinstance(access.eContainer(), rosgraph.ConversionCall),
+    "only what a conversion takes may be without a type",
+)
+
+CHECKS: Checks = {
+    ex.Expression: [fitting_operands],
+    object: [_own_event],
+    rosgraph.RosGraph: [_received_shapes],
+    rosgraph.NodeVariable: [typed("initial", lambda variable: declared_type(variable.type))],
+    rosgraph.FieldAssignment: [typed("value", lambda field: declared_type(field.type)), _BASIC_FIELD],
+    rosgraph.InputAssignment: [typed("value", lambda assignment: declared_type(assignment.input.type)), _NO_ELEMENT],
+    rosgraph.NodeAssignment: [typed("value", lambda assignment: declared_type(assignment.variable.type))],
+    rosgraph.ConversionRule: [typed("condition")],
+    rosgraph.Conversion: [_literals, _converted_shape],
+    rosgraph.Reception: [_inputs],
+    rosgraph.Sending: [_sent_shape],
+    rosgraph.ProvidedData: [_DATA],
+    rosgraph.Reaction: [_ONE_PLANT],
+    rosgraph.Subscription: [_interface(rosgraph.InterfaceKind.message)],
+    rosgraph.Publisher: [_interface(rosgraph.InterfaceKind.message)],
+    rosgraph.ServiceClient: [_interface(rosgraph.InterfaceKind.service)],
+    rosgraph.ActionClient: [_interface(rosgraph.InterfaceKind.action)],
+    rosgraph.WireAccess: [_WHOLE, _BASIC_FIELD],
+}

@@ -7,135 +7,44 @@ from typing import TYPE_CHECKING, Any
 
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
-from robosc.metamodel.expression_types import ExpressionTypes
+from robosc.metamodel.model_checks import around, demand, fitting_operands, repeated, typed, unique
 from robosc.semantics.edges import edges_of
-from robosc.semantics.typing import BOOLEAN, declared_type
+from robosc.semantics.typing import declared_type
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator
 
-_TYPES = (ex.BooleanType, ex.IntegerType, ex.EnumerationType)
-_FOREIGN = (ex.DoubleLiteral, ex.StringLiteral, ex.DoubleConversion, ex.Division)
-Fault = tuple[Any, str]
-
-
-def sct_faults(model: sct.SupervisoryControlModel, elements: Sequence[Any]) -> Iterator[Fault]:
-    """What is wrong with the model, of which `elements` are all, each before what it contains."""
-    types = ExpressionTypes()
-    types.add(elements)
-    yield from types.faults
-    yield from _names(model)
-    own = set(elements)
-    for element in elements:
-        yield from _element(element, own)
-    for plant in model.plants:
-        yield from _plant(plant, types)
-    yield from _unused(model)
-    for element in elements:
-        yield from _conditions(element, types)
-    yield from _supervisor(model)
-
-
-def _repeated(elements: Sequence[Any]) -> Iterator[Fault]:
-    """The elements whose name an earlier one has."""
-    seen = Counter[str]()
-    for element in elements:
-        seen[element.name] += 1
-        if seen[element.name] > 1:
-            yield element, f"the name '{element.name}' is given twice"
-
-
-def _names(model: sct.SupervisoryControlModel) -> Iterator[Fault]:
-    yield from _repeated(model.plants)
-    yield from _repeated(model.enumerations)
-    for enumeration in model.enumerations:
-        yield from _repeated(enumeration.literals)
-    for plant in model.plants:
-        for members in (plant.events, plant.inputs, plant.variables, plant.locations):
-            yield from _repeated(members)
-
+    from robosc.metamodel.model_checks import Checks, Fault, Model
 
 #: The features by which elements refer to what is to be of the same model.
 _REFERENCES = ("enumeration", "literal", "location", "variable", "input", "event")
 
 
-def _element(element: Any, own: set[Any]) -> Iterator[Fault]:
-    match element:
-        case sct.Input() | sct.DiscreteVariable() if not isinstance(element.type, _TYPES):
-            yield element, f"{type(element.type).__name__} has no place in an sct model"
-        case ex.IntegerType():
-            if element.minimum is None or element.maximum is None:
-                yield element, "both bounds of an integer are given in an sct model"
-            elif element.minimum > element.maximum:
-                yield element, f"the range {element.minimum}..{element.maximum} is reversed"
-        case sct.Requirement() | sct.EventGuard() if not element.event.controllable:
-            yield element, f"the event '{element.event.name}' is uncontrollable: nothing can restrict it"
+def _references(element: Any, model: Model) -> Iterator[Fault]:
     for name in _REFERENCES:
         referred = getattr(element, name, None)
-        if referred is not None and referred not in own:
+        if referred is not None and referred not in model.own:
             yield element, f"the {name} '{referred.name}' is another model's"
-    if isinstance(element, _FOREIGN):
-        yield element, f"{type(element).__name__} has no place in an sct model"
 
 
-def _plant(plant: sct.Plant, types: ExpressionTypes) -> Iterator[Fault]:
+def _bounds(integer: ex.IntegerType, _model: Model) -> Iterator[Fault]:
+    if integer.minimum is None or integer.maximum is None:
+        yield integer, "both bounds of an integer are given in an sct model"
+    elif integer.minimum > integer.maximum:
+        yield integer, f"the range {integer.minimum}..{integer.maximum} is reversed"
+
+
+def _initial_location(plant: sct.Plant, _model: Model) -> Iterator[Fault]:
     initial = sum(location.initial for location in plant.locations)
     if initial != 1:
         yield plant, f"plant '{plant.name}' has {initial or 'no'} initial locations; it starts in exactly one"
-    for event in plant.events:
-        for carried in event.inputs:
-            if carried.eContainer() is not plant:
-                yield event, f"the input '{carried.name}' is another plant's"
-    for variable in plant.variables:
-        yield from _initial(variable, types)
-    everywhere: set[sct.Event] = set()
-    yield from _twice(plant, f"plant '{plant.name}' has in every location", everywhere)
-    for location in plant.locations:
-        if location.edges:
-            yield from _twice(location, f"location '{location.name}' has", set(everywhere))
-    for edge in edges_of(plant):
-        if edge.target.eContainer() is not plant:
-            yield edge, f"the target '{edge.target.name}' is another plant's location"
-        yield from _updates(edge, plant, types)
 
 
-def _twice(leaving: sct.Location | sct.Plant, where: str, seen: set[sct.Event]) -> Iterator[Fault]:
-    """The edges for events that an edge before has, or that are `seen` already; adds to these."""
-    for edge in leaving.edges:
-        if edge.event in seen:
-            yield edge, f"{where} two edges for '{edge.event.name}'"
-        seen.add(edge.event)
-
-
-def _unused(model: sct.SupervisoryControlModel) -> Iterator[Fault]:
-    """The events on no edge: whether they can happen, or never, nobody could say."""
-    used = {edge.event for plant in model.plants for edge in edges_of(plant)}
-    for plant in model.plants:
-        for event in plant.events:
-            if event not in used:
-                yield event, f"no plant has an edge for the event '{event.name}'"
-
-
-def _updates(edge: sct.Edge, plant: sct.Plant, types: ExpressionTypes) -> Iterator[Fault]:
-    seen = set()
-    for update in edge.updates:
-        variable = update.variable
-        if variable.eContainer() is not plant:
-            yield update, f"the variable '{variable.name}' is another plant's"
-        if variable in seen:
-            yield update, f"the variable '{variable.name}' is updated twice"
-        seen.add(variable)
-        yield from types.unless(update.value, declared_type(variable.type))
-
-
-def _initial(variable: sct.DiscreteVariable, types: ExpressionTypes) -> Iterator[Fault]:
-    yield from types.unless(variable.initial, declared_type(variable.type))
-    value = variable.initial
-    sign = 1
+def _initial_value(variable: sct.DiscreteVariable, _model: Model) -> Iterator[Fault]:
+    value, sign = variable.initial, 1
     if isinstance(value, ex.UnaryMinus):
-        sign, value = -1, value.operand
-    constant = isinstance(value, (ex.BooleanLiteral, ex.IntegerLiteral, ex.EnumerationLiteralReference))
-    if not constant:
+        value, sign = value.operand, -1
+    if not isinstance(value, (ex.BooleanLiteral, ex.IntegerLiteral, ex.EnumerationLiteralReference)):
         yield variable.initial, "an initial value is a literal"
     elif isinstance(value, ex.IntegerLiteral) and isinstance(variable.type, ex.IntegerType):
         minimum, maximum = variable.type.minimum, variable.type.maximum
@@ -143,44 +52,101 @@ def _initial(variable: sct.DiscreteVariable, types: ExpressionTypes) -> Iterator
             yield variable.initial, f"{sign * value.value} is outside {minimum}..{maximum}"
 
 
-def _conditions(element: Any, types: ExpressionTypes) -> Iterator[Fault]:
-    match element:
-        case sct.Edge() if element.guard is not None:
-            yield from types.unless(element.guard, BOOLEAN)
-        case sct.Requirement():
-            yield from types.unless(element.condition, BOOLEAN)
-        case sct.EventGuard():
-            for part in (element.requirement, element.synthesis):
-                if part is not None:
-                    yield from types.unless(part, BOOLEAN)
-        case sct.InputReference():
-            yield from _read(element)
+def _one_edge(plant: sct.Plant, _model: Model) -> Iterator[Fault]:
+    """A location has one edge for an event, counting those that the plant has in every location."""
+    for edge in repeated(plant.edges, lambda edge: edge.event):
+        yield edge, f"plant '{plant.name}' has in every location two edges for '{edge.event.name}'"
+    everywhere = {edge.event for edge in plant.edges}
+    for location in plant.locations:
+        again = set(repeated(location.edges, lambda edge: edge.event))
+        for edge in location.edges:
+            if edge in again or edge.event in everywhere:
+                yield edge, f"location '{location.name}' has two edges for '{edge.event.name}'"
 
 
-def _read(reference: sct.InputReference) -> Iterator[Fault]:
+def _carried(event: sct.Event, _model: Model) -> Iterator[Fault]:
+    for carried in event.inputs:
+        if carried.eContainer() is not event.eContainer():
+            yield event, f"the input '{carried.name}' is another plant's"
+
+
+def _updated_once(edge: sct.Edge, _model: Model) -> Iterator[Fault]:
+    for update in repeated(edge.updates, lambda update: update.variable):
+        yield update, f"the variable '{update.variable.name}' is updated twice"
+
+
+def _used(model: sct.SupervisoryControlModel, _model: Model) -> Iterator[Fault]:
+    """Whether an event on no edge can happen, or never, nobody could say."""
+    used = {edge.event for plant in model.plants for edge in edges_of(plant)}
+    for plant in model.plants:
+        for event in plant.events:
+            if event not in used:
+                yield event, f"no plant has an edge for the event '{event.name}'"
+
+
+def _read(reference: sct.InputReference, _model: Model) -> Iterator[Fault]:
     """An input is read in updates on edges of an event that names it, and nowhere else."""
-    around = reference.eContainer()
-    while isinstance(around, ex.Expression):
-        around = around.eContainer()
-    if not isinstance(around, sct.Update):
+    user = reference.eContainer()
+    while isinstance(user, ex.Expression):
+        user = user.eContainer()
+    if not isinstance(user, sct.Update):
         yield reference, "an input is read in updates only"
-    elif reference.input not in around.eContainer().event.inputs:
-        yield reference, f"'{around.eContainer().event.name}' does not carry the input '{reference.input.name}'"
+    elif reference.input not in user.eContainer().event.inputs:
+        yield reference, f"'{user.eContainer().event.name}' does not carry the input '{reference.input.name}'"
 
 
-def _supervisor(model: sct.SupervisoryControlModel) -> Iterator[Fault]:
-    if model.supervisor is None:
-        return
-    guarded = Counter(guard.event for guard in model.supervisor.guards)
-    for guard in model.supervisor.guards:
+def _guards(supervisor: sct.Supervisor, model: Model) -> Iterator[Fault]:
+    guarded = Counter(guard.event for guard in supervisor.guards)
+    for guard in supervisor.guards:
         if guarded[guard.event] > 1:
             yield guard, f"the event '{guard.event.name}' has more than one guard"
         if any(
-            requirement.event is not guard.event or requirement not in model.requirements
+            requirement.event is not guard.event or requirement not in model.root.requirements
             for requirement in guard.requirements
         ):
             yield guard, f"a requirement of this guard is not one on '{guard.event.name}'"
-    for plant in model.plants:
+    for plant in model.root.plants:
         for event in plant.events:
             if event.controllable and event not in guarded:
-                yield model.supervisor, f"the event '{plant.name}.{event.name}' has no guard"
+                yield supervisor, f"the event '{plant.name}.{event.name}' has no guard"
+
+
+_FOREIGN = demand(lambda _: False, "{0.eClass.name} has no place in an sct model")
+_PLAIN = demand(
+    lambda declared: isinstance(declared.type, (ex.BooleanType, ex.IntegerType, ex.EnumerationType)),
+    "{0.type.eClass.name} has no place in an sct model",
+)
+_CONTROLLABLE = demand(
+    lambda restriction: restriction.event.controllable,
+    "the event '{0.event.name}' is uncontrollable: nothing can restrict it",
+)
+_OWN_TARGET = demand(
+    lambda edge: edge.target.eContainer() is around(edge, sct.Plant),
+    "the target '{0.target.name}' is another plant's location",
+)
+_OWN_VARIABLE = demand(
+    lambda update: update.variable.eContainer() is around(update, sct.Plant),
+    "the variable '{0.variable.name}' is another plant's",
+)
+
+CHECKS: Checks = {
+    ex.Expression: [fitting_operands],
+    sct.SupervisoryControlModel: [unique("plants", "enumerations"), _used],
+    ex.Enumeration: [unique("literals")],
+    sct.Plant: [unique("events", "inputs", "variables", "locations"), _initial_location, _one_edge],
+    object: [_references],
+    sct.Input: [_PLAIN],
+    sct.DiscreteVariable: [_PLAIN, typed("initial", lambda variable: declared_type(variable.type)), _initial_value],
+    ex.IntegerType: [_bounds],
+    ex.DoubleLiteral: [_FOREIGN],
+    ex.StringLiteral: [_FOREIGN],
+    ex.DoubleConversion: [_FOREIGN],
+    ex.Division: [_FOREIGN],
+    sct.Event: [_carried],
+    sct.Edge: [_OWN_TARGET, typed("guard"), _updated_once],
+    sct.Update: [_OWN_VARIABLE, typed("value", lambda update: declared_type(update.variable.type))],
+    sct.Requirement: [_CONTROLLABLE, typed("condition")],
+    sct.EventGuard: [_CONTROLLABLE, typed("requirement"), typed("synthesis")],
+    sct.InputReference: [_read],
+    sct.Supervisor: [_guards],
+}

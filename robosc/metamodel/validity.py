@@ -7,23 +7,22 @@ from typing import TYPE_CHECKING, Any
 
 from robosc.diagnostics.visible import visible
 from robosc.metamodel import expression as ex
-from robosc.metamodel import robosc, rosgraph, sct
-from robosc.metamodel.reflection import tree
-from robosc.metamodel.robosc_validity import robosc_faults
-from robosc.metamodel.rosgraph_validity import rosgraph_faults
-from robosc.metamodel.sct_validity import sct_faults
+from robosc.metamodel import robosc, robosc_validity, rosgraph, rosgraph_validity, sct, sct_validity
+from robosc.metamodel.model_checks import Model, demand, faults_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from robosc.metamodel.model_checks import Check, Checks, Fault
 
 _LARGEST = 2**63 - 1
 _IDENTIFIER = re.compile("[A-Za-z_][A-Za-z0-9_]*")
+_PACKAGE = re.compile("[A-Za-z][A-Za-z0-9_-]*")
 #: What is told to people, in logs too, as it stands.
 _TOLD = ("text", "origin", "explanation")
-_PACKAGE = re.compile("[A-Za-z][A-Za-z0-9_-]*")
 
 
-def faults(root: Any) -> Iterator[tuple[Any, str]]:
+def faults(root: Any) -> Iterator[Fault]:
     """What is wrong with a model whose required features are all set: the element, and the reason.
 
     Names are identifiers and literals have no sign in every model. An sct model has one initial location per plant,
@@ -31,50 +30,70 @@ def faults(root: Any) -> Iterator[tuple[Any, str]]:
     references and types agree with each other, also where one message is read at several places. Names in a robosc
     model mean what they can mean in a text; what else the language asks of it, its rules say.
     """
-    elements = [element for _, element in tree(root)]
-    for element in elements:
-        yield from _own_faults(element)
-    if isinstance(root, robosc.Base):
-        yield from robosc_faults(elements)
-    elif isinstance(root, sct.SupervisoryControlModel):
-        yield from sct_faults(root, elements)
-    elif isinstance(root, rosgraph.RosGraph):
-        yield from rosgraph_faults(root, elements)
+    model = Model(root)
+    yield from faults_of(model, _CHECKS)
+    for tables in (tables for kind, tables in _OWN_CHECKS.items() if isinstance(root, kind)):
+        for checks in tables:
+            found = list(faults_of(model, checks))
+            yield from found
+            if found:
+                return
 
 
-def _own_faults(element: Any) -> Iterator[tuple[Any, str]]:
-    texts = [("name", element.name)] if isinstance(element, ex.NamedElement) else []
-    match element:
-        case robosc.Interface() | rosgraph.Interface():
-            if not _PACKAGE.fullmatch(element.package):
-                yield element, f"'{element.package}' is no name of a ROS package"
-            texts.append(("type", element.type))
-        case rosgraph.FieldStep():
-            texts.append(("name", element.name))
-        case rosgraph.FieldAssignment():
-            texts += [("path", part) for part in element.path]
-        case ex.IntegerLiteral() | ex.DoubleLiteral():
-            yield from _literal_faults(element)
-        case robosc.IndexSegment() | rosgraph.IndexStep() if element.index < 0:
-            yield element, "an index counts from 0"
-        case robosc.Access() if element.value == (element.item is not None):
-            yield element, "an access reads either an item or the value of the event"
-    yield from _told_faults(element)
-    for feature, text in texts:
-        if not _IDENTIFIER.fullmatch(text):
-            yield element, f"'{feature}' is to be an identifier, which '{text}' is not"
+def _identifier(feature: str) -> Check:
+    """The check that a feature with one text or several holds identifiers."""
+
+    def check(element: Any, _model: Model) -> Iterator[Fault]:
+        value = getattr(element, feature)
+        for text in [value] if isinstance(value, str) else value:
+            if not _IDENTIFIER.fullmatch(text):
+                yield element, f"'{feature}' is to be an identifier, which '{text}' is not"
+
+    return check
 
 
-def _told_faults(element: Any) -> Iterator[tuple[Any, str]]:
+def _told(element: Any, _model: Model) -> Iterator[Fault]:
     for feature in _TOLD:
         told = getattr(element, feature, None)
         if told is not None and visible(told) != told:
             yield element, f"'{feature}' is to be one line without hidden characters"
 
 
-def _literal_faults(element: ex.IntegerLiteral | ex.DoubleLiteral) -> Iterator[tuple[Any, str]]:
-    most = _LARGEST + isinstance(element.eContainer(), ex.UnaryMinus)
-    if element.value < 0:
-        yield element, "a literal has no sign; the sign is a UnaryMinus around it"
-    elif isinstance(element, ex.IntegerLiteral) and element.value > most:
-        yield element, f"{element.value} is no integer of 64 bits"
+def _literal(literal: ex.IntegerLiteral | ex.DoubleLiteral, _model: Model) -> Iterator[Fault]:
+    most = _LARGEST + isinstance(literal.eContainer(), ex.UnaryMinus)
+    if literal.value < 0:
+        yield literal, "a literal has no sign; the sign is a UnaryMinus around it"
+    elif isinstance(literal, ex.IntegerLiteral) and literal.value > most:
+        yield literal, f"{literal.value} is no integer of 64 bits"
+
+
+_INTERFACE = [
+    demand(lambda interface: bool(_PACKAGE.fullmatch(interface.package)), "'{0.package}' is no name of a ROS package"),
+    _identifier("type"),
+]
+_INDEX = demand(lambda step: step.index >= 0, "an index counts from 0")
+
+_CHECKS: Checks = {
+    ex.NamedElement: [_identifier("name")],
+    object: [_told],
+    ex.IntegerLiteral: [_literal],
+    ex.DoubleLiteral: [_literal],
+    robosc.Interface: _INTERFACE,
+    rosgraph.Interface: _INTERFACE,
+    robosc.IndexSegment: [_INDEX],
+    rosgraph.IndexStep: [_INDEX],
+    rosgraph.FieldStep: [_identifier("name")],
+    rosgraph.FieldAssignment: [_identifier("path")],
+    robosc.Access: [
+        demand(
+            lambda access: access.value == (access.item is None),
+            "an access reads either an item or the value of the event",
+        )
+    ],
+}
+#: The tables for each kind of model; where one finds something, the next are not asked.
+_OWN_CHECKS: Mapping[type, Sequence[Checks]] = {
+    robosc.Base: (robosc_validity.IMPORT_CHECKS, robosc_validity.CHECKS),
+    sct.SupervisoryControlModel: (sct_validity.CHECKS,),
+    rosgraph.RosGraph: (rosgraph_validity.CHECKS,),
+}
