@@ -1,4 +1,4 @@
-"""Generated from metamodel/sct.ecore by `python -m robosc.metamodel.stubs`."""
+"""Generated from metamodel/sct.ecore by `python scripts/metamodel_stubs.py`."""
 
 from collections.abc import Iterable, MutableSequence
 from typing import Any, ClassVar

@@ -6,10 +6,10 @@ import pytest
 
 import robosc.metamodel
 from robosc.metamodel._ecore import PACKAGES
-from robosc.metamodel.stubs import stub
+from scripts.metamodel_stubs import stub
 
 
 @pytest.mark.parametrize("name", PACKAGES)
 def test_stubs_are_up_to_date(name: str) -> None:
     written = Path(robosc.metamodel.__file__).with_name(f"{name}.pyi").read_text(encoding="utf-8")
-    assert written == stub(name), "python -m robosc.metamodel.stubs writes it anew"
+    assert written == stub(name), "python scripts/metamodel_stubs.py writes it anew"

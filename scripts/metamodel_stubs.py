@@ -1,9 +1,10 @@
-"""Writes the type stubs of the metamodel modules: `python -m robosc.metamodel.stubs`."""
+"""Writes the type stubs of the metamodel modules: `python scripts/metamodel_stubs.py`."""
 
 from pathlib import Path
 
 from pyecore.ecore import EClass, EClassifier, EPackage, EStructuralFeature
 
+from robosc import metamodel
 from robosc.metamodel._ecore import PACKAGES, packages
 from robosc.metamodel.reflection import documentation
 
@@ -45,7 +46,7 @@ def stub(name: str) -> str:
     used = _types(package)
     others = [other for other in PACKAGES if other != name and any(target.ePackage.name == other for target in used)]
     lines = [
-        f'"""Generated from metamodel/{name}.ecore by `python -m robosc.metamodel.stubs`."""',
+        f'"""Generated from metamodel/{name}.ecore by `python scripts/metamodel_stubs.py`."""',
         "",
         "from collections.abc import Iterable, MutableSequence",
         "from typing import Any, ClassVar",
@@ -90,4 +91,4 @@ def _types(package: EPackage) -> set[EClassifier]:
 
 if __name__ == "__main__":
     for package in PACKAGES:
-        Path(__file__).with_name(f"{package}.pyi").write_text(stub(package), encoding="utf-8")
+        Path(metamodel.__file__).with_name(f"{package}.pyi").write_text(stub(package), encoding="utf-8")
