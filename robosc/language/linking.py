@@ -147,10 +147,12 @@ class _Linker:
 
     def _remapping(self, remapping: rsc.TopicRemapping, name: Name) -> None:
         component = self._around(remapping, rsc.Component)
-        communications = self._scope.communications(component) if component else None
-        if component is not None and communications is not None:
-            found = self._member(communications, name, component, Declared.COMMUNICATION)
-            remapping.communicationType = found
+        if component is not None:
+            remapping.communicationType = self._communication_of(component, name)
+
+    def _communication_of(self, component: rsc.Component, name: Name) -> Any:
+        communications = self._scope.communications(component)
+        return None if communications is None else self._member(communications, name, component, Declared.COMMUNICATION)
 
     # Communication
 
@@ -158,11 +160,9 @@ class _Linker:
         name = names["communicationType"]
         if "component" in names:
             component = self._component(reference, names["component"])
-            communications = self._scope.communications(component) if component else None
             if component is not None:
                 reference.component = component
-            if component is not None and communications is not None:
-                reference.communicationType = self._member(communications, name, component, Declared.COMMUNICATION)
+                reference.communicationType = self._communication_of(component, name)
             return
         found = self._bare_communication(reference, name)
         if found is not None:
@@ -232,7 +232,9 @@ class _Linker:
         first = names.get("component", names["item"])
         components = self._components(access)
         if self._around(access, rsc.EnumDataType) is not None:
-            self._enum_value(access, first)
+            if not self._enum_value(access, first) and not self._file.may_declare(first.text, Declared.ENUM_VALUE):
+                hint = "an enum's rules see only `value`, literals and enum values"
+                self._missing(first, "there is no enum value", self._scope.usable(rsc.EnumValue), hint)
         elif "component" in names and first.text in components:
             self._qualified(access, components[first.text], names["item"])
             return
@@ -258,14 +260,10 @@ class _Linker:
         if name.text in members:
             access.component, access.item = own, members[name.text]
             return
-        values = self._scope.find(rsc.EnumValue, name.text)
-        if len(values) > 1:
-            self._ambiguous("enum value", name, [file for file, _ in values])
-        elif values:
-            access.item = values[0][1]
-        elif self._file.may_declare(name.text, Declared.COMPONENT, Declared.MEMBER, imported=False):
+        own_text = Declared.COMPONENT, Declared.MEMBER
+        if self._enum_value(access, name) or self._file.may_declare(name.text, *own_text, imported=False):
             return
-        elif qualifies:
+        if qualifies:
             hint = OWN_MEMBERS if name.text in self._scope.components else None
             self._missing(name, "there is no component or variable", [*components, *members], hint)
         elif not self._file.may_declare(name.text, Declared.ENUM_VALUE):
@@ -282,15 +280,14 @@ class _Linker:
         ]
         return f"write {' or '.join(having)}" if having else None
 
-    def _enum_value(self, access: rsc.Access, name: Name) -> None:
+    def _enum_value(self, access: rsc.Access, name: Name) -> bool:
+        """Whether a name is that of an enum value, or of several, which is a finding."""
         values = self._scope.find(rsc.EnumValue, name.text)
         if len(values) > 1:
             self._ambiguous("enum value", name, [file for file, _ in values])
         elif values:
             access.item = values[0][1]
-        elif not self._file.may_declare(name.text, Declared.ENUM_VALUE):
-            hint = "an enum's rules see only `value`, literals and enum values"
-            self._missing(name, "there is no enum value", self._scope.usable(rsc.EnumValue), hint)
+        return bool(values)
 
     def _read_as_property(self, access: rsc.Access, name: Name) -> None:
         """`a.b`, where `a` turned out to be no component: then `b` is a property of it."""

@@ -44,35 +44,27 @@ class Level:
 PROPERTIES = Level("ObjectProperty", "property")
 RULES = Level("EnumRule", "rule", first_words("EnumRule"))
 TRANSITIONS = Level("Transition", "transition", first_words("Transition"))
-AUTOMATON = Level(
-    "AutomatonDefinition",
-    "variable, state or transition",
-    first_words("AutomatonDefinition"),
-    dict.fromkeys(first_words("State"), TRANSITIONS),
-    unknown=TRANSITIONS,
+
+
+def _level(rule: str, noun: str, holder: str, inside: Level, also: frozenset[str] = frozenset()) -> Level:
+    """A level of which the items of the rule `holder` hold those of another level."""
+    return Level(rule, noun, first_words(rule) | also, dict.fromkeys(first_words(holder), inside), unknown=inside)
+
+
+#: Where a message's direction is missing, the next word shows what it is.
+_MESSAGE = frozenset({"message"})
+AUTOMATON = _level("AutomatonDefinition", "variable, state or transition", "State", TRANSITIONS)
+COMPONENT = _level(
+    "ComponentDefinition", "message, service, action or behaviour", "ComponentBehaviour", AUTOMATON, _MESSAGE
 )
-COMPONENT = Level(
-    "ComponentDefinition",
-    "message, service, action or behaviour",
-    # Where a message's direction is missing, the next word shows what it is.
-    first_words("ComponentDefinition") | {"message"},
-    dict.fromkeys(first_words("ComponentBehaviour"), AUTOMATON),
-    unknown=AUTOMATON,
-)
+DEFINITIONS = _level("Definition", "definition", "Component", COMPONENT)
 _DATA_TYPES = {"object": PROPERTIES, "enum": RULES}
-DEFINITIONS = Level(
-    "Definition",
-    "definition",
-    first_words("Definition"),
-    dict.fromkeys(first_words("Component"), COMPONENT),
-    unknown=COMPONENT,
-)
 #: What an item declares, by the keyword that it begins with.
 DECLARED = {
     **dict.fromkeys(first_words("Component"), Declared.COMPONENT),
     **dict.fromkeys(first_words("Interface"), Declared.INTERFACE),
     **dict.fromkeys(first_words("ComplexDataType"), Declared.DATA_TYPE),
-    **dict.fromkeys(first_words("CommunicationType") | {"message"}, Declared.COMMUNICATION),
+    **dict.fromkeys(first_words("CommunicationType") | _MESSAGE, Declared.COMMUNICATION),
     **dict.fromkeys(first_words("Variable", "State"), Declared.MEMBER),
 }
 _STARTERS = frozenset().union(*(level.starters for level in (RULES, AUTOMATON, COMPONENT, DEFINITIONS)))

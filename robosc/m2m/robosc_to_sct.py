@@ -85,22 +85,18 @@ class _Transformation:
     def communication(self, port: PortInstance) -> None:
         instance, communication = port.instance, port.communication
         kind = type(communication).__name__.lower()
-        plant = sct.Plant(
-            name=self.plant_names.fresh(f"{kind}_{self.communication_name(port)}"),
-            kind=getattr(sct.PlantKind, kind),
-            origin=f"{instance.name}.{communication.name}",
-            topic=instance.topic(communication),
-            source=communication.source,
+        plant = self.plant(
+            f"{kind}_{self.communication_name(port)}",
+            getattr(sct.PlantKind, kind),
+            f"{instance.name}.{communication.name}",
+            communication.source,
         )
-        self.model.plants.append(plant)
+        plant.topic = instance.topic(communication)
         self.trace.plants[port] = plant
         self.trace.origins[plant] = communication
         made: dict[str, sct.Event] = {}
         for row in events(communication):
-            controllable = row.kind in CONTROLLABLE
-            name = f"{'c' if controllable else 'u'}_{row.kind.name}"
-            event = sct.Event(name=name, kind=row.kind, controllable=controllable, source=plant.source)
-            plant.events.append(event)
+            event = _event(plant, row.kind.name, row.kind, plant.source)
             made[row.kind.name] = self.trace.events[port, row.kind.name] = event
         edges = [
             (origin, made[kind.name], end) for origin, kind, end in _PLANTS[type(communication)] if kind.name in made
@@ -111,6 +107,11 @@ class _Transformation:
         for origin, event, end in edges:
             _edge(places[origin], event, places[end])
         self.inputs(plant, port)
+
+    def plant(self, name: str, kind: sct.PlantKind, origin: str | None, source: Place | None) -> sct.Plant:
+        plant = sct.Plant(name=self.plant_names.fresh(name), kind=kind, origin=origin, source=source)
+        self.model.plants.append(plant)
+        return plant
 
     def communication_name(self, port: PortInstance) -> str:
         name = port.communication.name
@@ -136,13 +137,8 @@ class _Transformation:
     def behaviour(self, instance: Instance) -> None:
         """Locations, variables and silent events of section 5.2.1; the edges follow once all targets exist."""
         assert instance.automaton is not None
-        plant = sct.Plant(
-            name=self.plant_names.fresh(f"component_{instance.name}"),
-            kind=sct.PlantKind.behaviour,
-            origin=instance.name,
-            source=instance.component.source,
-        )
-        self.model.plants.append(plant)
+        kind = sct.PlantKind.behaviour
+        plant = self.plant(f"component_{instance.name}", kind, instance.name, instance.component.source)
         self.trace.behaviours[instance] = plant
         self.trace.origins[plant] = instance.component
         names = Names()
@@ -162,13 +158,8 @@ class _Transformation:
             self.trace.origins[variable] = owned.variable
         taus = (transition for transition, _ in instance.transitions if isinstance(transition, robosc.TauTransition))
         for number, transition in enumerate(taus, start=1):
-            event = sct.Event(
-                name=names.fresh(f"c_tau{number}"),
-                kind=sct.EventKind.tau,
-                controllable=True,
-                source=transition.source,
-            )
-            plant.events.append(event)
+            name = names.fresh(f"c_tau{number}").removeprefix("c_")
+            event = _event(plant, name, sct.EventKind.tau, transition.source)
             self.trace.taus[instance, transition] = event
             self.trace.origins[event] = transition
 
@@ -178,13 +169,8 @@ class _Transformation:
 
     def edges(self, instance: Instance) -> None:
         everywhere = [transition for transition, state in instance.transitions if state is None]
-        mentioned = [
-            event
-            for event in dict.fromkeys(
-                self.trace.event_of(transition, instance) for transition, _ in instance.transitions
-            )
-            if event.kind in _NEVER_BLOCKED
-        ]
+        reacted = dict.fromkeys(self.trace.event_of(transition, instance) for transition, _ in instance.transitions)
+        mentioned = [event for event in reacted if event.kind in _NEVER_BLOCKED]
         for state in instance.states:
             location = self.trace.locations[instance, state]
             for transition in [*state.transitions, *everywhere]:
@@ -204,13 +190,8 @@ class _Transformation:
         for owned, assignment in self.instances.assignments(transition, instance).items():
             if owned in self.trace.variables:
                 value = self.expressions(assignment.value, instance, transition)
-                edge.updates.append(
-                    sct.Update(
-                        variable=self.trace.variables[owned],
-                        value=value,
-                        source=assignment.source,
-                    )
-                )
+                variable = self.trace.variables[owned]
+                edge.updates.append(sct.Update(variable=variable, value=value, source=assignment.source))
 
     # Provided data
 
@@ -219,25 +200,18 @@ class _Transformation:
         statements = self.instances.provided(port)
         if not statements:
             return
-        plant = sct.Plant(
-            name=self.plant_names.fresh(f"data_{self.communication_name(port)}"),
-            kind=sct.PlantKind.data,
-            origin=self.trace.plants[port].origin,
-            source=statements[0].source,
-        )
-        self.model.plants.append(plant)
-        steps: list[tuple[sct.Event, sct.Location, robosc.ProvideStatement | None]] = []
+        name, origin = f"data_{self.communication_name(port)}", self.trace.plants[port].origin
+        plant = self.plant(name, sct.PlantKind.data, origin, statements[0].source)
         nothing = _location(plant, "none", initial=True, marked=True)
         for number, statement in enumerate(statements, start=1):
             location = _location(plant, f"d{number}", marked=True)
             location.source = statement.source
-            steps.append((_data_event(plant, f"c_d{number}", location.source), location, statement))
+            edge = _edge(plant, _event(plant, f"d{number}", sct.EventKind.data, statement.source), location)
+            edge.guard = self.holds(statement)
             self.trace.provided[statement] = location
             self.trace.origins[location] = statement
-        steps.append((_data_event(plant, "c_none", plant.source), nothing, None))
-        for event, target, provided in steps:
-            edge = _edge(plant, event, target)
-            edge.guard = self.none_holds(statements) if provided is None else self.holds(provided)
+        edge = _edge(plant, _event(plant, "none", sct.EventKind.data, plant.source), nothing)
+        edge.guard = self.none_holds(statements)
 
     def holds(self, statement: robosc.ProvideStatement) -> ex.Expression | None:
         return None if statement.condition is None else self.expressions(statement.condition, None)
@@ -317,7 +291,11 @@ def _edge(leaving: sct.Location | sct.Plant, event: sct.Event, target: sct.Locat
     return edge
 
 
-def _data_event(plant: sct.Plant, name: str, where: Place | None) -> sct.Event:
-    event = sct.Event(name=name, kind=sct.EventKind.data, controllable=True, source=where)
+def _event(plant: sct.Plant, name: str, kind: sct.EventKind, source: Place | None) -> sct.Event:
+    """An event, its name with `c_` before it if it is controllable, else with `u_`."""
+    controllable = kind in CONTROLLABLE
+    event = sct.Event(
+        name=f"{'c' if controllable else 'u'}_{name}", kind=kind, controllable=controllable, source=source
+    )
     plant.events.append(event)
     return event

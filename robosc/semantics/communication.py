@@ -56,8 +56,14 @@ EVENTS: Mapping[type[robosc.CommunicationType], tuple[PortEvent, ...]] = {
 }
 #: In the order in which the language lists them.
 _NAMES = ("request", "response", "error", "feedback", "cancel")
-#: What the controller does: these events are controllable.
-CONTROLLABLE = (sct.EventKind.trigger, sct.EventKind.reset, sct.EventKind.cancel)
+#: The kinds of the events that the controller decides on: all but what comes from the robot.
+CONTROLLABLE = (
+    sct.EventKind.trigger,
+    sct.EventKind.reset,
+    sct.EventKind.cancel,
+    sct.EventKind.tau,
+    sct.EventKind.data,
+)
 
 
 #: Quality of service where the configuration says nothing: how many messages wait in a queue.

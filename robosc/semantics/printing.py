@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from decimal import Decimal
 from functools import reduce
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 from robosc.diagnostics.visible import visible
 from robosc.metamodel import expression as ex
@@ -135,36 +135,26 @@ class SctPrinter(Printer):
         """A reference as `plant.name`, or a literal."""
         match expression:
             case sct.LocationReference():
-                return _with_plant(expression.location)
+                return f"{self.owner(expression.location.eContainer())}.{expression.location.name}"
             case sct.VariableReference():
-                return _with_plant(expression.variable)
+                return f"{self.owner(expression.variable.eContainer())}.{expression.variable.name}"
             case sct.InputReference():
-                return _with_plant(expression.input)
+                return f"{expression.input.eContainer().name}.{expression.input.name}"
             case ex.EnumerationLiteralReference():
                 return expression.literal.name
         return super().atom(expression)
+
+    def owner(self, plant: sct.Plant) -> str:
+        """What the plant of a location or a variable is called."""
+        return plant.name
 
 
 class RobotPrinter(SctPrinter):
     """Prints an expression of an sct model as the robot model does: states and variables with their component."""
 
-    def atom(self, expression: ex.Expression) -> str:
-        """A reference as `Component.name`; all else as in every sct model."""
-        match expression:
-            case sct.LocationReference():
-                return _with_origin(expression.location)
-            case sct.VariableReference():
-                return _with_origin(expression.variable)
-        return super().atom(expression)
-
-
-def _with_origin(element: sct.Location | sct.DiscreteVariable) -> str:
-    plant: sct.Plant = element.eContainer()
-    return f"{plant.origin or plant.name}.{element.name}"
-
-
-def _with_plant(element: Any) -> str:
-    return f"{element.eContainer().name}.{element.name}"
+    def owner(self, plant: sct.Plant) -> str:
+        """The component."""
+        return plant.origin or plant.name
 
 
 def conjunction(parts: Iterable[ex.Expression]) -> ex.Expression | None:

@@ -4,9 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 from robosc.metamodel import sct
 from robosc.semantics.edges import edges_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
 
 #: The kinds of events that run by themselves.
 SILENT = (sct.EventKind.tau, sct.EventKind.reset)
@@ -75,12 +79,7 @@ class Roles:
     @cached_property
     def sources(self) -> tuple[tuple[sct.Event, ...], ...]:
         """What comes from the robot: what messages on one topic mean, what one service says, or one action."""
-        found: dict[str | sct.Plant, list[sct.Event]] = {}
-        for event in self.incoming:
-            plant = plant_of(event)
-            named = plant.kind == sct.PlantKind.message and plant.topic is not None
-            found.setdefault(plant.topic.removeprefix("/") if named and plant.topic else plant, []).append(event)
-        return tuple(map(tuple, found.values()))
+        return _by_source(self.incoming)
 
     @cached_property
     def batches(self) -> tuple[tuple[sct.Event, ...], ...]:
@@ -91,12 +90,7 @@ class Roles:
     @cached_property
     def shared_topics(self) -> tuple[tuple[sct.Event, ...], ...]:
         """Triggers of messages that go to one topic, two or more: at most one of them runs in a round."""
-        topics: dict[str, list[sct.Event]] = {}
-        for event in self.triggers:
-            plant = plant_of(event)
-            if plant.kind == sct.PlantKind.message and plant.topic is not None:
-                topics.setdefault(plant.topic.removeprefix("/"), []).append(event)
-        return tuple(tuple(events) for events in topics.values() if len(events) > 1)
+        return tuple(events for events in _by_source(self.triggers) if len(events) > 1)
 
     @cached_property
     def once_per_tick(self) -> tuple[sct.Event, ...]:
@@ -122,3 +116,13 @@ class Roles:
 
     def _of(self, *kinds: sct.EventKind) -> tuple[sct.Event, ...]:
         return tuple(event for event in self.events if event.kind in kinds)
+
+
+def _by_source(events: Iterable[sct.Event]) -> tuple[tuple[sct.Event, ...], ...]:
+    """Events of messages by their topic, with or without a slash before it; others by their plant."""
+    found: dict[str | sct.Plant, list[sct.Event]] = {}
+    for event in events:
+        plant = plant_of(event)
+        named = plant.kind == sct.PlantKind.message and plant.topic
+        found.setdefault(plant.topic.removeprefix("/") if named and plant.topic else plant, []).append(event)
+    return tuple(map(tuple, found.values()))

@@ -12,6 +12,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from robosc.language.formatting import format_text
+from robosc.language.formatting.layout import CLAUSES
+from robosc.language.grammar import words_of
 from robosc.language.recovery import parse_file
 from robosc.language.text import Text, decode
 from robosc.language.tokens import Kind, Tokens
@@ -412,3 +414,9 @@ def test_deep_and_long_expressions() -> None:
     text = formatted(body(f"requirement b needs {deep}\nrequirement b needs {' or '.join(['a and c'] * 1000)}"))
     assert formatted(text) == text
     assert text.count("\n    or a and c") == 999
+
+
+@pytest.mark.parametrize("rule", CLAUSES)
+def test_lines_break_at_words_of_the_grammar(rule: str) -> None:
+    before, behind = CLAUSES[rule]
+    assert before | behind <= words_of(rule)

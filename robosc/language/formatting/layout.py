@@ -25,9 +25,9 @@ _INLINED = {"", "ComponentType", "LocalComponent", "ImportedComponent", "Automat
 _TIGHT = {"Access", "CommunicationReference", "PropertySegment", "IndexSegment", "IntegerDataType", "Array"}
 _TIGHT |= {"InterfaceTypeReference"}
 _TIGHT |= {"Negation", "UnaryMinus"}
-#: The words that a line may break before, and those that it may break behind.
+#: By rule the words that a line may break before, and those that it may break behind.
 _COMMUNICATION: tuple[set[str], set[str]] = (set(), {"with", ","})
-_CLAUSES: dict[str, tuple[set[str], set[str]]] = {
+CLAUSES: dict[str, tuple[set[str], set[str]]] = {
     "Interface": ({"use", "from"}, set()),
     "Component": ({"from", "import"}, set()),
     "Message": _COMMUNICATION,
@@ -68,7 +68,7 @@ class _Layout:
             return self._block(parts)
         if rule in _LISTS and len(parts) > 1:
             return self._list(parts)
-        if rule in _CLAUSES:
+        if rule in CLAUSES:
             return self._clauses(parts, rule)
         if rule == "Expression":
             return self._chain(parts[0], [(link[0], *_parts(link[0])) for link in parts[1:]])
@@ -96,7 +96,7 @@ class _Layout:
 
     def _clauses(self, parts: Sequence[Node], rule: str) -> Document:
         """A row of rows."""
-        starts, ends = _CLAUSES[rule]
+        starts, ends = CLAUSES[rule]
         clauses = [[parts[0]]]
         for left, right in pairwise(parts):
             if _is_word(right, starts) or _is_word(left, ends):
