@@ -159,10 +159,14 @@ def is_number(kind: Type) -> bool:
 
 def operator_type(row: Operator, operands: Sequence[Type]) -> Type:
     """The type of an operator's value, given its operands' types; as good as known even if an operand is wrong."""
+    if row.parameters not in {0, len(operands)}:
+        return UNKNOWN  # the rule `argument`
     if row.rule in CONDITIONS:
         return BOOLEAN
-    if row.rule in {Rule.DOUBLE, Rule.INTEGER}:
-        return DOUBLE if row.rule is Rule.DOUBLE else INTEGER
+    if row.rule is Rule.DOUBLE:
+        return DOUBLE
+    if row.rule is Rule.INTEGER:
+        return INTEGER if {*operands} == {INTEGER} else UNKNOWN
     if not all(is_number(operand) or operand == UNKNOWN for operand in operands):
         return UNKNOWN
     if DOUBLE in operands:
