@@ -16,7 +16,7 @@ from lifecycle_msgs.srv import ChangeState
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from std_msgs.msg import Bool, Empty, Int32
 
-PATIENCE = 60.0
+PATIENCE = 120.0
 COMPONENTS = [("scout_controller", "Controller"), ("managed_porter", "Controller"), ("usher_layer", "Layer")]
 RAIN = [("/pulse", Int32), ("/light", Bool), ("/stop", Empty), ("/resume", Empty)]
 

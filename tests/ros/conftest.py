@@ -174,7 +174,7 @@ def drive(nodes: Workspace | Runner, tmp_path_factory: pytest.TempPathFactory) -
         node = processes.start("node", nodes.node(package, f"event_log:={events}", *clock))
         options = ["--scenario", "line_follower", "--ros", str(ros.version), "--speed", "5", "--record", record]
         world = processes.start("world", [ros.python, SIMULATOR, *options])
-        processes.wait_until(lambda: world.poll() is not None, "the scenario has ended", seconds=180)
+        processes.wait_until(lambda: world.poll() is not None, "the scenario has ended", seconds=900)
         assert world.returncode == 0, processes.logs()
         status = processes.stop(node)
         processes.stop(listener)
@@ -191,7 +191,7 @@ def courier(nodes: Workspace | Runner, tmp_path_factory: pytest.TempPathFactory)
     with middleware(nodes, folder, simulated=False) as processes:
         node = processes.start("node", nodes.node(package))
         client = processes.start("client", [ros.python, HERE / "send_to_courier.py", str(ros.version), steps])
-        processes.wait_until(lambda: client.poll() is not None, "all steps are done", seconds=120)
+        processes.wait_until(lambda: client.poll() is not None, "all steps are done", seconds=600)
         assert client.returncode == 0, processes.logs()
         processes.stop(node)
     log = _lines(folder / "log" / f"{package}-events.jsonl")

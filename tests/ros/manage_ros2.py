@@ -14,7 +14,7 @@ from lifecycle_msgs.srv import ChangeState
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import DescribeParameters
 
-PATIENCE = 30.0
+PATIENCE = 120.0
 
 
 def call(kind, service, request):

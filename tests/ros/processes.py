@@ -14,7 +14,8 @@ if TYPE_CHECKING:
     from pathlib import Path
     from types import TracebackType
 
-_SECONDS_TO_END = 10
+#: Seconds for what takes a moment, on a machine that is busy with twenty other programs.
+PATIENCE = 120
 
 
 class Processes:
@@ -42,7 +43,7 @@ class Processes:
         self._started.append((name, process))
         return process
 
-    def wait_until(self, condition: Callable[[], bool], what: str, seconds: float = 30) -> None:
+    def wait_until(self, condition: Callable[[], bool], what: str, seconds: float = PATIENCE) -> None:
         """Waits for something that the programs do; fails with their logs where it takes too long."""
         until = time.monotonic() + seconds
         while not condition():
@@ -50,10 +51,10 @@ class Processes:
             time.sleep(0.05)
 
     def stop(self, process: subprocess.Popen[bytes]) -> int:
-        """Interrupts a program, as Ctrl-C does; its exit status. One that has not ended after ten seconds is killed."""
+        """Interrupts a program, as Ctrl-C does; its exit status. One that does not end is killed."""
         self._signal(process, signal.SIGINT)
         try:
-            return process.wait(_SECONDS_TO_END)
+            return process.wait(PATIENCE)
         except subprocess.TimeoutExpired:
             self._signal(process, signal.SIGKILL)
             return process.wait()

@@ -19,7 +19,7 @@ from pathlib import Path
 from topics import connect
 
 HZ = 30
-PATIENCE = 20.0
+PATIENCE = 120.0
 #: Most seconds that the robot drives, a period of the control loop, and that it stands, before it is told again.
 DRIVES, STANDS = 0.1, 0.02
 CLEAR, BLOCKED = {"ranges": [2.0] * 360}, {"ranges": [0.3] * 360}

@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from tests.ros.processes import PATIENCE
 from tests.ros.workspaces import Workspace, middleware
 
 if TYPE_CHECKING:
@@ -59,7 +60,7 @@ def _measured(
     processes.start("echo", [python, HERE / "echo.py", version])
     command = [python, HERE / "reaction_times.py", version, out, "--reason", reason, "--times", str(times)]
     world = processes.start("world", [*command, *options])
-    processes.wait_until(lambda: world.poll() is not None, "all is measured", seconds=60 + 10 * times)
+    processes.wait_until(lambda: world.poll() is not None, "all is measured", seconds=PATIENCE * (1 + times))
     assert world.returncode == 0, processes.logs()
     found = json.loads(out.read_text())
     return found["reactions"], found["echoes"]

@@ -18,7 +18,7 @@ SENT = {
     "report": "std_msgs/String",
     "busy": "std_msgs/Bool",
 }
-PATIENCE = 30.0
+PATIENCE = 120.0
 
 
 def scan(ranges, angle_min=0.0):
@@ -41,6 +41,12 @@ STEPS = [
     ("idle", "word", {"data": "idle"}),
 ]
 EVENTS = {"scan": "side", "count": "size", "word": "word"}
+
+
+def lasting(seen):
+    """What was seen, but for what counts and times messages."""
+    sent = {topic: {**message, "header": None} for topic, message in seen["sent"].items()}
+    return seen["components"], sent
 
 
 class Session:
@@ -68,21 +74,29 @@ class Session:
             self.topics.receive(0.02)
 
     def rest(self):
-        """What is reported in the next ticks, and sent: on each topic on which these reports say that something is."""
-        count = len(self.reports)
-        self.wait(lambda: len(self.reports) >= count + 2)
+        """What is reported and sent in some ticks, as soon as that is the same in the ticks after them.
+
+        No order is promised across topics: what is heard first may have been sent before.
+        """
+        seen, before = self.ticks(), None
+        until = time.monotonic() + PATIENCE
+        while (now := lasting(seen)) != before or set(seen["sent"]) != seen["told"]:
+            if time.monotonic() > until:
+                raise TimeoutError(f"it does not come to rest; the last that was seen is {seen}")
+            seen, before = self.ticks(), now
+        return {what: seen[what] for what in ("components", "sent")}
+
+    def ticks(self):
+        """What is reported in the next ticks, what is heard until then, and on which topics the reports say it is."""
         start = len(self.reports)
         for messages in self.sent.values():
             messages.clear()
         self.wait(lambda: len(self.reports) >= start + 3)
         happened = {event for report in self.reports[start:] for event in report["transitions"]}
-        topics = [topic for topic in SENT if f"message_{topic}.c_trigger" in happened]
-        # No order is promised across topics: the first one heard may be older than the reports, the third one is not.
-        self.wait(lambda: all(len(self.sent[topic]) >= 3 for topic in topics))
-        return {
-            "components": self.reports[-1]["components"],
-            "sent": {topic: messages[-1] for topic, messages in self.sent.items() if messages},
-        }
+        told = {topic for topic in SENT if f"message_{topic}.c_trigger" in happened}
+        self.wait(lambda: all(self.sent[topic] for topic in told))
+        sent = {topic: messages[-1] for topic, messages in self.sent.items() if messages}
+        return {"components": self.reports[-1]["components"], "sent": sent, "told": told}
 
     def step(self, topic, fields):
         start = len(self.reports)

@@ -67,7 +67,7 @@ def started(ros: Ros, prefix: Path, how: str, *arguments: str) -> dict[str, str]
         env={**ros.environment, "AMENT_PREFIX_PATH": f"{prefix}:{ros.environment['AMENT_PREFIX_PATH']}"},
         capture_output=True,
         text=True,
-        timeout=60,
+        timeout=300,
         check=False,
     )
     assert done.returncode == 0, done.stdout + done.stderr

@@ -29,7 +29,7 @@ def delivered(nodes: Workspace | Runner, folder: Path) -> tuple[dict[str, Any], 
         processes.start("node", nodes.node(PACKAGE, f"event_log:={log}"))
         command = [nodes.ros.python, HERE / "send_to_courier.py", str(nodes.ros.version), steps]
         client = processes.start("client", command)
-        processes.wait_until(lambda: client.poll() is not None, "all steps are done", seconds=120)
+        processes.wait_until(lambda: client.poll() is not None, "all steps are done", seconds=600)
         assert client.returncode == 0, processes.logs()
     results = json.loads(steps.read_text())
     for step in results.values():

@@ -76,7 +76,7 @@ def run(kind: Workspace | Runner, name: str, tmp_path_factory: pytest.TempPathFa
         ]
         command = [kind.ros.python, EXAMPLES / "simulator", "--scenario", name, "--ros", str(kind.ros.version)]
         world = processes.start("world", [*command, "--speed", str(SPEED), "--record", record])
-        processes.wait_until(lambda: world.poll() is not None, "the scenario has ended", seconds=240)
+        processes.wait_until(lambda: world.poll() is not None, "the scenario has ended", seconds=900)
         statuses = [processes.stop(node) for node in nodes]
     said = (folder / "world.log").read_text()
     output = "\n".join((folder / f"node{number}.log").read_text() for number in range(len(nodes)))

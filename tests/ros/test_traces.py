@@ -35,7 +35,7 @@ def rostest(workspace: Workspace, package: str, folder: Path, trace: str = "rand
         "TMPDIR": str(folder),
     }
     done = subprocess.run(
-        command, env=environment, capture_output=True, text=True, timeout=600, check=False, cwd=folder
+        command, env=environment, capture_output=True, text=True, timeout=900, check=False, cwd=folder
     )
     (result,) = results.rglob(f"rosunit-{trace}.xml")
     suite = ElementTree.parse(result).getroot()  # noqa: S314  # rosunit's own
@@ -147,7 +147,7 @@ def launch_test(workspace: Workspace, test: Path, folder: Path, trace: Path | No
             env=processes.environment,
             capture_output=True,
             text=True,
-            timeout=600,
+            timeout=900,
             check=False,
             cwd=folder,
         )
@@ -172,5 +172,5 @@ def play(nodes: Workspace | Runner, node: list[str] | list[str | Path], test: Pa
         trace = test / "traces" / "random_walk.jsonl"
         command = [nodes.ros.python, test / "play_trace.py", trace, folder / "events.jsonl"]
         player = processes.start("player", command)
-        processes.wait_until(lambda: player.poll() is not None, "the trace has been played", seconds=240)
+        processes.wait_until(lambda: player.poll() is not None, "the trace has been played", seconds=900)
         assert player.returncode == 0, processes.logs()

@@ -14,6 +14,8 @@ from pathlib import Path
 from topics import connect
 
 LAYER = "/usher_layer"
+#: Seconds for what takes a moment, on a machine that is busy with twenty other programs.
+PATIENCE = 120
 
 
 class Robot:
@@ -37,7 +39,7 @@ class Robot:
 
     def light(self, value):
         self.note("light", value)
-        self.answering.wait(20)
+        self.answering.wait(PATIENCE)
         return self.answers
 
 
@@ -65,7 +67,7 @@ class Ros1Robot(Robot):
 
     def on_goal(self, goal):
         self.note("go_to", goal.get_goal().pose.pose.position.x)
-        self.deciding.wait(20)
+        self.deciding.wait(PATIENCE)
         if not self.accepts:
             goal.set_rejected()
             return
@@ -128,12 +130,12 @@ class Ros2Robot(Robot):
 
     def on_goal(self, goal):
         self.note("go_to", goal.pose.pose.position.x)
-        self.deciding.wait(20)
+        self.deciding.wait(PATIENCE)
         return self.accept if self.accepts else self.reject
 
     def on_cancel(self, goal):  # noqa: ARG002
         self.note("cancel", True)
-        self.deciding.wait(20)
+        self.deciding.wait(PATIENCE)
         return self.refuse if self.deaf else self.cancel
 
     def execute(self, goal):
@@ -162,12 +164,13 @@ class Trial:
         self.results, self.steps = results, {}
         self.told, self.blocked, self.states = [], [], []
         self.labels = []
+        self.charge = 80
         self.do = self.ros.publisher("/do", "std_msgs/String")
         self.stop = self.ros.publisher("/stop", "std_msgs/Empty")
         self.resume = self.ros.publisher("/resume", "std_msgs/Empty")
         self.battery = self.ros.publisher("/battery", "std_msgs/Int16")
         self.scan = self.ros.publisher("/scan", "sensor_msgs/LaserScan")
-        self.ros.listen("/told", "std_msgs/String", lambda message: self.told.append(json.loads(message.data)))
+        self.ros.listen("/told", "std_msgs/String", lambda message: self.tell(*json.loads(message.data)))
         self.ros.listen("/speed", "std_msgs/Float32", lambda message: self.robot.note("speed", round(message.data, 3)))
         self.ros.listen(
             f"{LAYER}/blocked", "std_msgs/String", lambda message: self.blocked.append(json.loads(message.data))
@@ -176,8 +179,13 @@ class Trial:
             f"{LAYER}/state", "std_msgs/String", lambda message: self.states.append(json.loads(message.data))
         )
 
-    def wait(self, condition, what, seconds=10):
-        until = time.monotonic() + seconds
+    def tell(self, what, value):
+        """Hears what the controller tells. It is asked for the server until it answers: once more is nothing new."""
+        if [what, value] != ["server", True] or not self.steps:
+            self.told.append([what, value])
+
+    def wait(self, condition, what):
+        until = time.monotonic() + PATIENCE
         while not condition():
             if time.monotonic() > until:
                 raise TimeoutError(f"{what}; {self.seen()}")
@@ -195,9 +203,15 @@ class Trial:
         """Waits until something of that name was blocked so often."""
         self.wait(lambda: sum(each["name"] == name for each in self.blocked) >= count, f"{name} is blocked")
 
-    def happened(self, event):
+    def happened(self, event, since=0):
         """Waits until the layer has told of an event."""
-        self.wait(lambda: any(event in state["transitions"] for state in self.states), f"{event} happens")
+        self.wait(lambda: any(event in state["transitions"] for state in self.states[since:]), f"{event} happens")
+
+    def charged(self, charge):
+        """The battery tells its charge, and the controller hears of it."""
+        self.charge = charge
+        self.battery(data=charge)
+        self.heard("battery", charge)
 
     def ask(self, what, value=True):
         self.do(data=json.dumps([what, value]))
@@ -206,21 +220,28 @@ class Trial:
         return {"robot": list(self.robot.received), "controller": list(self.told), "blocked": list(self.blocked)}
 
     def step(self, name):
-        """Ends a step, once all has come to rest."""
-        self.ros.receive(0.3)
+        """Ends a step, once all that was on its way has come: a last message passes layer and controller after it."""
+        told, states = len(self.told), len(self.states)
+        last = ["battery", self.charge]
+        self.battery(data=self.charge)
+        self.wait(lambda: last in self.told[told:], "the last message of a step is told")
+        self.happened("message_battery.u_response", states)
+        self.ros.receive(0.2)  # no order is promised across topics
+        self.told.pop(max(at for at, what in enumerate(self.told) if what == last))
         self.steps[name] = {**self.seen(), "states": list(self.states)}
         for each in (self.robot.received, self.told, self.blocked, self.states):
             del each[:]
 
     def run(self):
-        self.wait(self.ros.heard, "everyone is there", 60)
+        self.wait(self.ros.heard, "everyone is there")
         for _ in range(60):
             self.ask("server")
+            self.battery(data=self.charge)
             self.ros.receive(0.5)
-            if self.told:  # what it told while nobody listened was lost
+            if {"server", "battery"} <= {what for what, _ in self.told}:  # what was told while nobody listened was lost
                 break
         self.heard("server", True)
-        self.ros.receive(1.0)
+        self.heard("battery", self.charge)
         self.ros.listen("label", "std_msgs/String", lambda message: self.labels.append(message.data), latched=True)
         self.step("start")
         for step in (self.messages, self.services, self.goals, self.cancels, self.failures, self.late_servers):
@@ -251,8 +272,7 @@ class Trial:
     def messages(self):
         self.ask("speed", 0.5)
         self.got("speed", 0.5)
-        self.battery(data=80)
-        self.heard("battery", 80)
+        self.charged(80)
         self.step("allowed")
         self.scan(ranges=[0.5])
         self.heard("scan", 1)
@@ -260,13 +280,11 @@ class Trial:
         self.scan(ranges=[0.5, 0.75])
         self.heard("scan", 2)
         self.step("long")
-        self.battery(data=10)
-        self.heard("battery", 10)
+        self.charged(10)
         self.ask("speed", 0.75)
         self.was_blocked("Drive.speed")
         self.step("low")
-        self.battery(data=80)
-        self.heard("battery", 80)
+        self.charged(80)
         for count in range(20):
             self.stop()
             self.was_blocked("Drive.speed", count + 1)

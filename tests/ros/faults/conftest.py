@@ -109,9 +109,9 @@ def scout(under_way: Scout, request: pytest.FixtureRequest) -> Iterator[Scout]:
 
 @pytest.fixture
 def with_patience(controller: Controller, kept: Keep, tmp_path_factory: pytest.TempPathFactory) -> Scout:
-    """A node that waits long for a goal's acceptance, which takes its time on a busy machine."""
-    parameter = f"action_timeout_ms:={1000 * ACCEPTANCE_SECONDS}"
-    return kept("with patience", lambda: scouting(controller, tmp_path_factory.mktemp("patient") / "run", parameter))
+    """A node that waits long for a goal's acceptance and for an answer, which take their time on a busy machine."""
+    parameters = [f"{name}_timeout_ms:={1000 * ACCEPTANCE_SECONDS}" for name in ("action", "service")]
+    return kept("with patience", lambda: scouting(controller, tmp_path_factory.mktemp("patient") / "run", *parameters))
 
 
 @pytest.fixture

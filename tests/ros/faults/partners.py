@@ -9,7 +9,6 @@ import threading
 import time
 from contextlib import suppress
 from dataclasses import dataclass, field
-from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -35,11 +34,13 @@ SENT = {
     "/stop": "std_msgs/Empty",
     "/continue": "std_msgs/Empty",
 }
+#: What the node sends in each tick of the control loop where nothing keeps it.
+MOVE = "message_move.c_trigger"
 PACE = 0.25
 #: The way is clear; the second ray gives the pace.
 CLEAR = {"ranges": [1.0, PACE]}
 #: Seconds for what should happen at once, on a machine that is busy.
-PATIENCE = 60.0
+PATIENCE = 120.0
 #: Seconds for which ROS 2 takes a server that was killed to be there.
 LEASE = 21.0
 
@@ -167,7 +168,7 @@ class Scout:
         """The server, started where there is none; all waits for what the test decides, but for goals that succeed."""
         server = self.server or self.meet("server")
         server.do("answer_at_once", fields=None)
-        server.do("succeed_at_once", succeed=succeed)
+        server.do("accept_at_once", accept=succeed, succeed=succeed)
         server.do("on_cancel", answer="grant")
         if self.server is None:
             server.do("serve", name="/lamp", kind="std_srvs/SetBool")
@@ -227,11 +228,10 @@ class Scout:
         """The forward speeds that the world received."""
         return [command["data"]["linear"]["x"] for command in self.commands(since)]
 
-    def longest_pause(self, since: Moment) -> float:
-        """The longest time in which nothing came on /cmd_vel; waits until something has come twice."""
-        self.until(lambda: len(self.commands(since)) > 1, "the node goes on with its commands")
-        times = [command["at"] for command in self.commands(since)]
-        return max(later - earlier for earlier, later in pairwise(times))
+    def ticked_between(self, since: Moment, first: str, last: str) -> bool:
+        """Whether the node drove on between an event and another one, each where it happened first."""
+        names = [entry["event"] for entry in self.log(since)]
+        return MOVE in names[names.index(first) : names.index(last)]
 
     def states(self, since: Moment) -> list[dict[str, Any]]:
         """What the node reported of its state."""

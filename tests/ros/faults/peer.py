@@ -21,7 +21,7 @@ from queue import Queue
 sys.path.append(str(Path(__file__).parents[1]))
 from topics import fill, plain, type_of
 
-PATIENCE = 60.0
+PATIENCE = 120.0
 
 
 class Peer:
@@ -142,15 +142,16 @@ class Peer:
         self.say(goal=goal.number, at=time.monotonic(), data=plain(request))
         if self.at_once.get("accept"):
             goal.decision.put(True)
+        if self.at_once.get("succeed"):
             threading.Thread(target=goal.end, args=["succeeded"], daemon=True).start()
 
     def _cancelled(self, goal):
         self.say(cancel=goal.number, at=time.monotonic())
         return self.at_once.get("cancel", "grant")
 
-    def succeed_at_once(self, succeed):
-        """Whether all goals from now on are accepted and reached at once; else they wait."""
-        self.at_once["accept"] = succeed
+    def accept_at_once(self, accept, succeed=False):
+        """Whether all goals from now on are accepted at once, and reached; else they wait."""
+        self.at_once |= {"accept": accept, "succeed": accept and succeed}
 
     def on_cancel(self, answer):
         """What becomes of requests to cancel: `grant`, `ignore` (taken, but the goal goes on), `refuse`."""

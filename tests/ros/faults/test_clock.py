@@ -8,6 +8,7 @@ import pytest
 
 from robosc.semantics.definition import TRANSITIONS_KEPT
 from tests.ros.faults.conftest import scouting
+from tests.ros.faults.partners import MOVE
 
 if TYPE_CHECKING:
     from contextlib import AbstractContextManager
@@ -15,7 +16,6 @@ if TYPE_CHECKING:
     from tests.ros.faults.conftest import Controller, Keep
     from tests.ros.faults.partners import Moment, Scout
 
-MOVE = "message_move.c_trigger"
 START = 1000.0
 #: Messages sent at a time.
 PORTION = 1000

@@ -13,6 +13,11 @@ if TYPE_CHECKING:
     from tests.ros.faults.partners import Moment, Scout
 
 
+@pytest.fixture
+def scout(patient: Scout) -> Scout:
+    return patient
+
+
 def scan(scout: Scout, *ranges: float) -> Moment:
     """Lets the lidar publish this alone; the time from which on the node knows nothing else."""
     scout.world.do("repeat", topic="/scan", fields={"ranges": ranges}, hz=20)

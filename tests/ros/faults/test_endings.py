@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.ros.faults.partners import PACE
+from tests.ros.faults.partners import PACE, PATIENCE
 
 if TYPE_CHECKING:
     from tests.ros.faults.partners import Peer, Scout
@@ -35,7 +35,7 @@ def test_shutdown_while_driving(guarded: Scout, number: signal.Signals) -> None:
     since = guarded.now()
     guarded.until(lambda: PACE in guarded.speeds(since), "it drives")
     os.kill(guarded.process.pid, number)
-    assert guarded.process.wait(10) == 0
+    assert guarded.process.wait(PATIENCE) == 0
     server.wait("cancel", value=goal)
     guarded.until(lambda: guarded.speeds(since)[-1] == 0.0, "the last command is to halt")
     last = [each for each in guarded.log(since) if each["direction"] in ("out", "outside")][-1]
@@ -56,14 +56,14 @@ def test_shutdown_before_acceptance(guarded: Scout) -> None:
     guarded.until(lambda: HALT in [(each["direction"], each["event"]) for each in guarded.log(since)], "it stops")
     server.do("decide", number=goal, accept=True)
     server.wait("cancel", heard, value=goal)
-    assert guarded.process.wait(10) == 0
+    assert guarded.process.wait(PATIENCE) == 0
     assert "Traceback" not in guarded.output()
 
 
 def test_killed_and_restarted(guarded: Scout) -> None:
     server, _ = under_way(guarded)
     guarded.process.kill()
-    assert guarded.process.wait(10) == -signal.SIGKILL
+    assert guarded.process.wait(PATIENCE) == -signal.SIGKILL
     guarded.nothing(0.5)
     dead = guarded.now()
     guarded.nothing(0.5)

@@ -31,7 +31,7 @@ def test_flood(scout: Scout) -> None:
     memory = scout.memory()
     # What matters comes through in the middle of it: an answer, a result, and each message of the topics beside.
     server.do("answer_at_once", fields={"success": True, "message": "seen"})
-    server.do("succeed_at_once", succeed=True)
+    server.do("accept_at_once", accept=True, succeed=True)
     scout.send("/light", data=True)
     scout.send("/travel_order", data=True)
     # Before the first stop, which would cancel it.

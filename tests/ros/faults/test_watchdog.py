@@ -15,7 +15,7 @@ def test_silent_without_watchdog(scout: Scout) -> None:
     scout.send("/charge", data=50)
     scout.nothing(1.0)
     scout.until(lambda: len(scout.speeds(since)) > 10, "the robot drives on")
-    assert "silent" not in scout.output(since)
+    assert "/charge: silent" not in scout.output(since)
 
 
 def test_silent_with_watchdog(scout: Scout) -> None:
