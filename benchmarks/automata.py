@@ -53,7 +53,7 @@ def requirements(model: sct.SupervisoryControlModel, of: Mapping[sct.Plant, Auto
             read = _plants_read(part)
             about = tuple(plant for plant in model.plants if plant in read)
             asked.setdefault(about, []).append((event_name(requirement.event), part, needed))
-    return [_requirement([of[each] for each in about], parts) for about, parts in asked.items()]
+    return [_requirement([of[name] for name in about], parts) for about, parts in asked.items()]
 
 
 def uncontrollable(model: sct.SupervisoryControlModel) -> set[str]:
@@ -92,21 +92,23 @@ def _plant(plant: sct.Plant) -> Automaton:
 
 def _requirement(followed: Sequence[Automaton], parts: Iterable[tuple[str, ex.Expression, bool]]) -> Automaton:
     """The plants followed, side by side, and where these let each event happen of which parts say what it needs."""
-    alphabet = frozenset[str]().union(*(each.alphabet for each in followed))
+    alphabet = frozenset[str]().union(*(plant.alphabet for plant in followed))
     conditions: dict[str, list[tuple[ex.Expression, bool]]] = {}
     for label, condition, needed in parts:
         conditions.setdefault(label, []).append((condition, needed))
 
     def successors(state: tuple[int, ...]) -> Iterator[tuple[str, tuple[int, ...]]]:
         values = {
-            key: value for at, each in zip(state, followed, strict=True) for key, value in each.values[at].items()
+            key: value for at, plant in zip(state, followed, strict=True) for key, value in plant.values[at].items()
         }
         for label in sorted(alphabet | conditions.keys()):
             after = tuple(
-                each.transitions.get((at, label), -1) if label in each.alphabet else at
-                for at, each in zip(state, followed, strict=True)
+                plant.transitions.get((at, label), -1) if label in plant.alphabet else at
+                for at, plant in zip(state, followed, strict=True)
             )
-            allowed = (evaluate(each, _reading(values)) == needed for each, needed in conditions.get(label, ()))
+            allowed = (
+                evaluate(condition, _reading(values)) == needed for condition, needed in conditions.get(label, ())
+            )
             if -1 not in after and all(allowed):
                 yield label, after
 
@@ -185,7 +187,7 @@ def _parts(condition: ex.Expression, glue: type[ex.BinaryExpression]) -> Iterato
 
 
 def _plants_read(condition: ex.Expression) -> set[sct.Plant]:
-    references = (each for _, each in tree(condition))
+    references = (element for _, element in tree(condition))
     return {
         (reference.location if isinstance(reference, sct.LocationReference) else reference.variable).eContainer()
         for reference in references
@@ -206,7 +208,7 @@ def faudes_states(
     never_forbidden = uncontrollable(model)
     with during("automata"):
         flat = plants(model)
-        plants_ = [_generator(each, never_forbidden) for each in flat.values()]
+        plants_ = [_generator(plant, never_forbidden) for plant in flat.values()]
         requirements_ = [_generator(requirement, never_forbidden) for requirement in requirements(model, flat)]
     with during("plants"):
         plant = _composed(plants_)

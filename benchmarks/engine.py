@@ -104,14 +104,14 @@ def _instructions(found: Sequence[Results]) -> str:
         head,
         (
             [
-                each["title"],
-                each["events"],
-                *(number for what in ("perform", "batch", "tick") for number in _count(each[what])),
-                "-" if each["idle"] is None else each["idle"],
-                each["steps"]["most"],
-                f"{each['bound']:,}",
+                machine["title"],
+                machine["events"],
+                *(number for what in ("perform", "batch", "tick") for number in _count(machine[what])),
+                "-" if machine["idle"] is None else machine["idle"],
+                machine["steps"]["most"],
+                f"{machine['bound']:,}",
             ]
-            for each in found
+            for machine in found
         ),
     )
 
@@ -121,7 +121,7 @@ def _count(count: Results | None) -> list[str]:
 
 
 def _bytes(found: Sequence[Results]) -> str:
-    targets = list(dict.fromkeys(target for each in found for target in each["sizes"]))
+    targets = list(dict.fromkeys(target for machine in found for target in machine["sizes"]))
     columns = ("text", "rodata", "data", "bss", "controller", "stack")
     head = (
         "robot",
@@ -130,8 +130,8 @@ def _bytes(found: Sequence[Results]) -> str:
     return _table(
         head,
         (
-            [each["title"], *(f"{each['sizes'][target][of]:,}" for target in targets for of in columns)]
-            for each in found
+            [machine["title"], *(f"{machine['sizes'][target][of]:,}" for target in targets for of in columns)]
+            for machine in found
         ),
     )
 

@@ -61,8 +61,8 @@ static int choose(void)
     static const {p}_event incoming[] = {{ {incoming} }};
     int chosen = -1;
     unsigned found = 0U;
-    for (unsigned each = 0U; each < sizeof incoming / sizeof *incoming; ++each) {{
-        if ({p}_enabled(&robot, incoming[each]) && chance() % ++found == 0U) chosen = (int)incoming[each];
+    for (unsigned index = 0U; index < sizeof incoming / sizeof *incoming; ++index) {{
+        if ({p}_enabled(&robot, incoming[index]) && chance() % ++found == 0U) chosen = (int)incoming[index];
     }}
     return chosen;
 }}
@@ -70,7 +70,7 @@ static int choose(void)
 static unsigned enabled(void)
 {{
     unsigned found = 0U;
-    for (unsigned each = 0U; each < {queued}U; ++each) found += {p}_enabled(&robot, ({p}_event)each);
+    for (unsigned index = 0U; index < {queued}U; ++index) found += {p}_enabled(&robot, ({p}_event)index);
     return found;
 }}
 
@@ -153,7 +153,7 @@ def measured(model: SupervisoryControlModel, folder: Path) -> Costs:
     if shutil.which("valgrind") is None:
         return costs
     begins, performs, ends, ticked = (
-        _instructions(program, f"{names.prefix}_{each}") for each in ("begin", "perform", "end", "tick")
+        _instructions(program, f"{names.prefix}_{function}") for function in ("begin", "perform", "end", "tick")
     )
     ticked = ticked[1:]  # The first one comes before the walk.
     return replace(
@@ -182,7 +182,7 @@ def size(source: Path, names: CNames, command: Sequence[str]) -> Size:
     subprocess.run([*command, *OPTIONS, *asked], cwd=source.parent, check=True)
     listed = _run(command[0].replace("gcc", "size"), "-A", str(compiled))
     sections = [
-        sum(int(each) for each in re.findall(rf"^\.{section}\S* +(\d+)", listed, flags=re.MULTILINE))
+        sum(int(number) for number in re.findall(rf"^\.{section}\S* +(\d+)", listed, flags=re.MULTILINE))
         for section in ("text", "rodata", "data", "bss")
     ]
     probe = source.parent / "probe.c"
@@ -209,7 +209,7 @@ def stack(graph: str) -> int:
     def below(function: str, callers: tuple[str, ...] = ()) -> int:
         if function in callers:
             raise RecursionError(f"{function} can call itself")
-        inner = (below(each, (*callers, function)) for each in calls.get(function, ()))
+        inner = (below(callee, (*callers, function)) for callee in calls.get(function, ()))
         return own.get(function, 0) + max(inner, default=0)
 
     return max(map(below, own))
@@ -221,7 +221,7 @@ def _program(model: SupervisoryControlModel, source: Path) -> Path:
     main.write_text(
         PROGRAM.format(
             p=names.prefix,
-            incoming=", ".join(names.enumerator(each) for each in roles.incoming or roles.events),
+            incoming=", ".join(names.enumerator(event) for event in roles.incoming or roles.events),
             queued=len(roles.cancels) + len(roles.triggers),
             inputs="\n".join(_inputs(model, names)),
         )
@@ -234,9 +234,9 @@ def _program(model: SupervisoryControlModel, source: Path) -> Path:
 
 def _inputs(model: SupervisoryControlModel, names: CNames) -> Iterator[str]:
     """Sets each input to any of its values."""
-    for each in (input_ for plant in model.plants for input_ in plant.inputs):
-        low, high = domain(each.type)
-        member = f"robot.inputs.{names.member(each)}"
+    for input_ in (input_ for plant in model.plants for input_ in plant.inputs):
+        low, high = domain(input_.type)
+        member = f"robot.inputs.{names.member(input_)}"
         value = f"INT64_C({low}) + (int64_t)(chance() % UINT64_C({high - low + 1}))"
         yield f"    {member} = (__typeof__({member}))({value});"
 
@@ -247,7 +247,7 @@ def _instructions(program: Path, function: str) -> list[int]:
     command = ["valgrind", "--tool=callgrind", f"--callgrind-out-file={dumps}", "--combine-dumps=yes"]
     command += [f"--dump-after={function}", f"--toggle-collect={function}"]
     subprocess.run([*command, program, str(BATCHES), "instructions"], capture_output=True, check=True)
-    counted = [int(each) for each in re.findall(r"^totals: (\d+)", dumps.read_text(), flags=re.MULTILINE)]
+    counted = [int(number) for number in re.findall(r"^totals: (\d+)", dumps.read_text(), flags=re.MULTILINE)]
     dumps.unlink()
     return counted[:-1]  # The last one is what ran after the last call: nothing.
 

@@ -36,7 +36,7 @@ class Family:
 def cells(number: int) -> str:
     """Cells that know nothing of each other: each is a line of one place."""
     comment = "Cells that know nothing of each other, each with a place and an inspection that sends back what is bad."
-    return _robot("Cells", comment, *(each for i in _count(number) for each in _line(f"Cell{i}", 1)))
+    return _robot("Cells", comment, *(text for i in _count(number) for text in _line(f"Cell{i}", 1)))
 
 
 def cell_states(number: int) -> int:
@@ -104,7 +104,7 @@ def _line(name: str, number: int) -> list[Lines]:
                 "state rejected": [f"on request to {back} goto returning"],
                 "state returning": [
                     f"on response from {back} goto empty",
-                    *(f"on {each} from {back} goto rejected" for each in ("error", "cancel")),
+                    *(f"on {event} from {back} goto rejected" for event in ("error", "cancel")),
                 ],
             },
         ),
@@ -155,10 +155,10 @@ def sensors(number: int) -> str:
             },
         ),
         [
-            f"provide {each} with {{ linear: {{ x: {speed} }} }}"
-            for each, speed in zip(speeds, (1.0, 0.2, 0.0), strict=True)
+            f"provide {event} with {{ linear: {{ x: {speed} }} }}"
+            for event, speed in zip(speeds, (1.0, 0.2, 0.0), strict=True)
         ],
-        [f"requirement {each} needs {condition}" for each, condition in speeds.items()],
+        [f"requirement {event} needs {condition}" for event, condition in speeds.items()],
     )
 
 
@@ -170,7 +170,7 @@ def sensor_states(number: int) -> int:
 def philosophers(number: int) -> str:
     """Arms round a table, a tool between two of them; each needs the tools on both of its sides."""
     comment = "Dining philosophers: arms round a table, a tool between two of them, and each needs both to weld."
-    return _robot("RoundTable", comment, *(each for i in _count(number) for each in _arm(i, (i - 2) % number + 1)))
+    return _robot("RoundTable", comment, *(text for i in _count(number) for text in _arm(i, (i - 2) % number + 1)))
 
 
 def _arm(this: int, before: int) -> list[Lines]:
@@ -188,7 +188,7 @@ def _arm(this: int, before: int) -> list[Lines]:
                 "state has_left": [f"on request to {right} goto has_both"],
                 "state has_right": [f"on request to {left} goto has_both"],
                 "state has_both": [f"on request to {weld} goto welding"],
-                "state welding": [f"on {each} from {weld} goto resting" for each in ("response", "error")],
+                "state welding": [f"on {event} from {weld} goto resting" for event in ("response", "error")],
             },
         ),
         _component(
@@ -200,9 +200,9 @@ def _arm(this: int, before: int) -> list[Lines]:
                     f"on request to take_right{before} goto taken",
                 ],
                 "state taken": [
-                    f"on {each} from weld{arm} goto free"
+                    f"on {event} from weld{arm} goto free"
                     for arm in dict.fromkeys((this, before))
-                    for each in ("response", "error")
+                    for event in ("response", "error")
                 ],
             },
         ),
@@ -254,11 +254,11 @@ def warehouse(number: int) -> str:
             [],
             {
                 "initial marked state free": [
-                    f"on request to {each}{i} goto taken" for i in robots for each in ("enter", "leave")
+                    f"on request to {action}{i} goto taken" for i in robots for action in ("enter", "leave")
                 ],
                 "state taken": [
                     *(f"on request to dock{i}_{dock} goto free" for i in robots for dock in docks),
-                    *(f"on {each} from leave{i} goto free" for i in robots for each in ("response", "error")),
+                    *(f"on {event} from leave{i} goto free" for i in robots for event in ("response", "error")),
                 ],
             },
         ),
@@ -338,7 +338,7 @@ def _count(number: int) -> range:
 
 def _robot(name: str, comment: str, *parts: Lines) -> str:
     """The text of a robot; its actions are of a type of its own."""
-    used = any(ACTION in each for part in parts for each in part)
+    used = any(ACTION in text for part in parts for text in part)
     declared = [["interface task use Task from factory_msgs"]] if used else []
     return "\n".join([f"// {comment}", *_block(f"robot {name}", *declared, *parts), ""])
 
@@ -354,7 +354,7 @@ def _component(name: str, communications: Lines, states: Mapping[str, Lines], va
 
 def _block(heading: str, *parts: Lines) -> Lines:
     """A heading and parts in braces, an empty line between two of them."""
-    inside = [line for part in parts for line in ("", *(f"  {each}" if each else "" for each in part))]
+    inside = [line for part in parts for line in ("", *(f"  {text}" if text else "" for text in part))]
     return [f"{heading} {{", *inside[1:], "}"]
 
 
@@ -374,8 +374,8 @@ def _action(name: str) -> str:
 
 
 FAMILIES = {
-    each.name: each
-    for each in (
+    family.name: family
+    for family in (
         Family("cells", "N independent cells", cells, cell_states, (1, 2, 3, 4, 8, 16, 22, 32, 64, 128, 256)),
         Family("sensors", "N sensors gating one drive", sensors, sensor_states, (2, 4, 6, 8, 16, 32, 64, 128, 256)),
         Family("line", "a chain of N actions", line, line_states, (2, 3, 4, 5, 6, 8, 16, 32, 64, 128, 256)),

@@ -164,7 +164,7 @@ def main() -> int:
             trial, [seeds[at : at + CHUNKS[kind]] for at in range(0, number, CHUNKS[kind])], options.jobs
         )
         seconds = perf_counter() - began
-        outcomes = ", ".join(f"{each}: {count}" for each, count in sorted(result.statuses.items()))
+        outcomes = ", ".join(f"{status}: {count}" for status, count in sorted(result.statuses.items()))
         slowest = f"{result.slowest[0]:.1f} s (seed {result.slowest[1]})"
         largest = f"{result.largest[0] / 1e6:.0f} MB (seed {result.largest[1]})"
         print(

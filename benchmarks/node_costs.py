@@ -115,7 +115,7 @@ class _Run:
     def end(self, processor: float, ticks: int) -> Costs:
         """Ends the node; what it has cost, in so many ticks at the end."""
         status = Path(f"/proc/{self._node.pid}/status").read_text()
-        resident, virtual = (int(re.findall(rf"{each}:\s+(\d+)", status)[0]) / 1024 for each in ("VmHWM", "VmSize"))
+        resident, virtual = (int(re.findall(rf"{name}:\s+(\d+)", status)[0]) / 1024 for name in ("VmHWM", "VmSize"))
         found = Costs(processor, resident, virtual, played=self._played, reached=self._reached)
         assert self._processes.stop(self._node) == 0, self._processes.logs()
         if not self.scenario.layer:
@@ -140,5 +140,5 @@ def _node(nodes: Workspace | Runner, scenario: Scenario, remappings: list[str] |
 
 def summary(times: list[int]) -> dict[str, float]:
     """Microseconds: the mean, the least and the most, the standard deviation."""
-    micro = [each / 1000 for each in times]
+    micro = [nanoseconds / 1000 for nanoseconds in times]
     return {"mean": fmean(micro), "min": min(micro), "max": max(micro), "deviation": pstdev(micro)}

@@ -99,11 +99,14 @@ def page(results: Results) -> str:
     parts = [HEAD.format(machine=results["machine"])]
     for part, text in (("stop", STOP), ("obstacle", OBSTACLE)):
         if found := _of(results, part):
-            parts.append(text.format(times=_span(f"{each['times']:,}" for each in found.values())))
+            parts.append(text.format(times=_span(f"{measured['times']:,}" for measured in found.values())))
             parts.append(_reactions(found))
     if found := _of(results, "costs"):
-        parts += [COSTS.format(seconds=_span(f"{each['seconds']:.0f}" for each in found.values())), _costs(found)]
-        parts += [TICKS, *(_ticks(kind, each) for kind, each in found.items())]
+        parts += [
+            COSTS.format(seconds=_span(f"{measured['seconds']:.0f}" for measured in found.values())),
+            _costs(found),
+        ]
+        parts += [TICKS, *(_ticks(kind, measured) for kind, measured in found.items())]
     return "\n".join(parts)
 
 
@@ -124,7 +127,8 @@ def _reactions(found: Mapping[Kind, Results]) -> str:
     columns = [(of, value) for of in ("reaction", "echo") for value in ("median", "p99", "max")]
     head = ["node", "median", "p99", "maximum", "echo: median", "p99", "maximum"]
     return _table(
-        head, [[kind.title, *(f"{each[of][value]:.1f}" for of, value in columns)] for kind, each in found.items()]
+        head,
+        [[kind.title, *(f"{measured[of][value]:.1f}" for of, value in columns)] for kind, measured in found.items()],
     )
 
 
@@ -133,7 +137,10 @@ def _costs(found: Mapping[Kind, Results]) -> str:
     titles = next(iter(found.values()))["nodes"]
     return _table(
         head,
-        [[title, *(text for each in found.values() for text in _cost(each["nodes"][title]))] for title in titles],
+        [
+            [title, *(text for measured in found.values() for text in _cost(measured["nodes"][title]))]
+            for title in titles
+        ],
     )
 
 

@@ -31,7 +31,7 @@ ROOT = HERE.parent
 RESULTS, PAGE = HERE / "sanitized.json", ROOT / "docs" / "sanitizers.md"
 SANITIZERS = {"address": "address,undefined", "thread": "thread"}
 SCENARIO = "line_follower"
-CONTROLLERS = [f"{each}_controller" for each in (SCENARIO, "scout", "courier", "porter")]
+CONTROLLERS = [f"{name}_controller" for name in (SCENARIO, "scout", "courier", "porter")]
 PACKAGES = [*CONTROLLERS, "managed_porter", "usher_layer"]
 #: Loads and unloads in each container.
 ROUNDS = 170

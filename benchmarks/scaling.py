@@ -92,8 +92,8 @@ def _options() -> argparse.Namespace:
 
 def _installed(tools: Sequence[str]) -> list[str]:
     missing = [tool for tool in tools if tool == "faudes" and not find_spec("faudes")]
-    for each in missing:
-        _say(f"{each} is left out: `pip install -e '.[benchmarks]'` installs it")
+    for package in missing:
+        _say(f"{package} is left out: `pip install -e '.[benchmarks]'` installs it")
     return [tool for tool in tools if tool not in missing]
 
 

@@ -93,23 +93,25 @@ def page(results: Results) -> str:
 
 def _aims(results: Results) -> str:
     families, transform = results["families"], results["transform"]
-    philosophers = {each["n"]: each for each in families.get("philosophers", {}).get("robosc", ()) if each["finished"]}
+    philosophers = {
+        point["n"]: point for point in families.get("philosophers", {}).get("robosc", ()) if point["finished"]
+    }
     rows = [
         [f"{number} philosophers: {aim}", _cost(philosophers[number])]
         for number, aim in ((20, "3 s and 200 MB"), (40, "30 s"))
         if number in philosophers
     ]
     for name in ("cells", "services"):
-        many = [each for each in _finished(families, name, "robosc") if each["states"] >= 10**30]
+        many = [point for point in _finished(families, name, "robosc") if point["states"] >= 10**30]
         if many:
             rows.append([f"10^30 supervised states, {_titled(name, many[0]['n'])}: 2 s", _cost(many[0])])
-    small = [each for each in transform if each["finished"] and each["lines"] <= 1000]
+    small = [point for point in transform if point["finished"] and point["lines"] <= 1000]
     if small:
         rows.append([f"`transform` of {small[-1]['lines']} lines: 1 s", _seconds(small[-1])])
-    larger = [each for each in transform if each["finished"] and each["lines"] >= 500]
+    larger = [point for point in transform if point["finished"] and point["lines"] >= 500]
     if len(larger) > 1:
         exponent = linear_regression(
-            [log(each["lines"]) for each in larger], [log(each["cpu"]) for each in larger]
+            [log(point["lines"]) for point in larger], [log(point["cpu"]) for point in larger]
         ).slope
         rows.append(
             [
@@ -121,8 +123,8 @@ def _aims(results: Results) -> str:
 
 
 def _cost(point: Results) -> str:
-    synthesis = [sum(point["phases"][each][which] for each in SYNTHESIS) for which in (1, 0)]
-    everything = [sum(each[which] for each in point["phases"].values()) for which in (1, 0)]
+    synthesis = [sum(point["phases"][phase][which] for phase in SYNTHESIS) for which in (1, 0)]
+    everything = [sum(times[which] for times in point["phases"].values()) for which in (1, 0)]
     return (
         f"{_number(point['states'])} states; synthesis {synthesis[0]:.2f} s ({synthesis[1]:.2f}), "
         f"all {everything[0]:.1f} s ({everything[1]:.1f}), {point['memory']:.0f} MB"
@@ -134,16 +136,16 @@ def _seconds(point: Results) -> str:
 
 
 def _finished(families: Results, name: str, tool: str) -> list[Results]:
-    return [each for each in families.get(name, {}).get(tool, ()) if each["finished"]]
+    return [point for point in families.get(name, {}).get(tool, ()) if point["finished"]]
 
 
 def _supervised(families: Results, name: str, tool: str) -> list[Results]:
     """Those whose synthesis was finished, whatever became of the rest."""
-    return [each for each in families.get(name, {}).get(tool, ()) if "states" in each]
+    return [point for point in families.get(name, {}).get(tool, ()) if "states" in point]
 
 
 def _family(tools: Results) -> str:
-    others = {tool: {each["n"]: each for each in tools.get(tool, ())} for tool in EXPLICIT}
+    others = {tool: {point["n"]: point for point in tools.get(tool, ())} for tool in EXPLICIT}
     head = ["N", "lines", "reachable", "supervised", "peak nodes", "operations", "synthesis", "all", "MB"]
     head += [text for tool in others for text in (TOOLS[tool], "MB")]
     rows = []
@@ -153,10 +155,10 @@ def _family(tools: Results) -> str:
             row += [_number(point["uncontrolled"]), _number(point["states"])]
         else:
             row += ["-", "-"]
-        row += [f"{point[each]:,}" if each in point else "-" for each in ("peak_nodes", "operations")]
+        row += [f"{point[measure]:,}" if measure in point else "-" for measure in ("peak_nodes", "operations")]
         row += [_took(point, SYNTHESIS), _took(point), f"{point['memory']:.0f}"]
-        for each in others.values():
-            other = each.get(point["n"])
+        for points in others.values():
+            other = points.get(point["n"])
             row += [_took(other), f"{other['memory']:.0f}"] if other else ["-", "-"]
         rows.append(row)
     return _table(head, rows)
@@ -167,7 +169,7 @@ def _took(point: Results, phases: Sequence[str] = ()) -> str:
     if not point["finished"] and not (phases and "states" in point):
         return f"over {point['cpu']:.0f}"
     cpu, wall = (
-        sum(took[which] for each, took in point["phases"].items() if each in (phases or point["phases"]))
+        sum(took[which] for phase, took in point["phases"].items() if phase in (phases or point["phases"]))
         for which in (1, 0)
     )
     return f"{cpu:.2f} ({wall:.2f})"
@@ -176,8 +178,8 @@ def _took(point: Results, phases: Sequence[str] = ()) -> str:
 def _growths(families: Results) -> str:
     measures: dict[str, Callable[[Results], float]] = {
         "synthesis": _synthesis_seconds,
-        "peak nodes": lambda each: each["peak_nodes"],
-        "operations": lambda each: each["operations"],
+        "peak nodes": lambda measure: measure["peak_nodes"],
+        "operations": lambda measure: measure["operations"],
     }
     rows = [
         [
@@ -188,7 +190,7 @@ def _growths(families: Results) -> str:
         ]
         for name in families
     ]
-    return _table(["family", *measures, "all", *(TOOLS[each] for each in EXPLICIT)], rows)
+    return _table(["family", *measures, "all", *(TOOLS[tool] for tool in EXPLICIT)], rows)
 
 
 def _all_seconds(point: Results) -> float:
@@ -208,7 +210,7 @@ def growth(points: Sequence[Results], measure: Callable[[Results], float]) -> st
     logged = [log(number) for number in numbers]
     if len(set(logarithms)) == 1:
         return "N^0.0"
-    power, exponential = (1 - correlation(each, logarithms) ** 2 for each in (logged, numbers))
+    power, exponential = (1 - correlation(abscissa, logarithms) ** 2 for abscissa in (logged, numbers))
     if power > 3 * exponential:
         return f"{exp(linear_regression(numbers, logarithms).slope):.2f}^N"
     return f"N^{linear_regression(logged, logarithms).slope:.1f}"
@@ -217,12 +219,12 @@ def growth(points: Sequence[Results], measure: Callable[[Results], float]) -> st
 def _phases(families: Results) -> str:
     largest = {name: points[-1] for name in families if (points := _finished(families, name, "robosc"))}
     rows = [[_titled(name, point["n"]), *_each_phase(point)] for name, point in largest.items()]
-    return _table(["", *(TITLES.get(each, each) for each in (*PHASES, *TARGETS))], rows)
+    return _table(["", *(TITLES.get(phase, phase) for phase in (*PHASES, *TARGETS))], rows)
 
 
 def _each_phase(point: Results) -> list[str]:
     phases = point["phases"]
-    return [f"{phases[each][1]:.2f}" if each in phases else "-" for each in (*PHASES, *TARGETS)]
+    return [f"{phases[phase][1]:.2f}" if phase in phases else "-" for phase in (*PHASES, *TARGETS)]
 
 
 def _transform(points: Sequence[Results]) -> str:
@@ -232,7 +234,7 @@ def _transform(points: Sequence[Results]) -> str:
         "command",
         "MB",
         "written",
-        *(TITLES.get(each, each) for each in (*PHASES, *TARGETS)),
+        *(TITLES.get(phase, phase) for phase in (*PHASES, *TARGETS)),
     ]
     return _table(
         head,
@@ -286,12 +288,12 @@ def plots(results: Results) -> dict[str, str]:
     axes = transform.subplots()
     axes.set(xlabel="lines", ylabel="s", yscale="log")
     for phase in (*PHASES, *TARGETS):
-        points = [each for each in results["transform"] if phase in each["phases"]]
+        points = [point for point in results["transform"] if phase in point["phases"]]
         seconds = [point["phases"][phase][1] for point in points]
         axes.plot(
             [point["lines"] for point in points], seconds, marker="o", markersize=3, label=TITLES.get(phase, phase)
         )
-    points = [each for each in results["transform"] if each["finished"]]
+    points = [point for point in results["transform"] if point["finished"]]
     axes.plot(
         [point["lines"] for point in points],
         [point["cpu"] for point in points],

@@ -70,7 +70,7 @@ def main() -> None:
             imports = ["-c", IMPORT, *loaded]
             # One after the other, so that whatever else the machine does slows down both.
             pairs = [(seconds(["-m", "robosc", *command]), seconds(imports)) for _ in range(runs)]
-            ours, theirs = (statistics.median(each) for each in zip(*pairs, strict=True))
+            ours, theirs = (statistics.median(times) for times in zip(*pairs, strict=True))
             print(f"{name:<48} {ours * 1000:>6.0f} ms {theirs * 1000:>6.0f} ms {ours / theirs:>6.2f}")
 
 

@@ -72,7 +72,9 @@ STEPPER = Scenario("Line stepper", "line_stepper_controller", SUPERVISED / "cont
 def timed_packages(version: int, folder: Path) -> list[Path]:
     """Generates the packages for a ROS into a folder; where they are. What has not changed is not written again."""
     with tempfile.TemporaryDirectory() as generated:
-        return [_timed(each, version, Path(generated), folder / each.package) for each in [*SCENARIOS, STEPPER]]
+        return [
+            _timed(scenario, version, Path(generated), folder / scenario.package) for scenario in [*SCENARIOS, STEPPER]
+        ]
 
 
 def _timed(scenario: Scenario, version: int, generated: Path, folder: Path) -> Path:

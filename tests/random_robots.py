@@ -51,14 +51,14 @@ class Type:
 
     @property
     def can_be_sent(self) -> bool:
-        parts = [*(each for _, each in self.properties), *([self.element] if self.element else [])]
+        parts = [*(found_kind for _, found_kind in self.properties), *([self.element] if self.element else [])]
         return self.kind != "enum" and all(part.can_be_sent for part in parts)
 
 
-BOOLEAN, DOUBLE, STRING, NONE = (Type(each, each) for each in ("boolean", "double", "string", "none"))
+BOOLEAN, DOUBLE, STRING, NONE = (Type(name, name) for name in ("boolean", "double", "string", "none"))
 INTEGER = Type("integer", "integer")
 RANGED = [Type(f"integer({low}..{high})", "integer") for low, high in ((0, 3), (-2, 2), (5, 5), (-9, -7))]
-VECTOR = Type("Vector3", "object", tuple((each, DOUBLE) for each in "xyz"))
+VECTOR = Type("Vector3", "object", tuple((name, DOUBLE) for name in "xyz"))
 TWIST = Type("Twist", "object", (("linear", VECTOR), ("angular", VECTOR)))
 #: Types that ROS defines, named in messages.
 ROS_TYPES = [
@@ -149,13 +149,13 @@ class Writer:
         if self.one([True, True, False]):
             source = "from EmergencyStopLibrary import EmergencyStop"
             component.states = ["in_service", "stopped"]
-            made = [Communication(each, "outgoing", data={"response": NONE}) for each in ("stop", "continue")]
+            made = [Communication(name, "outgoing", data={"response": NONE}) for name in ("stop", "continue")]
         else:
             source = "from TurtlebotLibrary import TurtlebotPlatform"
-            made = [Communication(each, "incoming", sent=TWIST) for each in ("move", "halt")]
+            made = [Communication(name, "incoming", sent=TWIST) for name in ("move", "halt")]
             if VECTOR not in self.objects:
                 self.objects.append(VECTOR)
-        topics = ", ".join(f'{each.name}: "/l{number}/{each.name}"' for each in made)
+        topics = ", ".join(f'{communication.name}: "/l{number}/{communication.name}"' for communication in made)
         component.communications = made
         component.text = f"component {component.name} {source}{self.maybe(f' with {{ {topics} }}')}"
         self.components.append(component)
@@ -163,7 +163,7 @@ class Writer:
 
     def reference(self, component: Component, communication: Communication) -> str:
         """How a communication is named; two instances of one component need the name of theirs."""
-        names = [each.name for c in self.components for each in c.communications]
+        names = [communication.name for c in self.components for communication in c.communications]
         if names.count(communication.name) == 1 and self.one([True, True, False]):
             return communication.name
         return f"{component.name}.{communication.name}"
@@ -215,8 +215,8 @@ class Writer:
             else:
                 choices = [NONE, self.simple(), *self.objects, *(ROS_TYPES[:2] if kind == "incoming" else [])]
                 made.sent = self.one([choice for choice in choices if choice.can_be_sent])
-                made.data = {each: self.carried(kind) for each in ("response", "feedback") if each in EVENTS[kind]}
-                rest = "".join(f", {event}: {each.text}" for event, each in made.data.items())
+                made.data = {event: self.carried(kind) for event in ("response", "feedback") if event in EVENTS[kind]}
+                rest = "".join(f", {event}: {found_kind.text}" for event, found_kind in made.data.items())
                 word = "type" if kind == "incoming" else "request"
                 head = "incoming message" if kind == "incoming" else kind
                 made.text = f"{head} {name}{word}: {made.sent.text}{rest}"
@@ -255,20 +255,20 @@ class Writer:
             for variable in component.variables
         ]
         free = [(c, m, event) for c in self.components for m in c.communications for event in EVENTS[m.kind]]
-        common = [each for each in free if self.random.randrange(6) == 0]
-        body += [self.transition(component, *each) for each in common]
+        common = [candidate for candidate in free if self.random.randrange(6) == 0]
+        body += [self.transition(component, *candidate) for candidate in common]
         body += [self.silent(component, self.goto(component)) for _ in self.many(1)]
         marked = [state for state in component.states if self.one([True, False])] or component.states[-1:]
         for index, state in enumerate(component.states):
-            own = [each for each in free if each not in common and self.random.randrange(4) == 0]
-            inside = [self.transition(component, *each) for each in own]
+            own = [candidate for candidate in free if candidate not in common and self.random.randrange(4) == 0]
+            inside = [self.transition(component, *candidate) for candidate in own]
             inside += [self.silent(component, self.goto(component)) for _ in self.many(2)]
             if state not in marked:
                 inside.append(self.silent(component, f" goto {self.one(marked)}"))
             kinds = ["initial "] * (index == 0) + ["marked "] * (state in marked)
             self.random.shuffle(kinds)
             body.append(f"{''.join(kinds)}state {state} {{ {' '.join(inside)} }}")
-        body += [f"state {each} {{ }}" for each in component.apart]
+        body += [f"state {state} {{ }}" for state in component.apart]
         self.random.shuffle(body)
         return "\n".join([f"component {component.name} {{", *lines, "behaviour {", *body, "}", "}"])
 
@@ -318,15 +318,17 @@ class Writer:
 
     def provided(self, kind: Type) -> str:
         if kind.kind == "object":
-            given = [each for each in kind.properties if each[1].kind != "array" and self.one([True, False])]
-            return "{ " + ", ".join(f"{name}: {self.provided(each)}" for name, each in given) + " }"
+            given = [
+                declared for declared in kind.properties if declared[1].kind != "array" and self.one([True, False])
+            ]
+            return "{ " + ", ".join(f"{name}: {self.provided(inner)}" for name, inner in given) + " }"
         return self.expression(kind, self.readable(finite=False), 2, constant=kind not in RANGED)
 
     # Expressions
 
     def readable(self, *, finite: bool) -> list[tuple[str, Type]]:
         """What can be read by its full name."""
-        states = [(f"{c.name}.{each}", BOOLEAN) for c in self.components for each in (*c.states, *c.apart)]
+        states = [(f"{c.name}.{state}", BOOLEAN) for c in self.components for state in (*c.states, *c.apart)]
         variables = [
             (f"{c.name}.{variable.name}", variable.type)
             for c in self.components
@@ -337,7 +339,11 @@ class Writer:
 
     def expression(self, kind: Type, reads: list[tuple[str, Type]], depth: int, *, constant: bool = True) -> str:
         """An expression of the type; without `constant` it is no constant where anything can be read."""
-        alike = [text for text, each in reads if each.kind == kind.kind and (kind.kind != "enum" or each == kind)]
+        alike = [
+            text
+            for text, found_kind in reads
+            if found_kind.kind == kind.kind and (kind.kind != "enum" or found_kind == kind)
+        ]
         leaf = self.one([*alike, *alike, *(self.literals(kind) if constant or not alike else [])])
         if depth == 0 or self.one([True, False, False]):
             return leaf
@@ -354,7 +360,7 @@ class Writer:
         return leaf
 
     def boolean(self, reads: list[tuple[str, Type]], depth: int, left: str, right: str) -> str:
-        comparable = [each for _, each in reads if each.kind not in {"object", "array", "none"}]
+        comparable = [found_kind for _, found_kind in reads if found_kind.kind not in {"object", "array", "none"}]
         kind = self.one([*comparable, INTEGER, DOUBLE, BOOLEAN, *self.enums])
         first, second = (self.expression(kind, reads, depth - 1) for _ in range(2))
         symbol = self.one(COMPARED if kind.kind in {"integer", "double"} else COMPARED[:2])
@@ -372,7 +378,7 @@ def paths(start: str, kind: Type) -> list[tuple[str, Type]]:
     """What can be read of data, each with its type."""
     if kind.element is not None:
         return paths(f"{start}[{len(start) % 4}]", kind.element)
-    return [(start, kind), *(read for name, each in kind.properties for read in paths(f"{start}.{name}", each))]
+    return [(start, kind), *(read for name, inner in kind.properties for read in paths(f"{start}.{name}", inner))]
 
 
 def random_robot(seed: int, name: str = "R", *, mistakes: bool = True) -> str:

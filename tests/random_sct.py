@@ -22,7 +22,7 @@ class _Scope:
     values: tuple[tuple[str, str], ...]
 
     def of(self, kind: str) -> list[str]:
-        return [name for name, each in self.values if (".." if ".." in each else each) == kind]
+        return [name for name, range_ in self.values if (".." if ".." in range_ else range_) == kind]
 
 
 @dataclass(frozen=True)
@@ -85,14 +85,14 @@ def _types(draw: st.DrawFn, size: int) -> str:
 def _plant(draw: st.DrawFn, sketch: _Sketch, sketches: Sequence[_Sketch], scope: _Scope):
     own = [(sketch, event) for event in (*sketch.controllable, *sketch.uncontrollable)]
     others = [
-        (each, event)
-        for each in sketches
-        if each is not sketch
-        for event in (*each.controllable, *each.uncontrollable)
+        (drawn, event)
+        for drawn in sketches
+        if drawn is not sketch
+        for event in (*drawn.controllable, *drawn.uncontrollable)
         if draw(st.integers(0, 4)) == 0
     ]
     initial, *rest = sketch.locations
-    dead = [each for each in rest if draw(st.integers(0, 4)) == 4]
+    dead = [location for location in rest if draw(st.integers(0, 4)) == 4]
     edges = {
         location: [
             _edge(draw, sketch, declaring, event, scope)
@@ -101,7 +101,7 @@ def _plant(draw: st.DrawFn, sketch: _Sketch, sketches: Sequence[_Sketch], scope:
         ]
         for location in sketch.locations
     }
-    used = {each.event for location in sketch.locations for each in edges[location]}
+    used = {one.event for location in sketch.locations for one in edges[location]}
     edges[initial] += [edge(f"{sketch.name}.{event}") for _, event in own if f"{sketch.name}.{event}" not in used]
     return plant(
         sketch.name,
@@ -145,7 +145,7 @@ def _data_plant(draw: st.DrawFn, name: str, scope: _Scope):
         name,
         dict.fromkeys(locations, () if shared else edges),
         everywhere=edges if shared else (),
-        controllable=[each.event for each in edges],
+        controllable=[made.event for made in edges],
         marked=locations,
         kind="data",
     )

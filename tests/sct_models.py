@@ -151,16 +151,16 @@ def model(
 ) -> sct.SupervisoryControlModel:
     """The model. `guards` attaches a supervisor that was not synthesized: event to requirement part, or both parts."""
     scope = _Scope(
-        [each.element for each in plants],
+        [given_plant.element for given_plant in plants],
         [
-            ex.Enumeration(name=each, literals=[ex.EnumerationLiteral(name=literal) for literal in literals])
-            for each, literals in (enumerations or {}).items()
+            ex.Enumeration(name=enumeration, literals=[ex.EnumerationLiteral(name=literal) for literal in literals])
+            for enumeration, literals in (enumerations or {}).items()
         ],
     )
-    for each in plants:
-        scope.declare(each)
-    for each in plants:
-        scope.fill(each)
+    for given_plant in plants:
+        scope.declare(given_plant)
+    for given_plant in plants:
+        scope.fill(given_plant)
     made = sct.SupervisoryControlModel(
         name=name,
         enumerations=scope.enumerations,
@@ -195,8 +195,8 @@ class _Scope:
     events: dict[str, list[sct.Event]] = field(default_factory=lambda: defaultdict(list))
 
     def __post_init__(self) -> None:
-        for each in self.plants:
-            for event in each.events:
+        for given_plant in self.plants:
+            for event in given_plant.events:
                 self.events[event.name].append(event)
         for enumeration in self.enumerations:
             for literal in enumeration.literals:
@@ -227,8 +227,8 @@ class _Scope:
     def fill(self, given: _Plant) -> None:
         owner = given.element
         for location in owner.locations:
-            location.edges.extend(self.edge(each, owner, location.name) for each in given.locations[location.name])
-        owner.edges.extend(self.edge(each, owner, "") for each in given.everywhere)
+            location.edges.extend(self.edge(sketch, owner, location.name) for sketch in given.locations[location.name])
+        owner.edges.extend(self.edge(sketch, owner, "") for sketch in given.everywhere)
 
     def edge(self, given: _Edge, owner: sct.Plant, here: str) -> sct.Edge:
         return sct.Edge(
@@ -260,8 +260,8 @@ class _Scope:
                         if text is not None
                     },
                 )
-                for each in self.plants
-                for event in each.events
+                for given_plant in self.plants
+                for event in given_plant.events
                 if event.controllable
             ],
         )
@@ -278,7 +278,7 @@ class _Scope:
 
     def event(self, name: str, owner: sct.Plant | None) -> sct.Event:
         wanted, _, bare = name.rpartition(".")
-        found = [each for each in self.events[bare] if wanted in ("", each.eContainer().name)]
+        found = [event for event in self.events[bare] if wanted in ("", event.eContainer().name)]
         own = [event for event in found if event.eContainer() is owner]
         if len(own or found) != 1:
             raise LookupError(f"{len(found)} events are called {name}")

@@ -103,7 +103,7 @@ def test_of_a_long_line_the_part_around_the_fault_is_shown(at: int) -> None:
     line = "".join(chr(0x4E00 + number) for number in range(500))
     shown, carets = underline(line, at, at + 400)
     assert len(shown) < 170
-    columns = sum(1 if each == "…" else 2 for each in shown.partition(line[at : at + 1] or "end")[0])
+    columns = sum(1 if character == "…" else 2 for character in shown.partition(line[at : at + 1] or "end")[0])
     assert carets.index("^") == columns
 
 
@@ -231,7 +231,9 @@ def test_sarif_describes_the_rules_that_were_broken() -> None:
     only = run(finding(rule="unique-topic"), finding(rule="type"), finding(2, rule="type"), finding(rule="brand-new"))
     rules = only["tool"]["driver"]["rules"]
     assert [rule["id"] for rule in rules] == ["brand-new", "type", "unique-topic"]
-    assert [rules[each["ruleIndex"]]["id"] for each in only["results"]] == [each["ruleId"] for each in only["results"]]
+    assert [rules[result["ruleIndex"]]["id"] for result in only["results"]] == [
+        result["ruleId"] for result in only["results"]
+    ]
     assert rules[1]["shortDescription"]["text"].startswith("An expression has another type")
     assert rules[1]["help"]["text"].startswith("# type\n")
     assert "help" not in rules[0]

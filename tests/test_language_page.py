@@ -20,13 +20,13 @@ def test_the_snippets_make_a_model(tmp_path: Path) -> None:
     parts = [
         snippet("Robot and library", 1),
         components[:-1] + snippet("Behaviour") + "}",
-        *(snippet(each) for each in ("Data types", "Requirements", "Provided data")),
+        *(snippet(title) for title in ("Data types", "Requirements", "Provided data")),
     ]
     path = tmp_path / "porter.rscd"
     path.write_text("robot Porter {\n" + "\n".join(parts) + "}\n")
     robot = robosc.load(path)
     # nav2_msgs and its like are not known here, and the page's data is not really theirs.
-    assert [each for each in robosc.check(robot) if not each.rule.startswith("interface-")] == []
+    assert [finding for finding in robosc.check(robot) if not finding.rule.startswith("interface-")] == []
     assert robosc.synthesize(robosc.to_sct(robot)).controlledStates > 1
 
 

@@ -122,10 +122,10 @@ class ObjectDetector(Device):
     def say(self, world):
         """How many things it sees, and which."""
         boxes = []
-        for each in sorted(world.sights, key=lambda sight: -sight.certainty):
-            seen = place(world, each, world.walls, self.reach)
+        for visible in sorted(world.sights, key=lambda sight: -sight.certainty):
+            seen = place(world, visible, world.walls, self.reach)
             if seen is not None:
-                boxes.append(box(each.name, each.certainty, seen))
+                boxes.append(box(visible.name, visible.certainty, seen))
         stamped = header(world, "camera")
         said = [("/darknet_ros/found_object", {"header": stamped, "count": len(boxes)})]
         if boxes:

@@ -29,7 +29,7 @@ class Connection(ABC):
     def waits_for(self):
         """Topics that nobody listens to yet, the simulation's own devices aside."""
         needed = (say for say in self.simulation.says if say not in self.simulation.scenario.unheard)
-        return [each for each in needed if self.listeners(each) <= (each in self._echoes)]
+        return [topic for topic in needed if self.listeners(topic) <= (topic in self._echoes)]
 
     def send(self, item):
         """Sends a message or news of a goal."""

@@ -115,7 +115,7 @@ class Lidar(Device):
             "scan_time": self.period,
             "range_min": RANGE_MIN,
             "range_max": RANGE_MAX,
-            "ranges": [each + self._noise() if each < math.inf else each for each in seen],
+            "ranges": [distance + self._noise() if distance < math.inf else distance for distance in seen],
         }
         return [("/scan", data)]
 

@@ -38,8 +38,8 @@ def play(simulation, until, models=None, kind=Controller, quiet=False):
         node = connected(simulation, models or load(model_of(simulation.scenario)), log, kind)
         told = 0
         while not until():
-            for each in simulation.advance():
-                node.take(each)
+            for message in simulation.advance():
+                node.take(message)
             node.work()
             if not quiet:
                 told = tell(simulation, told)
@@ -243,7 +243,7 @@ class Received:
 def _received(value):
     if isinstance(value, dict):
         return Received(value)
-    return [_received(each) for each in value] if isinstance(value, list) else value
+    return [_received(element) for element in value] if isinstance(value, list) else value
 
 
 class Sent:

@@ -94,7 +94,7 @@ def cast(pose, shapes, rays, reach):
     for shape in shapes:
         meet = _meet_segment if isinstance(shape, Segment) else _meet_disc
         meet(seen, shape, pose)
-    return [each if each <= reach else math.inf for each in seen]
+    return [distance if distance <= reach else math.inf for distance in seen]
 
 
 def clear(start, end, shapes):

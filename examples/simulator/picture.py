@@ -115,7 +115,7 @@ class _Drawing:
     def _way(self, points):
         """Points for a polyline; of those that are drawn at the same place only the first."""
         shown = [f"{x:.1f},{y:.1f}" for x, y in (self._at(*point) for point in points)]
-        kept = [each for before, each in zip([None, *shown], shown) if each != before]  # noqa: B905  # old Pythons, too
+        kept = [image for before, image in zip([None, *shown], shown) if image != before]  # noqa: B905  # old Pythons, too
         return " ".join(kept)
 
     def _at(self, x, y):

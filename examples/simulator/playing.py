@@ -32,8 +32,8 @@ def play(simulation, connection, speed, until):
         _introduce(connection)
     told, started = 0, time.monotonic()
     while not until():
-        for each in simulation.advance():
-            connection.send(each)
+        for message in simulation.advance():
+            connection.send(message)
         connection.clock(simulation.time)
         told = tell(simulation, told)
         if speed != 1:

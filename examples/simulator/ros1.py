@@ -108,7 +108,7 @@ def _filled(message, data):
         elif isinstance(value, dict):
             value = _filled(getattr(message, name), value)  # noqa: PLW2901
         elif isinstance(value, list) and value and isinstance(value[0], dict):
-            value = [_filled(_class(types[name].rstrip("[]"))(), each) for each in value]  # noqa: PLW2901
+            value = [_filled(_class(types[name].rstrip("[]"))(), element) for element in value]  # noqa: PLW2901
         setattr(message, name, value)
     return message
 

@@ -137,7 +137,7 @@ def _filled(message, data):
             value = _filled(getattr(message, name), value)  # noqa: PLW2901
         elif isinstance(value, list) and value and isinstance(value[0], dict):
             kind = _class(types[name].partition("<")[2].rstrip(">"))
-            value = [_filled(kind(), each) for each in value]  # noqa: PLW2901
+            value = [_filled(kind(), element) for element in value]  # noqa: PLW2901
         setattr(message, name, value)
     return message
 

@@ -414,8 +414,8 @@ LINE_STEP = 0.01
 
 #: All scenarios, by name.
 SCENARIOS = {
-    each.name: each
-    for each in (
+    scenario.name: scenario
+    for scenario in (
         LineFollower(),
         SimpleNavigation(),
         ObstacleNavigation(),

@@ -91,7 +91,7 @@ class World:
     @property
     def gap(self):
         """The free distance between the robot and the nearest thing as high as the lidar; infinite without one."""
-        return min((each.distance(self.pose.x, self.pose.y) for each in self.seen_by_lidar), default=math.inf) - (
+        return min((shape.distance(self.pose.x, self.pose.y) for shape in self.seen_by_lidar), default=math.inf) - (
             ROBOT_RADIUS
         )
 
@@ -123,9 +123,9 @@ class World:
 
     def _free(self, before, after):
         """Whether the robot may go there: no nearer to what it already touches, and the ball gives way."""
-        for each in self.seen_by_lidar:
-            there = each.distance(after.x, after.y)
-            if there < ROBOT_RADIUS and there < each.distance(before.x, before.y):
+        for shape in self.seen_by_lidar:
+            there = shape.distance(after.x, after.y)
+            if there < ROBOT_RADIUS and there < shape.distance(before.x, before.y):
                 return False
         if self.ball:
             pushed = self._pushed(after, self.ball.x, self.ball.y)

@@ -134,8 +134,8 @@ def check_uncontrollable_at_fault(replay: Replay, reason: Reason) -> None:
     assert set(reason.unmarked) == never
 
 
-def is_never_marked(oracle: Oracle, each: sct.Plant, state: State) -> bool:
-    return not any(after[oracle.places[each]].marked for after in oracle.reach(state, requirements=True))
+def is_never_marked(oracle: Oracle, automaton: sct.Plant, state: State) -> bool:
+    return not any(after[oracle.places[automaton]].marked for after in oracle.reach(state, requirements=True))
 
 
 def tank(**arguments):

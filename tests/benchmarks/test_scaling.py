@@ -32,7 +32,9 @@ def test_the_command_measures_every_phase(quick):
     tools = results["families"]["services"]
     assert set(tools) == {"robosc", "definition", *(["faudes"] if find_spec("faudes") else [])}
     for measured in tools.values():
-        assert [each["states"] for each in measured] == [FAMILIES["services"].states(each["n"]) for each in measured]
+        assert [point["states"] for point in measured] == [
+            FAMILIES["services"].states(point["n"]) for point in measured
+        ]
     for point in (*tools["robosc"], *results["transform"]):
         assert point["finished"]
         assert {*Phase, *TARGETS, "parse", "link", "check", "m2m"} == point["phases"].keys()
@@ -51,7 +53,7 @@ def test_a_limit_ends_a_series(tmp_path):
     done = subprocess.run([*command, "--limit", "9", "--output", tmp_path], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     *finished, last = json.loads((tmp_path / "scaling.json").read_text())["families"]["warehouse"]["definition"]
-    assert all(each["finished"] for each in finished)
+    assert all(point["finished"] for point in finished)
     assert not last["finished"]
     assert "states" not in last
 
@@ -69,7 +71,7 @@ def test_plots_are_the_same_each_time():
 
 
 def test_disagreements_are_found():
-    one, other = ({"n": 2, "states": 15, "uncontrolled": each} for each in (22, 23))
+    one, other = ({"n": 2, "states": 15, "uncontrolled": number} for number in (22, 23))
     wrong = {"n": 4, "states": 242, "uncontrolled": 484}
     results = {"families": {"services": {"robosc": [one, wrong], "faudes": [other]}}}
     assert list(disagreements(results)) == [
@@ -88,4 +90,4 @@ def test_disagreements_are_found():
     ],
 )
 def test_growth(values, text):
-    assert growth([{"n": n, "value": value} for n, value in values.items()], lambda each: each["value"]) == text
+    assert growth([{"n": n, "value": value} for n, value in values.items()], lambda point: point["value"]) == text

@@ -139,7 +139,7 @@ def test_repairs_escape_keywords(tmp_path: Path) -> None:
           requirement shine needs ^state
         }
     """
-    hints = [each.hint or "" for each in found(tmp_path, robot)]
+    hints = [finding.hint or "" for finding in found(tmp_path, robot)]
     assert hints == [
         "write `^state.^error`",
         "compare it, such as `^value > 0`",
@@ -188,7 +188,7 @@ def test_unresolved_names_hide_only_what_they_may_stand_for(tmp_path: Path) -> N
           requirement { } needs wrong
         }
     """
-    findings = [each for each in found(tmp_path, robot) if each.rule != "unresolved-reference"]
+    findings = [finding for finding in found(tmp_path, robot) if finding.rule != "unresolved-reference"]
     assert places(findings) == [
         ("robot.rscd", 5, "interface-link"),
         ("robot.rscd", 8, "marked-state"),
@@ -219,9 +219,9 @@ def test_unresolved_names_draw_nothing_further(tmp_path: Path) -> None:
           provide opne with 3 if Rear
         }
     """
-    assert {each.rule for each in found(tmp_path, robot)} == {"unresolved-reference", "type"}
+    assert {finding.rule for finding in found(tmp_path, robot)} == {"unresolved-reference", "type"}
     # `Rear` is a component whatever its import means.
-    types = [each for each in found(tmp_path, robot) if each.rule == "type"]
+    types = [finding for finding in found(tmp_path, robot) if finding.rule == "type"]
     assert places(types) == [("robot.rscd", 16, "type")]
 
 
@@ -247,7 +247,7 @@ def test_unresolved_types_and_interfaces_draw_nothing_further(tmp_path: Path) ->
           provide opne with { }
         }
     """
-    assert {each.rule for each in found(tmp_path, robot)} == {"unresolved-reference"}
+    assert {finding.rule for finding in found(tmp_path, robot)} == {"unresolved-reference"}
 
 
 @pytest.mark.parametrize(
@@ -282,7 +282,7 @@ def test_unresolved_topics_are_not_one_and_the_same(tmp_path: Path, imported: st
     ],
 )
 def test_damaged_text_draws_no_rule(tmp_path: Path, damaged: str) -> None:
-    assert {each.rule for each in found(tmp_path, f"robot House {{\n  {damaged}\n}}\n")} == {"syntax"}
+    assert {finding.rule for finding in found(tmp_path, f"robot House {{\n  {damaged}\n}}\n")} == {"syntax"}
 
 
 @pytest.mark.parametrize("number", ["1.", "1 2", "1 .5", "99999999999999999999"])
@@ -301,7 +301,7 @@ def test_a_number_that_can_not_be_read_has_no_type(tmp_path: Path, number: str) 
           }}
         }}
     """
-    findings = [each for each in found(tmp_path, robot) if each.rule != "variable-type"]
+    findings = [finding for finding in found(tmp_path, robot) if finding.rule != "variable-type"]
     assert places(findings) == [("robot.rscd", line, "syntax") for line in (5, 7, 8)]
 
 
@@ -362,4 +362,4 @@ def test_libraries_that_import_each_other_are_all_checked() -> None:
     one.definitions[0].type.definition = other.definitions[0]
     other.definitions[0].type.definition = one.definitions[0]
     other.definitions.append(rsc.EnumDataType(name="Empty"))
-    assert [each.rule for each in check(one)] == ["enum-default"]
+    assert [finding.rule for finding in check(one)] == ["enum-default"]

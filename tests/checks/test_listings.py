@@ -15,7 +15,7 @@ pytestmark = pytest.mark.skipif(not LISTINGS.is_dir(), reason="the printed listi
 def errors(name: str) -> list[Diagnostic]:
     reading = read(LISTINGS / f"{name}.rscd")
     found = [*reading.findings, *check(reading.base, reading.findings)]
-    return [each for each in found if each.severity is Severity.ERROR]
+    return [finding for finding in found if finding.severity is Severity.ERROR]
 
 
 @pytest.mark.parametrize(
@@ -36,8 +36,8 @@ def test_scenario_draws_no_error(name: str) -> None:
 
 def test_language_concepts_lacks_marked_states() -> None:
     found = errors("language-concepts")
-    assert {each.rule for each in found} == {"marked-state"}
-    assert [each.message.split("`")[1] for each in found] == [
+    assert {finding.rule for finding in found} == {"marked-state"}
+    assert [finding.message.split("`")[1] for finding in found] == [
         "DistanceSensor.sensing",
         "ObstacleGrabber.idle",
         "ObstacleGrabber.grabbing",

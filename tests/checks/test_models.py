@@ -29,7 +29,7 @@ def findings(model: Path) -> tuple[list[Diagnostic], dict[str, str]]:
     known = RosTypes([INTERFACES])
     reading = read(model, [HERE / "libraries"], known)
     found = check(reading.base, reading.findings, known)
-    expected = [each for each in found if each.rule != UNKNOWN or model.parent.name == UNKNOWN]
+    expected = [finding for finding in found if finding.rule != UNKNOWN or model.parent.name == UNKNOWN]
     return [*reading.findings, *expected], reading.texts
 
 
@@ -40,11 +40,11 @@ def test_rejected_model_draws_exactly_the_expected_findings(model: Path) -> None
     rule, lines = expected[1], expected[2].split()
     assert rule == model.parent.name
     found = findings(model)[0]
-    assert [(each.file, each.rule, each.span.line) for each in found] == [
+    assert [(finding.file, finding.rule, finding.span.line) for finding in found] == [
         (str(model), rule, int(line)) for line in lines
     ]
-    assert {each.severity for each in found} == {RULES[rule].severity}
-    assert all(each.hint for each in found)
+    assert {finding.severity for finding in found} == {RULES[rule].severity}
+    assert all(finding.hint for finding in found)
 
 
 @pytest.mark.parametrize("model", ACCEPTED, ids=name)

@@ -20,7 +20,7 @@ def models(rule: str, heading: str) -> list[str]:
     text = page(rule)
     assert text is not None
     section = re.split(r"^## ", text, flags=re.MULTILINE)
-    (found,) = [each for each in section if each.startswith(f"{heading}\n")]
+    (found,) = [part for part in section if part.startswith(f"{heading}\n")]
     return re.findall(r"^```robosc\n(.*?)^```$", found, flags=re.MULTILINE | re.DOTALL)
 
 
@@ -36,7 +36,7 @@ def findings(folder: Path, texts: list[str]) -> list[Diagnostic]:
 @pytest.mark.parametrize("rule", CHECKED)
 def test_wrong_model_draws_the_rule_alone(rule: str, tmp_path: Path) -> None:
     found = findings(tmp_path, models(rule, "Wrong"))
-    assert [each.rule for each in found] == [rule]
+    assert [finding.rule for finding in found] == [rule]
 
 
 @pytest.mark.parametrize("rule", CHECKED)

@@ -27,7 +27,7 @@ OBJECT = ObjectType(rsc.ObjectDataType(name="O"))
 TYPES: list[Type] = [BOOLEAN, INTEGER, DOUBLE, STRING, NONE, ArrayType(DOUBLE), OBJECT, ENUM, OTHER_ENUM]
 BOOLEANS = {(BOOLEAN, BOOLEAN)}
 NUMBERS = {(INTEGER, INTEGER), (INTEGER, DOUBLE), (DOUBLE, INTEGER), (DOUBLE, DOUBLE)}
-EQUALS = {(each, each) for each in (BOOLEAN, INTEGER, DOUBLE, STRING, ENUM, OTHER_ENUM)}
+EQUALS = {(kind, kind) for kind in (BOOLEAN, INTEGER, DOUBLE, STRING, ENUM, OTHER_ENUM)}
 ACCEPTED: dict[type[ex.BinaryExpression], set[tuple[Type, Type]]] = {
     ex.Implication: BOOLEANS,
     ex.Disjunction: BOOLEANS,
@@ -45,8 +45,8 @@ ACCEPTED: dict[type[ex.BinaryExpression], set[tuple[Type, Type]]] = {
 }
 
 
-def operand(each: Type) -> rsc.Access:
-    match each:
+def operand(kind: Type) -> rsc.Access:
+    match kind:
         case ArrayType():
             declared: rsc.DataType = rsc.Array(type=rsc.DoubleDataType())
         case BasicType():
@@ -57,11 +57,11 @@ def operand(each: Type) -> rsc.Access:
                 STRING: rsc.StringDataType,
                 NONE: rsc.NoneDataType,
             }
-            if each not in basic:
+            if kind not in basic:
                 return rsc.Access()
-            declared = basic[each]()
+            declared = basic[kind]()
         case _:
-            declared = rsc.ComplexDataTypeReference(type=each.definition)
+            declared = rsc.ComplexDataTypeReference(type=kind.definition)
     return rsc.Access(item=rsc.Variable(name="v", type=declared))
 
 
@@ -84,20 +84,20 @@ def test_operator_accepts_exactly_the_operands_of_the_table(operator: type[ex.Bi
 @pytest.mark.parametrize("operator", ACCEPTED)
 def test_what_is_unknown_draws_nothing(operator: type[ex.BinaryExpression]) -> None:
     fitting = {left for left, _ in ACCEPTED[operator]}
-    for each in [*TYPES, UNKNOWN]:
-        alone = each == UNKNOWN or each in fitting
+    for kind in [*TYPES, UNKNOWN]:
+        alone = kind == UNKNOWN or kind in fitting
         for expression in (
-            operator(left=operand(each), right=operand(UNKNOWN)),
-            operator(left=operand(UNKNOWN), right=operand(each)),
+            operator(left=operand(kind), right=operand(UNKNOWN)),
+            operator(left=operand(UNKNOWN), right=operand(kind)),
         ):
             assert len(faults(expression)) == (0 if alone else 1)
 
 
-@pytest.mark.parametrize("each", [*TYPES, UNKNOWN], ids=str)
-def test_unary_operators(each: Type) -> None:
-    negation, minus = ex.Negation(operand=operand(each)), ex.UnaryMinus(operand=operand(each))
-    assert faults(negation) == ([] if each in {BOOLEAN, UNKNOWN} else [negation.operand])
-    assert faults(minus) == ([] if each in {INTEGER, DOUBLE, UNKNOWN} else [minus.operand])
+@pytest.mark.parametrize("kind", [*TYPES, UNKNOWN], ids=str)
+def test_unary_operators(kind: Type) -> None:
+    negation, minus = ex.Negation(operand=operand(kind)), ex.UnaryMinus(operand=operand(kind))
+    assert faults(negation) == ([] if kind in {BOOLEAN, UNKNOWN} else [negation.operand])
+    assert faults(minus) == ([] if kind in {INTEGER, DOUBLE, UNKNOWN} else [minus.operand])
 
 
 def test_each_wrong_operand_is_a_finding_of_its_own() -> None:
@@ -116,9 +116,9 @@ def test_a_place_accepts_exactly_its_type(wanted: Type, found: Type) -> None:
     check = ExpressionCheck(Place(None))
     check.expect(operand(found), wanted, "it")
     assert bool(check.findings) == (wanted != found)
-    for each in check.findings:
-        assert each.message == f"it must be {wanted}, found {found}"
-        assert each.hint
+    for finding in check.findings:
+        assert finding.message == f"it must be {wanted}, found {found}"
+        assert finding.hint
 
 
 def test_types_of_one_name_are_told_apart() -> None:

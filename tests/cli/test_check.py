@@ -25,7 +25,7 @@ def test_findings_as_json(run: Run, broken: Path) -> None:
     answer = run("check", broken.name, "--format", "json")
     assert answer.exit_code == 1
     found = json.loads(answer.stdout)
-    assert [(each["file"], each["line"], each["rule"]) for each in found] == [
+    assert [(finding["file"], finding["line"], finding["rule"]) for finding in found] == [
         (broken.name, 11, "initial-state"),
         (broken.name, 17, "unresolved-reference"),
     ]

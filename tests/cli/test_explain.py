@@ -107,7 +107,7 @@ def test_a_state_as_simulate_prints_it(run: Run) -> None:
     for state in (last, json.dumps(json.loads(last)["state"])):
         told = json.loads(run("explain", TANK, "--event", "refill", "--state", state, "--json").stdout)
         assert told["state"] == json.loads(last)["state"]
-        assert [each["event"] for each in told["trace"]] == ["message_level.u_response", "component_Gauge.c_tau1"]
+        assert [step["event"] for step in told["trace"]] == ["message_level.u_response", "component_Gauge.c_tau1"]
 
 
 REPORT = {
@@ -218,9 +218,9 @@ def test_no_supervisor(run: Run, stuck: Path) -> None:
     assert answer.exit_code == 0
     told = json.loads(answer.stdout)
     assert told["empty"] is True
-    assert [each["event"] for each in told["trace"]] == ["message_open.c_trigger"]
-    assert [(each["texts"], each["states"]) for each in told["loosenings"]] == [
-        ([each["text"] for each in told["requirements"]], 2)
+    assert [step["event"] for step in told["trace"]] == ["message_open.c_trigger"]
+    assert [(loosening["texts"], loosening["states"]) for loosening in told["loosenings"]] == [
+        ([requirement["text"] for requirement in told["requirements"]], 2)
     ]
     assert run("explain", TANK, "--why-empty", "--json").stdout == '{\n  "empty": false\n}\n'
 

@@ -50,8 +50,8 @@ def test_as_json(run: Run, door: Path) -> None:
 
 def test_all_but_the_time_is_the_same_on_every_run(run: Run, door: Path) -> None:
     said = [json.loads(run("synthesize", door, "--json").stdout) for _ in range(2)]
-    for each in said:
-        del each["seconds"], each["phase_seconds"], each["peak_bytes"]
+    for event in said:
+        del event["seconds"], event["phase_seconds"], event["peak_bytes"]
     assert said[0] == said[1]
 
 
@@ -200,7 +200,7 @@ def test_the_text_tells_what_the_robot_does(run: Run, tmp_path: Path) -> None:
         "\nSensor changes by itself: night to day\n"
         "    guard: true\n"
     )
-    names = [each["name"] for each in json.loads(run("synthesize", file, "--json").stdout)["events"]]
+    names = [event["name"] for event in json.loads(run("synthesize", file, "--json").stdout)["events"]]
     assert {"data_light.c_none", "component_Sensor.c_tau1"} <= {*names}
 
 

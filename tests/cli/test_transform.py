@@ -193,12 +193,12 @@ def test_warnings_of_synthesis(run: Run, courier: Path, form: str) -> None:
     assert answer.exit_code == 0, answer.output
     said = json.loads(answer.stdout)
     if form == "json":
-        [finding] = [each for each in said if each["rule"] == "shared-topic-conflict"]
+        [finding] = [finding for finding in said if finding["rule"] == "shared-topic-conflict"]
         assert finding["severity"] == "warning"
         assert (finding["file"], finding["line"], finding["column"]) == ("parts/lamps.rscd", 4, 5)
         assert finding["hint"]
     else:
-        rules = {each["id"]: each for each in said["runs"][0]["tool"]["driver"]["rules"]}
+        rules = {finding["id"]: finding for finding in said["runs"][0]["tool"]["driver"]["rules"]}
         summary = rules["shared-topic-conflict"]["shortDescription"]["text"]
         assert summary == "Two messages to one topic can be sent at the same time."
     assert Path("out/Courier.cif").exists()

@@ -94,7 +94,7 @@ def test_what_is_refuted_is_shown_with_its_traces(run: Run, lock: Path) -> None:
 def test_transitions_in_one_line_are_told_apart(run: Run, lock: Path) -> None:
     lock.write_text(" ".join(lock.read_text().split()))
     told = run("verify", lock).stdout.partition("\nconfluence: ")[2]
-    columns = [lock.read_text().index(f"transition goto {each}") + 1 for each in ("out", "in")]
+    columns = [lock.read_text().index(f"transition goto {direction}") + 1 for direction in ("out", "in")]
     assert all(f"    1. transition of `Bolt` in line 1, column {column}\n" in told for column in columns)
 
 
@@ -103,7 +103,7 @@ def test_as_json(run: Run, lock: Path) -> None:
     assert answer.exit_code == 1
     said = json.loads(answer.stdout)
     assert (said["robot"], said["proved"]) == ("Lock", False)
-    confluence = next(each for each in said["properties"] if each["property"] == "confluence")
+    confluence = next(answer for answer in said["properties"] if answer["property"] == "confluence")
     assert confluence.pop("seconds") >= 0
     assert confluence == {
         "property": "confluence",
@@ -122,10 +122,10 @@ def test_as_junit(run: Run, lock: Path, tmp_path: Path) -> None:
     assert run("verify", lock, "--junit", file).exit_code == 1
     root = ElementTree.fromstring(file.read_text())  # noqa: S314
     suite = root.find("testsuite")
-    cases = {each.get("name"): each for each in suite}
+    cases = {case.get("name"): case for case in suite}
     assert (root.tag, suite.get("name"), suite.get("errors")) == ("testsuites", "Lock", "0")
     assert (suite.get("tests"), suite.get("failures"), suite.get("skipped")) == (str(len(cases)), "1", "1")
-    assert {each.get("classname") for each in suite} == {"Lock"}
+    assert {case.get("classname") for case in suite} == {"Lock"}
     failed = [name for name, case in cases.items() if case.find("failure") is not None]
     assert failed == ["confluence"]
     assert "1. response from `Bolt.seen`" in cases["confluence"].find("failure").text
@@ -146,8 +146,8 @@ def test_inputs_are_in_the_traces(run: Run, door: Path, monkeypatch: pytest.Monk
 def test_nothing_but_the_seconds_changes(run: Run, lock: Path) -> None:
     said = [json.loads(run("verify", lock, "--json").stdout) for _ in range(2)]
     for answer in said:
-        for each in answer["properties"]:
-            del each["seconds"]
+        for checked in answer["properties"]:
+            del checked["seconds"]
     assert said[0] == said[1]
 
 

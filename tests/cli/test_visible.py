@@ -15,12 +15,12 @@ from tests.cli.conftest import DOOR, Run
 
 CODES = [number for first, last in HIDDEN for number in {first, (first + last) // 2, last}]
 #: Every kind of what is hidden, but line breaks and tabs.
-HOSTILE = "".join(chr(each) for each in CODES if each not in (0, 9, 10, 13)) + "\x1b[31m\u202e\x85"
+HOSTILE = "".join(chr(number) for number in CODES if number not in (0, 9, 10, 13)) + "\x1b[31m\u202e\x85"
 
 
 def hidden(text: str) -> set[str]:
     """What must not be printed of what a text holds."""
-    return {each for each in text if visible(each) != each} - {"\n", "\t"}
+    return {character for character in text if visible(character) != character} - {"\n", "\t"}
 
 
 @pytest.mark.parametrize("number", CODES)

@@ -100,7 +100,7 @@ def test_a_fault_is_located_and_names_its_key(tmp_path: Path, text: str, line: i
     with pytest.raises(ModelError) as raised:
         read(tmp_path, text)
     found = [diagnostic for diagnostic in raised.value.diagnostics if message in diagnostic.message]
-    assert [(each.span.line, each.span.column) for each in found] == [(line, column)]
+    assert [(finding.span.line, finding.span.column) for finding in found] == [(line, column)]
     assert found[0].file == str(tmp_path / config.FILE_NAME)
     assert found[0].rule == config.RULE
 
@@ -144,7 +144,7 @@ def test_settings_for_what_the_robot_does_not_have(tmp_path: Path) -> None:
     text = '{"frameId": {"/scam": "a", "/scan": "b"}, "qos": {"odom": {}}, "onShutdown": ["holt"]}'
     configuration = read(tmp_path, text)
     found = configuration.unknown_names(["scan", "stop"])
-    assert [(each.severity, each.span.column, each.message, each.hint) for each in found] == [
+    assert [(finding.severity, finding.span.column, finding.message, finding.hint) for finding in found] == [
         ("warning", 14, '"frameId": the robot has no scam', 'did you mean "scan"?'),
         ("warning", 51, '"qos": the robot has no odom', "known here: scan, stop"),
     ]

@@ -146,7 +146,7 @@ def skeleton(notation: str, text: str) -> list[str]:
         label = r"(?:[A-Za-z0-9_ .,/()=+*-]|#\d+;|<br/>)*"
         return [re.sub(rf'(?<=")({label})(?=")|(?<= : )({label})$', "TEXT", line) for line in text.splitlines()]
     root = ElementTree.fromstring(text)  # noqa: S314 - our own
-    return [each.tag.rpartition("}")[2] for each in root.iter()]
+    return [node.tag.rpartition("}")[2] for node in root.iter()]
 
 
 @pytest.mark.parametrize("notation", GRAPH_NOTATIONS)
@@ -163,17 +163,17 @@ def test_no_text_gets_out_of_its_place(notation: str, states: bool, title: str, 
 @pytest.mark.parametrize("text", HOSTILE)
 def test_a_picture_shows_what_the_model_says(text: str) -> None:
     root = ElementTree.fromstring(diagram(made("name", text, states=True), "svg"))  # noqa: S314 - our own
-    assert [each.text for each in root.iter() if each.text == visible(text)] == [visible(text)] * 4
+    assert [node.text for node in root.iter() if node.text == visible(text)] == [visible(text)] * 4
 
 
 @pytest.mark.skipif(shutil.which("dot") is None, reason="Graphviz is not installed")
 @pytest.mark.parametrize("text", [None, *HOSTILE])
 def test_graphviz_reads_it(text: str | None) -> None:
-    shown = map(graph, KINDS) if text is None else (made(text, text, states=each) for each in (True, False))
-    for each in shown:
-        done = subprocess.run(["dot", "-Tplain"], input=diagram(each, "dot").encode(), capture_output=True, check=True)
+    shown = map(graph, KINDS) if text is None else (made(text, text, states=value) for value in (True, False))
+    for drawn in shown:
+        done = subprocess.run(["dot", "-Tplain"], input=diagram(drawn, "dot").encode(), capture_output=True, check=True)
         nodes = [line.split()[1] for line in done.stdout.decode().splitlines() if line.startswith("node ")]
-        assert {node.key for node in each.nodes} == {name for name in nodes if not name.endswith("_initial")}
+        assert {node.key for node in drawn.nodes} == {name for name in nodes if not name.endswith("_initial")}
         assert done.stderr == b""
 
 
@@ -189,7 +189,7 @@ def groups(draw: st.DrawFn, *, downwards: bool) -> Group:
         Node(f"n{number}", "state", title, some, initial=downwards and number == 0)
         for number, (title, some) in enumerate(zip(titles, rows, strict=True))
     ]
-    pairs = st.tuples(st.integers(0, count - 1), st.integers(0, count - 1)).filter(lambda each: each[0] != each[1])
+    pairs = st.tuples(st.integers(0, count - 1), st.integers(0, count - 1)).filter(lambda pair: pair[0] != pair[1])
     chosen = draw(st.lists(pairs, max_size=12, unique=True)) if count > 1 else []
     labels = (("a label",),) if draw(st.booleans()) else ()
     return Group("n", "title", (), nodes, [Arrow(f"n{one}", f"n{other}", labels) for one, other in chosen])

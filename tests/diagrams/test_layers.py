@@ -15,7 +15,7 @@ def graphs(draw: st.DrawFn) -> tuple[dict[str, tuple[float, float]], list[Link]]
         for index in range(draw(st.integers(1, 14)))
     }
     pairs = st.tuples(st.sampled_from(list(sizes)), st.sampled_from(list(sizes))).filter(
-        lambda each: each[0] != each[1]
+        lambda pair: pair[0] != pair[1]
     )
     chosen = draw(st.lists(pairs, max_size=20)) if len(sizes) > 1 else []
     links = [
@@ -67,7 +67,7 @@ def test_ranking_links_run_to_the_right() -> None:
         Link("d", "c", 5, 5, False),
     ]
     arranged = arrange(sizes, links)
-    assert [arranged.places[each][0] for each in "abcd"] == [0, 114, 228, 114]
+    assert [arranged.places[name][0] for name in "abcd"] == [0, 114, 228, 114]
     assert [route.leaves for route in arranged.routes] == [1, 1, -1, 1]
 
 

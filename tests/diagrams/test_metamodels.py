@@ -29,12 +29,12 @@ def test_all_classes_and_features_are_shown(name: str, notation: str) -> None:
         if not hasattr(classifier, "eSuperTypes") and not hasattr(classifier, "eLiterals"):
             continue  # a data type, whose name stands with the features
         members = getattr(classifier, "eLiterals", None) or classifier.eStructuralFeatures
-        for each in [classifier, *members]:
-            assert each.name in text
+        for element in [classifier, *members]:
+            assert element.name in text
 
 
 def test_links_are_those_of_the_metamodel() -> None:
-    mermaid, plantuml = (metamodel_diagram("sct", each) for each in ("mermaid", "plantuml"))
+    mermaid, plantuml = (metamodel_diagram("sct", notation) for notation in ("mermaid", "plantuml"))
     for text in (mermaid, plantuml):
         assert 'Plant *-- "1..*" Location : locations' in text
         assert 'Edge --> "1" Location : target' in text
@@ -44,11 +44,11 @@ def test_links_are_those_of_the_metamodel() -> None:
 
 def test_lines_of_svg() -> None:
     root = ElementTree.fromstring(metamodel_diagram("rosgraph", "svg"))  # noqa: S314 - our own
-    kinds = [each.get("class") for each in root.iter("{http://www.w3.org/2000/svg}path")]
+    kinds = [path.get("class") for path in root.iter("{http://www.w3.org/2000/svg}path")]
     inheritances = sum(
         parent.ePackage.name == "rosgraph"
-        for each in metamodel("rosgraph").eClassifiers
-        for parent in getattr(each, "eSuperTypes", ())
+        for classifier in metamodel("rosgraph").eClassifiers
+        for parent in getattr(classifier, "eSuperTypes", ())
     )
     assert kinds.count("inheritance") == kinds.count("inheritance open") == inheritances > 0
     assert kinds.count("containment") == kinds.count("containment open") > 10

@@ -21,7 +21,7 @@ def robots(draw: st.DrawFn) -> sct.SupervisoryControlModel:
         *(["service"] if draw(st.booleans()) else []),
         *(["action"] if draw(st.booleans()) else []),
     ]
-    plants = [each for pair in components for each in pair]
+    plants = [automaton for pair in components for automaton in pair]
     plants += [
         plant(
             f"message_{name}",

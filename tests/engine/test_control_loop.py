@@ -110,7 +110,7 @@ def test_cancels_come_first() -> None:
     )
     loop = Recorded(model([message("a"), action], guards={}), events_per_tick=1)
     expected = ["a.c_trigger", "action.c_trigger", "action.c_cancel", "a.c_trigger", "action.c_trigger"]
-    assert loop.ticks(5) == [[each] for each in expected]
+    assert loop.ticks(5) == [[event] for event in expected]
 
 
 def test_a_guard_is_asked_when_its_turn_comes() -> None:
@@ -203,13 +203,13 @@ def test_silent_events_take_turns() -> None:
     ]
     turns = plant(
         "turns",
-        {"x": [*(edge(f"{each}.c_tau1", do={"n": "n + 1"}) for each in "abc"), edge("count", do={"n": "0"})]},
+        {"x": [*(edge(f"{name}.c_tau1", do={"n": "n + 1"}) for name in "abc"), edge("count", do={"n": "0"})]},
         uncontrollable=["count"],
         variables={"n": "0..5"},
     )
     loop = Recorded(model([*ring, turns, switch()], guards={}))
-    assert loop.batch("switch.u_response1") == [f"{each}.c_tau1" for each in "abcab"]
-    assert loop.batch("turns.count") == [f"{each}.c_tau1" for each in "cabca"]
+    assert loop.batch("switch.u_response1") == [f"{name}.c_tau1" for name in "abcab"]
+    assert loop.batch("turns.count") == [f"{name}.c_tau1" for name in "cabca"]
 
 
 def test_a_livelock_is_reported_once_until_the_robot_has_rested() -> None:

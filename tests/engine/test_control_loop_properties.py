@@ -28,12 +28,12 @@ class Observed:
         self.loop = ControlLoop(model, chosen, Hooks(after=self._after, livelock=self._livelock))
         self.settings = chosen
         self.roles = self.loop.engine.roles
-        self.queued = [event_name(each) for each in (*self.roles.cancels, *self.roles.triggers)]
-        self.silent = {event_name(each) for each in self.roles.silent}
+        self.queued = [event_name(event) for event in (*self.roles.cancels, *self.roles.triggers)]
+        self.silent = {event_name(event) for event in self.roles.silent}
         self.data = {event_name(event) for events in self.roles.data for event in events}
         self.operations: list[tuple[str, list[str]]] = []
         #: Of each moment: the operation, what happened, and which cancels and triggers are enabled then.
-        self.moments = [(0, "", {each for each in self.queued if self.loop.enabled(each)})]
+        self.moments = [(0, "", {event for event in self.queued if self.loop.enabled(event)})]
         self.performed: list[str] = []
         random = Random(seed)  # noqa: S311
         for _ in range(60):
@@ -44,7 +44,7 @@ class Observed:
             self._operate("tick")
             return
         self._operate("begin")
-        possible = [each for each in self.roles.incoming if self.loop.enabled(event_name(each))]
+        possible = [event for event in self.roles.incoming if self.loop.enabled(event_name(event))]
         self.performed = []
         self.operations.append(("batch", []))
         for event in random.choices(possible, k=random.randint(0, 3)) if possible else ():
@@ -59,11 +59,11 @@ class Observed:
         getattr(self.loop, operation)()
         if operation != "begin":
             resting = not any(map(self.loop.enabled, self.silent))
-            assert resting or "livelock" in {each for _, happened in self.operations for each in happened}
+            assert resting or "livelock" in {event for _, happened in self.operations for event in happened}
 
     def _after(self, event: str) -> None:
         self.operations[-1][1].append(event)
-        self.moments.append((len(self.operations), event, {each for each in self.queued if self.loop.enabled(each)}))
+        self.moments.append((len(self.operations), event, {event for event in self.queued if self.loop.enabled(event)}))
 
     def _livelock(self) -> None:
         self.operations[-1][1].append("livelock")
@@ -80,13 +80,13 @@ class Observed:
     def source(self, number: int) -> int:
         """What the batch comes from that an operation ends: the topic, service or action of its last event, or 0."""
         _, performed = self.operations[number - 1]
-        sources = {event_name(each): place for place, group in enumerate(self.roles.sources, 1) for each in group}
+        sources = {event_name(event): place for place, group in enumerate(self.roles.sources, 1) for event in group}
         return sources[performed[-1]] if performed else 0
 
     def rounds(self, *kinds: str) -> list[list[str]]:
         """The cancels and triggers of each operation of these kinds."""
         return [
-            [each for each in happened if each in self.queued] for kind, happened in self.operations if kind in kinds
+            [event for event in happened if event in self.queued] for kind, happened in self.operations if kind in kinds
         ]
 
 
@@ -108,9 +108,9 @@ def test_rounds(seen: Observed) -> None:
     }
     for sent in seen.rounds("tick", "end"):
         assert len(sent) == len(set(sent)), "each event at most once"
-        on = [topics[each] for each in sent if each in topics]
+        on = [topics[event] for event in sent if event in topics]
         assert len(on) == len(set(on)), "at most one message on a topic"
-        cancels = [each.endswith("c_cancel") for each in sent]
+        cancels = [event.endswith("c_cancel") for event in sent]
         assert cancels == sorted(cancels, reverse=True), "cancels first"
     limit = seen.settings.events_per_tick
     assert all(not limit or len(sent) <= limit for sent in seen.rounds("tick"))
@@ -119,15 +119,15 @@ def test_rounds(seen: Observed) -> None:
 @_some
 @given(_observed)
 def test_reactions(seen: Observed) -> None:
-    once = {event_name(each) for each in seen.roles.once_per_tick}
+    once = {event_name(event) for event in seen.roles.once_per_tick}
     reactions, started, ticked = Counter(), [], False
     for number, (operation, happened) in enumerate(seen.operations):
-        sent = [each for each in happened if each in seen.queued]
+        sent = [event for event in happened if event in seen.queued]
         if operation == "tick":
             reactions, started, ticked = Counter(), [], True
         elif operation == "end":
             reactions[seen.source(number)] += len(sent)
-        started += [each for each in sent if each in once]
+        started += [event for event in sent if event in once]
         assert len(started) == len(set(started)), "a service or action starts once between two ticks"
         assert operation in ("tick", "end") or not sent
         allowed = seen.settings.reactions_per_tick if ticked and seen.settings.react_immediately else 0
@@ -142,11 +142,11 @@ def test_what_a_batch_makes_possible_waits_for_no_other_topic(seen: Observed) ->
 
     Of what shares a topic one is sent, and a service or action starts once between two ticks.
     """
-    shared = {event_name(each): number for number, group in enumerate(seen.roles.shared_topics) for each in group}
-    once = {event_name(each) for each in seen.roles.once_per_tick}
+    shared = {event_name(event): number for number, group in enumerate(seen.roles.shared_topics) for event in group}
+    once = {event_name(event) for event in seen.roles.once_per_tick}
     reactions, started, before, ticked = Counter(), set(), set(), False
     for number, (operation, happened) in enumerate(seen.operations):
-        sent = [each for each in happened if each in seen.queued]
+        sent = [event for event in happened if event in seen.queued]
         started |= {*sent} & once
         if operation == "tick":
             reactions, started, ticked = Counter(), {*sent} & once, True
@@ -160,8 +160,8 @@ def test_what_a_batch_makes_possible_waits_for_no_other_topic(seen: Observed) ->
                 settled = ran[0] - 1 if ran else len(moments) - 1
                 waiting = set.intersection(*(enabled for _, _, enabled in moments[settled:]))
                 waiting -= before | {*sent} | started
-                topics = {shared[each] for each in sent if each in shared}
-                assert all(each in shared and shared[each] in topics for each in waiting)
+                topics = {shared[event] for event in sent if event in shared}
+                assert all(event in shared and shared[event] in topics for event in waiting)
 
 
 @_some
@@ -195,7 +195,7 @@ def test_no_enabled_event_waits_while_another_runs_in_two_ticks(seen: Observed) 
     there an event waits for the tick unless the batch concerns it.
     """
     ticks = {number for number, (kind, _) in enumerate(seen.operations, 1) if kind == "tick"}
-    shared = {event_name(each): number for number, group in enumerate(seen.roles.shared_topics) for each in group}
+    shared = {event_name(event): number for number, group in enumerate(seen.roles.shared_topics) for event in group}
     runs = [
         place for place, (operation, event, _) in enumerate(seen.moments) if operation in ticks and event in seen.queued
     ]
@@ -203,8 +203,8 @@ def test_no_enabled_event_waits_while_another_runs_in_two_ticks(seen: Observed) 
         event = seen.moments[first][1]
         if seen.moments[second][1] == event:
             between = seen.moments[first:second]
-            waited = set.intersection(*(enabled for _, _, enabled in between)) - {each for _, each, _ in between}
-            for each in waited:
-                assert each.endswith("c_cancel") != event.endswith("c_cancel") or (
-                    each in shared and shared[each] != shared.get(event)
+            waited = set.intersection(*(enabled for _, _, enabled in between)) - {event for _, event, _ in between}
+            for name in waited:
+                assert name.endswith("c_cancel") != event.endswith("c_cancel") or (
+                    name in shared and shared[name] != shared.get(event)
                 )

@@ -42,9 +42,9 @@ def test_guards(name: str, golden) -> None:
     said = {key: said[key] for key in ("robot", "uncontrolled_states", "controlled_states", "empty", "events")}
     golden(GUARDS / f"{name}.json", json.dumps(said, indent=2) + "\n")
     assert not said["empty"]
-    assert [each["name"] for each in said["events"] if each["added_by_synthesis"]] == []
-    unused = [each["name"] for each in said["events"] if not each["ever_enabled"]]
-    assert [each for each in unused if not each.endswith(".c_none")] == []
+    assert [event["name"] for event in said["events"] if event["added_by_synthesis"]] == []
+    unused = [event["name"] for event in said["events"] if not event["ever_enabled"]]
+    assert [event for event in unused if not event.endswith(".c_none")] == []
 
 
 @EACH
@@ -69,7 +69,7 @@ def test_pictures_are_up_to_date(name: str, golden) -> None:
 def test_the_page_names_every_topic(name: str) -> None:
     graph = models_of(name).rosgraph
     rows = [row.strip("| ").split(" | ") for row in (EXAMPLES / name / "README.md").read_text().splitlines()]
-    said = {(row[0], *(each.strip("`") for each in row[1:3])) for row in rows if len(row) == 4 and row[1][:2] == "`/"}
+    said = {(row[0], *(cell.strip("`") for cell in row[1:3])) for row in rows if len(row) == 4 and row[1][:2] == "`/"}
     ways = [
         (
             way,

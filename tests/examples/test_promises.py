@@ -61,7 +61,9 @@ def test_nothing_moves_while_the_button_is_pressed(name: str) -> None:
     moving = [
         event_name(trigger) for trigger in engine.roles.triggers if event_name(trigger) != "message_halt.c_trigger"
     ]
-    seen = [[each for each in moving if engine.enabled(each)] for state in states(engine) if state[STOP] == "stopped"]
+    seen = [
+        [event for event in moving if engine.enabled(event)] for state in states(engine) if state[STOP] == "stopped"
+    ]
     assert moving
     assert seen
     assert not any(seen)
@@ -70,7 +72,7 @@ def test_nothing_moves_while_the_button_is_pressed(name: str) -> None:
 @EACH
 def test_one_topic_has_one_command(name: str) -> None:
     engine = Engine(models_of(name).sct)
-    groups = [[event_name(each) for each in topic] for topic in engine.roles.shared_topics]
+    groups = [[event_name(event) for event in topic] for topic in engine.roles.shared_topics]
     for state in states(engine):
         for group in groups:
             assert sum(map(engine.enabled, group)) <= 1, state

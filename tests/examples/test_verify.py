@@ -31,7 +31,7 @@ def answer(path: Path) -> Mapping[str, Any]:
 def test_all_is_proved(path: Path) -> None:
     said = answer(path)
     assert said["proved"]
-    assert {each["outcome"] for each in said["properties"]} == {"proved"}
+    assert {answered["outcome"] for answered in said["properties"]} == {"proved"}
 
 
 def test_the_page_shows_the_table() -> None:
@@ -45,7 +45,7 @@ def test_the_page_shows_the_table() -> None:
 def test_the_page_sums_up_the_examples() -> None:
     page = (ROOT / "docs" / "verify.md").read_text()
     for name in SCENARIOS:
-        by_name = {each["property"]: each["evidence"] for each in answer(MODELS[name])["properties"]}
+        by_name = {answered["property"]: answered["evidence"] for answered in answer(MODELS[name])["properties"]}
         number = len(by_name)
         row = [name, by_name["controllability"].partition(" state")[0], str(number)]
         row += [re.findall(r"at most (\d+)", by_name["bounded response"])[0], by_name["c-translation"]]

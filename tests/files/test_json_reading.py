@@ -44,7 +44,7 @@ def test_a_node_s_log_is_read_as_it_was_written(tmp_path: Path, raw: bool) -> No
     if raw:  # as nodes of earlier versions wrote it
         lines = [json.loads(line) for line in path.read_text(encoding="utf-8").split("\n")[:-1]]
         path.write_text("".join(f"{json.dumps(line, ensure_ascii=False)}\n" for line in lines), encoding="utf-8")
-    assert [each.data for each in read_trace(str(path))] == [{"value": WICKED}] * 3
+    assert [entry.data for entry in read_trace(str(path))] == [{"value": WICKED}] * 3
     steps, findings = read_script("log", path.read_text(encoding="utf-8"), ["message_name.u_response"])
     assert findings == []
     assert [step.data for step in steps] == [{"value": WICKED}] * 3

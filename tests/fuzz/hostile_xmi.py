@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 #: What no attribute may bring down whatever it says: numbers, booleans, nothing, line breaks and what looks like some.
 EXTREMES = (
     *("", "0", "-1", "1", "3", "true", "false", "none", "x", "a b", "../../etc/passwd", "nan", "1e308", "0.5"),
-    *(str(each) for each in (2**31 - 1, -(2**31), 2**63 - 1, -(2**63), 2**63, 10**400)),
+    *(str(number) for number in (2**31 - 1, -(2**31), 2**63 - 1, -(2**63), 2**63, 10**400)),
     *("\x85", "\u2028", "\u202e", "\x9b31m", "\u200b", "&#10;", "&quot;&lt;&amp;", "\U0001f916", "9" * 5000),
 )
 _TAG = re.compile(r"<(/?)([\w:]+)((?:\s+[\w:]+=\"[^\"]*\")*)\s*(/?)>|<\?[^>]*\?>")
@@ -55,7 +55,7 @@ def parsed(text: str) -> Node:
         index = counts[-1].get(found[2], 0)
         counts[-1][found[2]] = index + 1
         path = f"{stack[-1].path}/@{found[2]}.{index}" if stack else "/"
-        attributes = {each[1]: (each.start(2), each.end(2)) for each in _ATTRIBUTE.finditer(text, *found.span(3))}
+        attributes = {match[1]: (match.start(2), match.end(2)) for match in _ATTRIBUTE.finditer(text, *found.span(3))}
         kind = text[slice(*attributes["xsi:type"])] if "xsi:type" in attributes else found[2]
         node = Node(found.start(), found[2], kind, path, found.end(), attributes)
         root = root or node
@@ -71,12 +71,12 @@ def parsed(text: str) -> Node:
 def edits(texts: Mapping[str, str], name: str, choose: int | None = None) -> Iterator[tuple[str, str]]:
     """What is done to the file `name` of `texts`, and its text then; no more than `choose` targets for a reference."""
     text = texts[name]
-    trees = {each: parsed(other) for each, other in texts.items()}
+    trees = {path: parsed(other) for path, other in texts.items()}
     elements = list(trees[name].all())
     paths = [
-        (each.path if file == name else f"{file}#{each.path}", each.kind, each.tag)
+        (element.path if file == name else f"{file}#{element.path}", element.kind, element.tag)
         for file, tree in trees.items()
-        for each in tree.all()
+        for element in tree.all()
     ]
     kinds = sorted({element.kind for element in elements if ":" in element.kind})
     for element in elements:

@@ -95,13 +95,13 @@ def _bare(word: str) -> str:
 
 
 def _replace(text: list[str], random: Random) -> None:
-    at = random.choice([index for index, each in enumerate(text) if _kind(each) < len(_KINDS)] or [0])
-    text[at] = random.choice([each for each in text if _kind(each) == _kind(text[at])])
+    at = random.choice([index for index, token in enumerate(text) if _kind(token) < len(_KINDS)] or [0])
+    text[at] = random.choice([token for token in text if _kind(token) == _kind(text[at])])
 
 
 def _statement(text: list[str], random: Random) -> slice:
     """Where a statement stands that could be missing; nowhere where there is none."""
-    starts = [index for index, each in enumerate(text) if _bare(each) in _STARTERS]
+    starts = [index for index, token in enumerate(text) if _bare(token) in _STARTERS]
     if not starts:
         return slice(0, 0)
     start = random.choice(starts)

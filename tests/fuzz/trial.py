@@ -195,7 +195,7 @@ def said(*arguments: str) -> tuple[int, str]:
 def _located(findings: Sequence[Diagnostic], texts: dict[str, str]) -> None:
     """Findings stand in their texts, say something, and can be shown in each form."""
     # Of the configuration there is no text: what is said of it is what it lacks.
-    by_name = {FILE_NAME: "", **{each.rpartition("/")[2]: text for each, text in texts.items()}}
+    by_name = {FILE_NAME: "", **{path.rpartition("/")[2]: text for path, text in texts.items()}}
     for finding in findings:
         text = texts[finding.file] if finding.file in texts else by_name[finding.file]
         assert finding.message, finding

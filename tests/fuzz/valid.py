@@ -81,7 +81,7 @@ def checked(seed: int, path: Path) -> tuple[Outcome, Robot | None]:
 def _cif_says_the_same(models: Models) -> None:
     model, name = models.sct, models.sct.name
     files = cif.generate(models, Configuration())
-    again, supervised = (_read(files[f"{name}.{each}"], model) for each in ("cif", "supervised.cif"))
+    again, supervised = (_read(files[f"{name}.{ending}"], model) for ending in ("cif", "supervised.cif"))
     assert (found := differences(model, again)) == [], found[:3]
     assert (found := differences(model, supervised)) == [], found[:3]
     synthesis, read_back = synthesize(model), synthesize(again)
@@ -104,7 +104,7 @@ def _read(text: str, model: sct.SupervisoryControlModel) -> sct.SupervisoryContr
 def _named(model: sct.SupervisoryControlModel) -> list[NamedElement]:
     owners = [*model.enumerations, *model.plants]
     members = ("literals", "events", "inputs", "variables")
-    named = owners + [each for owner in owners for member in members for each in getattr(owner, member, ())]
+    named = owners + [element for owner in owners for member in members for element in getattr(owner, member, ())]
     return named + [location for plant in model.plants if not is_numbered(plant) for location in plant.locations]
 
 
@@ -122,8 +122,8 @@ def _saves_the_same(models: Models, folder: Path) -> None:
     again = Models(graph.model, graph, saved.load(str(folder / f"{name}.robosc.xmi")))
     assert xmi.generate(again, Configuration()) == written
     assert cif.generate(again, Configuration()) == cif.generate(models, Configuration())
-    for each in written:
-        (folder / each).unlink()
+    for file in written:
+        (folder / file).unlink()
 
 
 def compiled(robots: Sequence[Robot], folder: Path, flags: Sequence[str]) -> Path:

@@ -94,9 +94,13 @@ TEXT = """robot Cart {
 def names(found: Reading, name: str) -> list[tuple[int, str | None, bool]]:
     file = found.files["/nowhere/model.rscd"]
     return [
-        (file.text.span(each.start, each.end).line, each.target and each.target.eClass.name, each.is_declaration)
-        for each in file.names
-        if each.name == name
+        (
+            file.text.span(document.start, document.end).line,
+            document.target and document.target.eClass.name,
+            document.is_declaration,
+        )
+        for document in file.names
+        if document.name == name
     ]
 
 

@@ -36,7 +36,7 @@ LITERALS = (
     | st.builds(lambda value: ex.StringLiteral(value=value), st.text(st.characters(exclude_categories=["Cs"])))
 )
 UNARY = (ex.Negation, ex.UnaryMinus)
-BINARY = [each for each in PRECEDENCE if each not in UNARY]
+BINARY = [operator for operator in PRECEDENCE if operator not in UNARY]
 
 
 def trees(parts: st.SearchStrategy[Any]) -> st.SearchStrategy[Any]:

@@ -50,8 +50,8 @@ def body(text: str) -> str:
 
 def comments(text: str) -> list[list[str]]:
     """The comments of a text in their order, each as its lines without the blanks around them."""
-    found = (each for each in _STRING_OR_COMMENT.finditer(text) if each[1] is None)
-    return [[line.strip() for line in each[0].split("\n")] for each in found]
+    found = (match for match in _STRING_OR_COMMENT.finditer(text) if match[1] is None)
+    return [[line.strip() for line in finding[0].split("\n")] for finding in found]
 
 
 def model(text: str) -> tuple[Any, Any]:
@@ -60,7 +60,7 @@ def model(text: str) -> tuple[Any, Any]:
     assert parsed.findings == []
 
     def values(element: Any) -> tuple[Any, ...]:
-        features = [each for each in element.eClass.eAllStructuralFeatures() if each.name != "source"]
+        features = [feature for feature in element.eClass.eAllStructuralFeatures() if feature.name != "source"]
         names = {feature: name.text for feature, name in parsed.references.get(element, {}).items()}
         contained = [feature for feature in features if getattr(feature, "containment", False)]
         plain = [
@@ -68,7 +68,10 @@ def model(text: str) -> tuple[Any, Any]:
             for feature in features
             if not hasattr(feature, "containment")
         ]
-        inner = [(each.name, [values(child) for child in _listed(getattr(element, each.name))]) for each in contained]
+        inner = [
+            (feature.name, [values(child) for child in _listed(getattr(element, feature.name))])
+            for feature in contained
+        ]
         return element.eClass.name, plain, names, inner
 
     return values(parsed.base)
@@ -92,7 +95,7 @@ def words(path: Path) -> list[tuple[str, str]]:
 def signs(path: Path) -> Iterator[bool]:
     """Whether a word of a file is a number behind the sign of a bound, where no comment may stand."""
     texts = [word for _, word in words(path)]
-    kinds = [each.kind for each in Tokens(path.read_text(encoding="utf-8"))]
+    kinds = [token.kind for token in Tokens(path.read_text(encoding="utf-8"))]
     for index, kind in enumerate(kinds):
         yield kind is Kind.NUMBER and index > 1 and texts[index - 1] == "-" and texts[index - 2] in {"(", ".."}
 
@@ -137,7 +140,7 @@ def test_the_models_of_the_manual_have_the_layout() -> None:
     manual = (ROOT / "docs/format.md").read_text(encoding="utf-8")
     models = re.findall(r"^```robosc\n(.*?)^```$", manual, flags=re.MULTILINE | re.DOTALL)
     assert len(models) == 2
-    assert [formatted(each) for each in models] == models
+    assert [formatted(path) for path in models] == models
 
 
 def test_items_and_words() -> None:

@@ -52,11 +52,13 @@ def is_abstract(name: str) -> bool:
 
 def features(name: str) -> dict[str, Any]:
     others = SET_OTHERWISE | MADE_BY_LINKING.get(name, set())
-    return {each.name: each for each in classifier(name).eAllStructuralFeatures() if each.name not in others}
+    return {
+        feature.name: feature for feature in classifier(name).eAllStructuralFeatures() if feature.name not in others
+    }
 
 
 def is_a(name: str, ancestor: str) -> bool:
-    return name == ancestor or any(each.name == ancestor for each in classifier(name).eAllSuperTypes())
+    return name == ancestor or any(supertype.name == ancestor for supertype in classifier(name).eAllSuperTypes())
 
 
 def test_there_is_a_class_for_each_rule() -> None:
@@ -65,10 +67,12 @@ def test_there_is_a_class_for_each_rule() -> None:
 
 
 def test_there_is_a_rule_for_each_class_that_has_elements() -> None:
-    assert [each for each in CLASSES if not is_abstract(each) and each not in RULES] == []
+    assert [cls for cls in CLASSES if not is_abstract(cls) and cls not in RULES] == []
 
 
-@pytest.mark.parametrize("rule", [each for each in RULES if each in CLASSES and not is_abstract(each)])
+@pytest.mark.parametrize(
+    "rule", [rule_name for rule_name in RULES if rule_name in CLASSES and not is_abstract(rule_name)]
+)
 def test_a_rule_assigns_exactly_the_features_of_its_class(rule: str) -> None:
     assigned = language()[rule]._tx_attrs
     wanted = features(rule)
@@ -77,10 +81,12 @@ def test_a_rule_assigns_exactly_the_features_of_its_class(rule: str) -> None:
         assert attribute.mult.endswith("*") == wanted[name].many
 
 
-@pytest.mark.parametrize("rule", [each for each in RULES if each in CLASSES and not is_abstract(each)])
+@pytest.mark.parametrize(
+    "rule", [rule_name for rule_name in RULES if rule_name in CLASSES and not is_abstract(rule_name)]
+)
 def test_a_rule_assigns_what_its_class_wants(rule: str) -> None:
     assignments = re.findall(r"(\w+)[*+?]?=(\[?)(\w+|'\w+')", body(rule))
-    assert {each for each, _, _ in assignments} == set(features(rule))
+    assert {feature for feature, _, _ in assignments} == set(features(rule))
     for name, bracket, target in assignments:
         feature = features(rule)[name]
         if feature.is_attribute:
@@ -92,7 +98,7 @@ def test_a_rule_assigns_what_its_class_wants(rule: str) -> None:
             assert is_a("Expression" if target == "Operand" else target, feature.eType.name)
 
 
-@pytest.mark.parametrize("rule", [each for each in RULES if each in CLASSES and is_abstract(each)])
+@pytest.mark.parametrize("rule", [rule_name for rule_name in RULES if rule_name in CLASSES and is_abstract(rule_name)])
 def test_the_alternatives_of_an_abstract_rule_are_kinds_of_its_class(rule: str) -> None:
     alternatives = re.findall(r"\w+", body(rule))
     assert alternatives
@@ -103,14 +109,14 @@ def test_the_alternatives_of_an_abstract_rule_are_kinds_of_its_class(rule: str) 
 
 @pytest.mark.parametrize("rule", ["MessageDirection", "ResultType"])
 def test_an_enumeration_has_the_words_of_its_rule(rule: str) -> None:
-    assert [each.name for each in classifier(rule).eLiterals] == re.findall(r"'(\w+)'", body(rule))
+    assert [literal.name for literal in classifier(rule).eLiterals] == re.findall(r"'(\w+)'", body(rule))
 
 
 def test_every_word_of_the_grammar_is_reserved_and_no_other() -> None:
     words = set(re.findall(r"'([a-z]+)'", TEXT))
     assert words == ROBOSC_KEYWORDS
     assert {word for word in words if not is_reserved(word)} == set()
-    assert not any(is_reserved(each) for each in ("continue", "states", "valued", "^state", "Robot"))
+    assert not any(is_reserved(word) for word in ("continue", "states", "valued", "^state", "Robot"))
 
 
 def test_what_a_rule_begins_with() -> None:

@@ -63,7 +63,7 @@ def findings(folder: Path, interfaces: RosTypes, *texts: str) -> list[tuple[str,
         (folder / f"model{number}.rscd").write_text(text)
     reading = read(folder / "model0.rscd", ros_types=interfaces)
     found = [*reading.findings, *check(reading.base, reading.findings, interfaces)]
-    return [(each.rule, each.message, each.hint) for each in found]
+    return [(finding.rule, finding.message, finding.hint) for finding in found]
 
 
 def with_message(declared: str, rest: str = "") -> str:
@@ -80,9 +80,9 @@ def test_the_object_has_what_is_used(tmp_path: Path, interfaces: RosTypes) -> No
     base = read(path, ros_types=interfaces).base
     assert isinstance(base, rsc.Robot)
     made = [
-        (each.rosType, [every.name for every in each.definition.properties])
-        for _, each in tree(base)
-        if isinstance(each, rsc.InterfaceTypeReference)
+        (element.rosType, [every.name for every in element.definition.properties])
+        for _, element in tree(base)
+        if isinstance(element, rsc.InterfaceTypeReference)
     ]
     assert made == [
         ("LaserScan", ["ranges", "header"]),
@@ -100,7 +100,9 @@ def test_the_object_has_what_is_used(tmp_path: Path, interfaces: RosTypes) -> No
         ("Lift", ["reached"]),
         ("Lift", ["height"]),
     ]
-    (small,) = [each for _, each in tree(base) if isinstance(each, rsc.IntegerDataType) and each.minimum == -128]
+    (small,) = [
+        element for _, element in tree(base) if isinstance(element, rsc.IntegerDataType) and element.minimum == -128
+    ]
     assert small.maximum == 127
 
 

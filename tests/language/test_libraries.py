@@ -48,8 +48,8 @@ def test_the_standard_library_is_searched_last(tmp_path: Path) -> None:
 def test_the_standard_library_holds_no_fault() -> None:
     files = sorted(locate("stdlib").glob("*.rscd"))
     readings = [read(file) for file in files]
-    assert [each.findings for each in readings] == [[]] * len(files)
-    names = {each.base.name for each in readings if each.base}
+    assert [one.findings for one in readings] == [[]] * len(files)
+    names = {one.base.name for one in readings if one.base}
     assert names >= {"EmergencyStopLibrary", "TurtlebotLibrary"}
 
 
@@ -132,7 +132,9 @@ def test_libraries_import_from_libraries(tmp_path: Path) -> None:
     found = reading(tmp_path, robot, outer=outer, inner=inner)
     assert found.findings == []
     assert found.base is not None
-    reference = next(each for each in found.base.eAllContents() if isinstance(each, rsc.CommunicationReference))
+    reference = next(
+        element for element in found.base.eAllContents() if isinstance(element, rsc.CommunicationReference)
+    )
     assert reference.component is found.base.definitions[0]
     assert reference.communicationType.eContainer().eContainer().eContainer().name == "Inner"
 

@@ -29,7 +29,7 @@ STOP = """
 
 def elements(found: Reading, kind: type[Any]) -> list[Any]:
     assert found.base is not None
-    return [each for each in found.base.eAllContents() if isinstance(each, kind)]
+    return [element for element in found.base.eAllContents() if isinstance(element, kind)]
 
 
 def test_a_bare_name_is_a_component_before_all_else(tmp_path: Path) -> None:
@@ -84,7 +84,7 @@ def test_another_component_needs_its_name(tmp_path: Path) -> None:
         }
         """,
     )
-    assert underlined(found) == [("unresolved-reference", each) for each in ("s", "not_there", "t", "v")]
+    assert underlined(found) == [("unresolved-reference", name) for name in ("s", "not_there", "t", "v")]
     assert [finding.hint for finding in found.findings] == ["write `A.s`", None, "write `B.t`", "there is `s`"]
 
 
@@ -112,14 +112,14 @@ def test_every_unresolved_name_is_a_finding_with_what_may_be_meant(tmp_path: Pat
         """,
     )
     assert underlined(found) == [
-        ("unresolved-reference", each)
-        for each in (
+        ("unresolved-reference", name)
+        for name in (
             *("Vectr", "lenght", "Vectro", "twits", "mvoe", "idel", "Moter"),
             *("movee", "idel", "Motro", "trun", "lenght"),
         )
     ]
     assert {finding.hint for finding in found.findings} == {
-        f"did you mean `{each}`?" for each in ("Vector", "twist", "move", "idle", "Motor", "turn", "length")
+        f"did you mean `{name}`?" for name in ("Vector", "twist", "move", "idle", "Motor", "turn", "length")
     }
 
 
@@ -187,7 +187,7 @@ def test_properties_are_looked_up_in_the_type_before_them(tmp_path: Path) -> Non
         }
         """,
     )
-    assert underlined(found) == [("unresolved-reference", each) for each in ("x", "x", "x", "x", "y")]
+    assert underlined(found) == [("unresolved-reference", name) for name in ("x", "x", "x", "x", "y")]
     assert [finding.message.rpartition(" is ")[2] for finding in found.findings] == [
         *("an array", "of type double", "an enum", "of type double", "of type boolean"),
     ]
@@ -303,7 +303,7 @@ def test_a_name_that_two_imported_libraries_share_is_ambiguous(tmp_path: Path) -
     found = reading(
         tmp_path, robot, safety=STOP, danger=other.replace("message go", "message went").replace("from go", "from went")
     )
-    assert underlined(found) == [("unresolved-reference", each) for each in ("Info", "flag", "high", "high")]
+    assert underlined(found) == [("unresolved-reference", name) for name in ("Info", "flag", "high", "high")]
     assert all("the libraries `Safety` and `Danger`" in finding.message for finding in found.findings)
 
 
@@ -319,9 +319,9 @@ def test_names_in_a_library_mean_what_is_in_the_library(tmp_path: Path) -> None:
     assert found.findings == []
     assert found.base is not None
     library = found.base.definitions[1].type.library
-    level = next(each for each in library.eAllContents() if isinstance(each, rsc.ComplexDataTypeReference))
+    level = next(element for element in library.eAllContents() if isinstance(element, rsc.ComplexDataTypeReference))
     assert level.type.eContainer() is library
-    access = next(each for each in library.eAllContents() if isinstance(each, rsc.Access) and each.item)
+    access = next(element for element in library.eAllContents() if isinstance(element, rsc.Access) and element.item)
     assert access.component is found.base.definitions[1].type.definition
 
 
@@ -335,7 +335,7 @@ def test_a_library_component_speaks_of_itself_only(tmp_path: Path) -> None:
         }
     """
     found = reading(tmp_path, library)
-    assert underlined(found) == [("unresolved-reference", each) for each in ("a", "A", "s")]
+    assert underlined(found) == [("unresolved-reference", name) for name in ("a", "A", "s")]
 
 
 def test_what_hangs_on_an_unresolved_name_is_no_finding(tmp_path: Path) -> None:
@@ -352,7 +352,7 @@ def test_what_hangs_on_an_unresolved_name_is_no_finding(tmp_path: Path) -> None:
         }
     """
     found = reading(tmp_path, robot, safety=STOP)
-    assert underlined(found) == [("unresolved-reference", each) for each in ("Stopp", "Nowhere", "gone")]
+    assert underlined(found) == [("unresolved-reference", name) for name in ("Stopp", "Nowhere", "gone")]
 
 
 def test_an_unknown_library_adds_nothing_to_what_is_known(tmp_path: Path) -> None:
@@ -371,5 +371,5 @@ def test_an_unknown_library_adds_nothing_to_what_is_known(tmp_path: Path) -> Non
     """
     found = reading(tmp_path, robot, safety=STOP)
     assert underlined(found) == [
-        ("unresolved-reference", each) for each in ("Nowhere", "gone", "lost", "nothing", "walking", "c")
+        ("unresolved-reference", name) for name in ("Nowhere", "gone", "lost", "nothing", "walking", "c")
     ]

@@ -22,19 +22,21 @@ def test_every_name_of_a_listing_is_resolved(name: str) -> None:
     reading = read(path)
     assert reading.findings == []
     assert isinstance(reading.base, rsc.Robot)
-    for each in reading.base.eAllContents():
-        for feature in each.eClass.eAllStructuralFeatures():
+    for element in reading.base.eAllContents():
+        for feature in element.eClass.eAllStructuralFeatures():
             if feature.lowerBound and not feature.many:
-                assert getattr(each, feature.name) is not None, f"{each.eClass.name}.{feature.name} at {each.source}"
+                assert getattr(element, feature.name) is not None, (
+                    f"{element.eClass.name}.{feature.name} at {element.source}"
+                )
 
 
 def test_a_response_may_come_from_another_component() -> None:
     reading = read(LISTINGS / "maze-solver.rscd")
     assert reading.base is not None
     used = {
-        each.communicationType.communicationType.name: each.communicationType.component.name
-        for each in reading.base.eAllContents()
-        if isinstance(each, rsc.ResultTransition)
+        element.communicationType.communicationType.name: element.communicationType.component.name
+        for element in reading.base.eAllContents()
+        if isinstance(element, rsc.ResultTransition)
     }
     assert used["stop"] == "EmergencyStop"
     assert used["turn_left"] == "Platform"

@@ -170,7 +170,7 @@ def test_what_has_no_fault_is_read(tmp_path: Path) -> None:
     ]
     motor = base.definitions[4].type
     assert [definition.name for definition in motor.definitions] == ["move", "turn"]
-    states = [each for each in base.eAllContents() if isinstance(each, rsc.State)]
+    states = [element for element in base.eAllContents() if isinstance(element, rsc.State)]
     assert [(state.name, len(state.transitions)) for state in states[:2]] == [("waiting", 0), ("driving", 1)]
 
 
@@ -278,8 +278,8 @@ def test_no_damage_is_too_bad(tmp_path: Path, damages: list[tuple[int, str | Non
     last = found.texts[str(path)].count("\n") + 1
     assert all(1 <= finding.span.line <= finding.span.end_line <= last for finding in found.findings)
     # Whatever is left has the shape of the metamodel: each element stands in a feature that takes its kind.
-    for each in found.base.eAllContents() if found.base else ():
-        assert each.source is not None
+    for element in found.base.eAllContents() if found.base else ():
+        assert element.source is not None
 
 
 @pytest.mark.parametrize(

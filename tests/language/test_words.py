@@ -46,7 +46,9 @@ def test_a_keyword_is_a_name_where_only_a_name_can_stand(tmp_path: Path, word: s
     assert found.findings == []
     assert found.base is not None
     assert found.base.name == word
-    assert {each.name for each in found.base.eAllContents() if isinstance(each, rsc.EnumValue | rsc.State)} == {
+    assert {
+        element.name for element in found.base.eAllContents() if isinstance(element, rsc.EnumValue | rsc.State)
+    } == {
         word,
         "other_value",
     }
@@ -123,7 +125,7 @@ def test_ranges(tmp_path: Path, bounds: str) -> None:
     found = reading(tmp_path, f"robot R {{ datatype object O {{ p: integer({bounds}) q: integer }} }}")
     assert found.findings == []
     assert found.base is not None
-    with_range, without = (each.type for each in found.base.definitions[0].properties)
+    with_range, without = (declared.type for declared in found.base.definitions[0].properties)
     lower, upper = (int(part.replace(" ", "")) for part in bounds.split(".."))
     assert (with_range.minimum, with_range.maximum) == (lower, upper)
     assert (without.minimum, without.maximum) == (None, None)
@@ -135,7 +137,9 @@ def test_flags_of_a_state_stand_in_either_order(tmp_path: Path) -> None:
     assert found.findings == []
     assert found.base is not None
     flags = {
-        each.name: (each.initial, each.marked) for each in found.base.eAllContents() if isinstance(each, rsc.State)
+        element.name: (element.initial, element.marked)
+        for element in found.base.eAllContents()
+        if isinstance(element, rsc.State)
     }
     assert flags == {"a": (True, True), "b": (True, True), "c": (False, True), "d": (True, False), "e": (False, False)}
 
@@ -179,8 +183,8 @@ def test_every_element_knows_its_place(tmp_path: Path) -> None:
     found = reading(tmp_path, "robot R {\n  component C {\n\toutgoing message m with type: array(\n double)\n  }\n}\n")
     assert found.base is not None
     sources = {
-        each.eClass.name: str(each.source).removeprefix("model.rscd:")
-        for each in [found.base, *found.base.eAllContents()]
+        element.eClass.name: str(element.source).removeprefix("model.rscd:")
+        for element in [found.base, *found.base.eAllContents()]
     }
     assert sources == {
         "Robot": "1:1-6:2",

@@ -196,7 +196,7 @@ def test_an_initial_value_may_be_no_number(robot):
         )
     )
     initial = [variable.initial for variable in robosc_to_rosgraph.transform(trace).variables]
-    assert all(isinstance(each, ex.Division) and each.right.value == 0.0 for each in initial)
+    assert all(isinstance(value, ex.Division) and value.right.value == 0.0 for value in initial)
     assert (initial[0].left.operand.value, initial[1].left.value) == (1.0, 0.0)
 
 
@@ -219,7 +219,7 @@ def test_services_and_actions_have_their_events(robot):
         )
     )
     graph = robosc_to_rosgraph.transform(trace)
-    assert [(each.identifier, each.interface.type) for each in graph.serviceClients] == [
+    assert [(client.identifier, client.interface.type) for client in graph.serviceClients] == [
         ("/s", "SetBool"),
         ("e", "Empty"),
     ]
@@ -275,8 +275,8 @@ def test_linked_basic_data_goes_to_the_only_field(robot: Callable, tmp_path: Pat
     _, trace = robosc_to_sct.transform(model)
     graph = robosc_to_rosgraph.transform(trace, RosTypes([tmp_path]))
     sent = [*(sending for topic in graph.publishers for sending in topic.sendings)]
-    sent += [each.request for each in (*graph.serviceClients, *graph.actionClients)]
-    assert [list(each.alternatives[0].fields[0].path) for each in sent] == [["level"], ["data"], ["height"], ["goal"]]
+    sent += [client.request for client in (*graph.serviceClients, *graph.actionClients)]
+    assert [list(event.alternatives[0].fields[0].path) for event in sent] == [["level"], ["data"], ["height"], ["goal"]]
     read = [[step.name for step in reaction.assignments[0].value.steps] for reaction in graph.reactions]
     assert read == [["level"], ["done"], ["reached"], ["height"]]
     # Without the definitions it is a guess.

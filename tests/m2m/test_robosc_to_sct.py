@@ -43,7 +43,7 @@ robot R {
 
 
 def plant(model, name):
-    return next(each for each in model.plants if each.name == name)
+    return next(automaton for automaton in model.plants if automaton.name == name)
 
 
 def edges(model, name):
@@ -60,13 +60,20 @@ def show(expression):
 
 def test_plants_stand_in_the_order_of_the_text(to_sct):
     model, _ = to_sct(MESSAGES)
-    assert [each.name for each in model.plants] == ["message_near", "message_far", "component_Sensor", "message_go"]
-    assert [each.topic for each in model.plants] == ["/near", "far", None, "/go"]
+    assert [automaton.name for automaton in model.plants] == [
+        "message_near",
+        "message_far",
+        "component_Sensor",
+        "message_go",
+    ]
+    assert [automaton.topic for automaton in model.plants] == ["/near", "far", None, "/go"]
 
 
 def test_only_what_the_controller_sends_is_controllable(to_sct):
     model, _ = to_sct(MESSAGES)
-    events = {f"{each.name}.{event.name}": event.controllable for each in model.plants for event in each.events}
+    events = {
+        f"{automaton.name}.{event.name}": event.controllable for automaton in model.plants for event in automaton.events
+    }
     assert events == {
         "message_near.u_response": False,
         "message_far.u_response": False,
@@ -243,7 +250,7 @@ def test_two_instances_of_one_component_are_independent(to_sct):
         }""",
         L=library,
     )
-    assert [(each.name, each.topic) for each in model.plants] == [
+    assert [(automaton.name, automaton.topic) for automaton in model.plants] == [
         ("message_Front_stop", "/stop"),
         ("component_Front", None),
         ("message_Rear_stop", "/rear/stop"),

@@ -29,7 +29,7 @@ def operands():
     return st.recursive(
         leaves,
         lambda inner: st.one_of(
-            inner.map(lambda each: ex.UnaryMinus(operand=each)),
+            inner.map(lambda operand: ex.UnaryMinus(operand=operand)),
             st.tuples(st.sampled_from([ex.Addition, ex.Subtraction, ex.Multiplication, ex.Division]), inner, inner).map(
                 lambda parts: parts[0](left=parts[1], right=parts[2])
             ),
@@ -47,7 +47,7 @@ def test_equal_for_every_value(kind, left, right, low, high):
     table = tabulate(comparison)
     for values in product(whole, whole):
         valuation = dict(zip(VARIABLES, values, strict=True))
-        read = lambda each: valuation[each.variable]  # noqa: B023, E731 - used at once
+        read = lambda referred: valuation[referred.variable]  # noqa: B023, E731 - used at once
         assert evaluate(table, read) == evaluate(comparison, read)
 
 

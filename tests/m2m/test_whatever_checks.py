@@ -58,7 +58,7 @@ def test_a_random_robot_is_transformed(path: Path) -> None:
     for seed in range(MODELS):
         path.write_text(random_robot(seed), encoding="utf-8")
         base, found = examined(path)
-        assert not {"syntax", "unresolved-reference", "type"} & {each.rule for each in found}, f"seed {seed}"
+        assert not {"syntax", "unresolved-reference", "type"} & {finding.rule for finding in found}, f"seed {seed}"
         if isinstance(base, robosc.Robot) and not has_errors(found):
             clean += 1
             transformed(base)
@@ -74,14 +74,18 @@ def test_every_model_of_the_repository_that_has_no_error_is_transformed(path: Pa
 
 
 @limited(MODELS)
-@given(data=st.one_of(st.binary(max_size=200), st.text(max_size=200).map(lambda each: each.encode(errors="replace"))))
+@given(data=st.one_of(st.binary(max_size=200), st.text(max_size=200).map(lambda text: text.encode(errors="replace"))))
 def test_no_text_breaks_reading_and_checking(path: Path, data: bytes) -> None:
     path.write_bytes(data)
     examined(path)
 
 
 @limited(MODELS)
-@given(soup=st.lists(st.sampled_from(sorted({each for text in SOURCES for each in text})), max_size=80).map(" ".join))
+@given(
+    soup=st.lists(st.sampled_from(sorted({character for text in SOURCES for character in text})), max_size=80).map(
+        " ".join
+    )
+)
 def test_no_words_break_reading_and_checking(path: Path, soup: str) -> None:
     path.write_text(f"robot R {{ {soup}", encoding="utf-8")
     examined(path)
@@ -133,4 +137,4 @@ def test_an_expression_beyond_reason_is_a_finding(path: Path, condition: str, me
         }}"""
     )
     _, found = examined(path)
-    assert [(each.rule, each.span.line, each.message) for each in found] == [("syntax", 3, message)]
+    assert [(finding.rule, finding.span.line, finding.message) for finding in found] == [("syntax", 3, message)]

@@ -20,7 +20,7 @@ SHIPPED = Path(robosc.__file__).parent / "m2t" / "ros" / "include"
 
 def models(name: str) -> robosc.Models:
     robot = robosc.load(HERE / f"{name}.rscd")
-    assert [each for each in robosc.check(robot) if each.rule != "interface-unknown"] == []
+    assert [finding for finding in robosc.check(robot) if finding.rule != "interface-unknown"] == []
     model = robosc.to_sct(robot)
     robosc.synthesize(model)
     return robosc.Models(model, robosc.to_rosgraph(robot), robot)

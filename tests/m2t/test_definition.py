@@ -26,7 +26,7 @@ def test_fits_its_schema_and_is_what_the_text_says(courier: robosc.Models) -> No
 def test_says_states_variables_transitions(courier: robosc.Models) -> None:
     assert courier.rosgraph is not None
     scanner, counter = definition(courier.rosgraph)["components"]
-    assert [each["name"] for each in scanner["states"] if each["initial"]] == ["looking"]
+    assert [state["name"] for state in scanner["states"] if state["initial"]] == ["looking"]
     assert {
         "from": "looking",
         "to": "turning",

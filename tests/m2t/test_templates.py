@@ -12,7 +12,7 @@ def shipped(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     folder.mkdir()
     monkeypatch.setattr(templates, "locate", {"m2t/target/templates": folder}.__getitem__)
     (folder / "a.j2").write_text(
-        "{% for each in names %}\n  {% if each %}\n<{{ each }}>\n  {% endif %}\n{% endfor %}\n"
+        "{% for name in names %}\n  {% if name %}\n<{{ name }}>\n  {% endif %}\n{% endfor %}\n"
     )
     (folder / "b.j2").write_text("ours\n")
     return folder

@@ -57,18 +57,20 @@ def test_what_is_added(
 
 def test_nothing_is_added_to_other_targets(porter: robosc.Models, porter_settings: Configuration, target: str) -> None:
     del target
-    for each in ("supervisor", "cif", "xmi"):
-        assert robosc.generate(each, porter, porter_settings, with_tests=True) == robosc.generate(
-            each, porter, porter_settings
+    for name in ("supervisor", "cif", "xmi"):
+        assert robosc.generate(name, porter, porter_settings, with_tests=True) == robosc.generate(
+            name, porter, porter_settings
         )
 
 
 def test_the_package_lists_what_the_test_needs(target: str, plain: dict[str, str], files: dict[str, str]) -> None:
-    with_tests, without = (parse_package_string(each["package.xml"]) for each in (files, plain))
+    with_tests, without = (parse_package_string(package["package.xml"]) for package in (files, plain))
     with_tests.validate()
     assert {test_depend.name for test_depend in with_tests.test_depends} == TEST_DEPENDS[target]
     for kind in ("build_depends", "exec_depends", "buildtool_depends"):
-        assert [each.name for each in getattr(with_tests, kind)] == [each.name for each in getattr(without, kind)]
+        assert [dependency.name for dependency in getattr(with_tests, kind)] == [
+            dependency.name for dependency in getattr(without, kind)
+        ]
 
 
 def test_the_platform_s_linter_is_content(target: str, files: dict[str, str], tmp_path: Path) -> None:
@@ -96,7 +98,7 @@ def test_scripts_and_launch_files_can_be_read(target: str, files: dict[str, str]
     assert done.returncode == 0, done.stdout
     if target == "ros1":
         launch = ElementTree.fromstring(files["test/play_trace.test"])  # noqa: S314  # our own text
-        parameters = {each.get("name"): each.get("value") for each in launch.findall("node/param")}
+        parameters = {parameter.get("name"): parameter.get("value") for parameter in launch.findall("node/param")}
         assert parameters["service_timeout_ms"] == "3000"
         assert parameters["watchdog_stops"] == "false"
 

@@ -25,7 +25,7 @@ METAMODELS = [locate(f"metamodel/{name}.ecore") for name in ("expression", "robo
 @pytest.fixture(scope="session")
 def java(tmp_path_factory: pytest.TempPathFactory) -> Any:
     """Runs a program of ours in Java: gives its exit status and what it says."""
-    absent = [each for each in ("javac", "java") if shutil.which(each) is None]
+    absent = [program for program in ("javac", "java") if shutil.which(program) is None]
     absent += [jar.name for jar in JARS if not jar.exists()]
     if absent:
         message = f"no {', '.join(absent)}: install openjdk-17-jdk-headless and libeclipse-emf-ecore-xmi-java"
@@ -104,7 +104,7 @@ FAULTS = [
 ]
 
 
-@pytest.mark.parametrize("fault", FAULTS, ids=[each[2] for each in FAULTS])
+@pytest.mark.parametrize("fault", FAULTS, ids=[case[2] for case in FAULTS])
 def test_emf_does_complain(emf: Any, folder: Path, fault: tuple[str, str, str, str]) -> None:
     file, old, new, complaint = fault
     text = (folder / file).read_text()

@@ -279,7 +279,7 @@ BROKEN: list[tuple[Callable[[Any], None], list[str]]] = [
 ]
 
 
-@pytest.mark.parametrize(("break_it", "wanted"), BROKEN, ids=[each.__name__ for each, _ in BROKEN])
+@pytest.mark.parametrize(("break_it", "wanted"), BROKEN, ids=[breaking.__name__ for breaking, _ in BROKEN])
 def test_sct(break_it: Callable[[Any], None], wanted: list[str]) -> None:
     given = valid()
     break_it(given)
@@ -401,7 +401,7 @@ GRAPHS: list[tuple[str, Any, str]] = [
 ]
 
 
-@pytest.mark.parametrize(("place", "value", "message"), GRAPHS, ids=[each for each, _, _ in GRAPHS])
+@pytest.mark.parametrize(("place", "value", "message"), GRAPHS, ids=[place for place, _, _ in GRAPHS])
 def test_rosgraph(place: str, value: Any, message: str) -> None:
     given = graph()
     assert messages(given) == []

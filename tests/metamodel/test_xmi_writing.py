@@ -78,7 +78,8 @@ def test_the_order_of_construction_does_not_show() -> None:
         locations=[sct.Location(name="ready", initial=True, marked=True)],
     )
     one, other = (
-        to_texts({"x": sct.SupervisoryControlModel(name="robot", plants=[each])}) for each in (backwards, forwards)
+        to_texts({"x": sct.SupervisoryControlModel(name="robot", plants=[automaton])})
+        for automaton in (backwards, forwards)
     )
     assert one == other
 

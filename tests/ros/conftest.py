@@ -39,16 +39,20 @@ class Drive:
 
     def commands(self, start: float = 0.0, end: float = 1e9) -> list[tuple[float, float, float]]:
         """Time, linear and angular speed of the commands that the world received in a span of time."""
-        received = [each for each in self.record if each["topic"] == "/cmd_vel" and start <= each["time"] < end]
-        return [(each["time"], each["data"]["linear"]["x"], each["data"]["angular"]["z"]) for each in received]
+        received = [entry for entry in self.record if entry["topic"] == "/cmd_vel" and start <= entry["time"] < end]
+        return [
+            (message["time"], message["data"]["linear"]["x"], message["data"]["angular"]["z"]) for message in received
+        ]
 
     def poses(self, start: float = 0.0, end: float = 1e9) -> list[dict[str, Any]]:
         """Where the robot was in a span of time."""
-        return [each["data"] for each in self.record if each["topic"] == "pose" and start <= each["time"] < end]
+        return [entry["data"] for entry in self.record if entry["topic"] == "pose" and start <= entry["time"] < end]
 
     def when(self, happening: str) -> float:
         """When something happened in the world."""
-        (time,) = [each["time"] for each in self.record if (each["topic"], each["data"]) == ("happening", happening)]
+        (time,) = [
+            entry["time"] for entry in self.record if (entry["topic"], entry["data"]) == ("happening", happening)
+        ]
         return float(time)
 
 

@@ -71,10 +71,12 @@ def find_ros1() -> Found:
         "std_msgs",
         "std_srvs",
     ]
-    found.missing += [f"no {each}" for each in needed if not (prefix / "share" / each / "package.xml").exists()]
+    found.missing += [
+        f"no {package}" for package in needed if not (prefix / "share" / package / "package.xml").exists()
+    ]
     if not (prefix / "share/std_msgs/msg").exists():
         found.missing.append("no definitions of std_msgs (Debian: ros-std-msgs)")
-    found.missing += [f"no {each}" for each in ("catkin_make", "cmake", "g++") if not _has(each, environment)]
+    found.missing += [f"no {program}" for program in ("catkin_make", "cmake", "g++") if not _has(program, environment)]
     if not found.missing:
         # Without the number of jobs it takes one alone while the machine is busy.
         build = ["catkin_make", f"-j{os.cpu_count() or 1}", f"-DPYTHON_EXECUTABLE={python}"]
@@ -93,7 +95,7 @@ def find_ros2() -> Found:
             found.missing.append("no rclcpp in AMENT_PREFIX_PATH or /opt/ros")
             return found
         environment = sourced[0]
-    found.missing += [f"no {each}" for each in ("colcon", "cmake", "g++") if not _has(each, environment)]
+    found.missing += [f"no {program}" for program in ("colcon", "cmake", "g++") if not _has(program, environment)]
     if not found.missing:
         old = environment.get("ROS_DISTRO") in ("foxy", "galactic", "humble")
         environment |= {"ROS_LOCALHOST_ONLY": "1"} if old else {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}

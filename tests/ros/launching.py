@@ -70,8 +70,8 @@ def launched(text: str, **arguments: str) -> Launched:
         exec(compile(text, "launch", "exec"), file)  # noqa: S102  # our own text
         entities = file["generate_launch_description"]().positional[0]
     declared = [entity for entity in entities if entity.kind == "DeclareLaunchArgument"]
-    values = {each.positional[0]: each.named["default_value"] for each in declared} | arguments
-    return Launched(values, [each for entity in entities for each in _unfolded(entity, values)])
+    values = {argument.positional[0]: argument.named["default_value"] for argument in declared} | arguments
+    return Launched(values, [action for entity in entities for action in _unfolded(entity, values)])
 
 
 def _maker(kind: str) -> Any:
@@ -86,4 +86,4 @@ def _unfolded(entity: Made, values: dict[str, str]) -> list[Made]:
             inner = entity.positional[0]
         case _:
             return [entity]
-    return [each for part in inner for each in _unfolded(part, values)]
+    return [action for part in inner for action in _unfolded(part, values)]

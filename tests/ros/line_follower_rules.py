@@ -63,7 +63,7 @@ def violations(log: Iterable[Entry]) -> list[str]:
 def commands_in(log: Iterable[Entry]) -> list[tuple[float, float]]:
     """The linear and angular speeds that a node says it has sent."""
     sent = (entry["data"]["value"] for entry in log if entry["event"] in (MOVE, HALT))
-    return [(each["linear"]["x"], each["angular"]["z"]) for each in sent]
+    return [(message["linear"]["x"], message["angular"]["z"]) for message in sent]
 
 
 def late_moves(record: Sequence[Entry], allowance: float, front: float) -> list[str]:

@@ -30,7 +30,7 @@ class Processes:
         """Starts a program; `name` names its log. One that is steered has pipes as standard input and output."""
         with (self._logs / f"{name}.log").open("wb") as log:
             process = subprocess.Popen(
-                [str(each) for each in command],
+                [str(word) for word in command],
                 env=self.environment,
                 cwd=self._logs,
                 stdin=subprocess.PIPE if steered else subprocess.DEVNULL,

@@ -35,7 +35,7 @@ class World:
         self.answers = []
         self.topics.listen("/cmd_vel", "geometry_msgs/Twist", self._commanded)
         self.topics.listen("/answer", "std_msgs/Int32", self._answered)
-        self.stop, self.go = (self.topics.publisher(each, "std_msgs/Empty") for each in ("/stop", "/continue"))
+        self.stop, self.go = (self.topics.publisher(topic, "std_msgs/Empty") for topic in ("/stop", "/continue"))
         self.scan = self.topics.publisher("/scan", "sensor_msgs/LaserScan") if scans else None
         self.correct = self.topics.publisher("/correction", "std_msgs/Float32") if scans else None
         self.ask = self.topics.publisher("/question", "std_msgs/Int32")
@@ -114,8 +114,8 @@ class World:
         """Seconds until the echo answers."""
         began = time.perf_counter()
         self.ask(data=number)
-        self.wait(lambda: number in [each for _, each in self.answers[-3:]], "the echo answers")
-        return next(at for at, each in reversed(self.answers) if each == number) - began
+        self.wait(lambda: number in [answered for _, answered in self.answers[-3:]], "the echo answers")
+        return next(at for at, answered in reversed(self.answers) if answered == number) - began
 
 
 def measure(world, options):

@@ -135,7 +135,10 @@ def _generate_ros1(ros: Ros, package: Path, folder: Path) -> None:
     name, messages = package.name, folder / "messages" / package.name
     for action in sorted(package.glob("action/*.action")):
         _done(ros, [ros.python, "/usr/lib/actionlib_msgs/genaction.py", action, "-o", messages])
-    known = [f"-I{each}:/usr/share/{each}/msg" for each in KNOWN] + [f"-I{name}:{messages}", f"-I{name}:{package}/msg"]
+    known = [f"-I{known_package}:/usr/share/{known_package}/msg" for known_package in KNOWN] + [
+        f"-I{name}:{messages}",
+        f"-I{name}:{package}/msg",
+    ]
     for kind, files in {
         "msg": [*sorted(package.glob("msg/*.msg")), *sorted(messages.glob("*.msg"))],
         "srv": sorted(package.glob("srv/*.srv")),

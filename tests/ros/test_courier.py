@@ -114,22 +114,22 @@ def test_evaluates_booleans(courier: Courier) -> None:
 
 
 def test_logs_events_with_their_data(courier: Courier) -> None:
-    words = [each["data"]["value"] for each in courier.log if each["event"] == "message_word.u_response"]
+    words = [entry["data"]["value"] for entry in courier.log if entry["event"] == "message_word.u_response"]
     assert words == ['idle "ü" \\ \n', "idle"]
-    sides = [each["data"] for each in courier.log if each["event"] == "message_side.u_response"]
+    sides = [entry["data"] for entry in courier.log if entry["event"] == "message_side.u_response"]
     # Each scan is sent once, when the node listens; those without enough elements have no `detail`.
     assert [side["value"] for side in sides] == ["far", "ahead", "ahead", "ahead", "far", "left", "ahead"]
-    details = [each.get("data") for each in courier.log if each["event"] == "message_detail.u_response"]
+    details = [entry.get("data") for entry in courier.log if entry["event"] == "message_detail.u_response"]
     ranges = [(3.0, 7.0), (0.5, 7.0), (0.5, None), (3.0, 1.0), (0.5, 1.0)]
     assert details == [{"value": {"ranges": {"0": first, "3": fourth}}} for first, fourth in ranges]
-    targets = [each.get("data") for each in courier.log if each["event"] == "message_target.c_trigger"]
+    targets = [entry.get("data") for entry in courier.log if entry["event"] == "message_target.c_trigger"]
     assert {"value": {"pose": {"position": {"x": 0.5, "y": 3.0, "z": 13.0}}}} in targets
     assert {"value": {}} in targets
     assert {"data_target.c_d1", "component_Scanner.c_tau1"} < {
-        each["event"] for each in courier.log if each["direction"] == "internal"
+        entry["event"] for entry in courier.log if entry["direction"] == "internal"
     }
     validator = Draft202012Validator(json.loads(locate("schemas/event-log.schema.json").read_text()))
-    assert not [error for each in courier.log for error in validator.iter_errors(each)]
-    times = [each["time"] for each in courier.log]
+    assert not [error for entry in courier.log for error in validator.iter_errors(entry)]
+    times = [entry["time"] for entry in courier.log]
     assert times == sorted(times)
     assert not math.isnan(times[0])

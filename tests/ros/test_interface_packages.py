@@ -25,8 +25,10 @@ def test_packages_build(version: str, tmp_path: Path) -> None:
     environment = found.ros.environment if found.ros else {}
     folders = [Path(part) for part in environment.get("ROS_PACKAGE_PATH", "").split(os.pathsep) if part]
     folders += [Path(part) / "share" for part in environment.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if part]
-    there = {each for each in NEEDED[version] for folder in folders if (folder / each / "package.xml").exists()}
-    missing = [*found.missing, *(f"no {each}" for each in NEEDED[version] if each not in there)]
+    there = {
+        package for package in NEEDED[version] for folder in folders if (folder / package / "package.xml").exists()
+    }
+    missing = [*found.missing, *(f"no {package}" for package in NEEDED[version] if package not in there)]
     if found.ros is None or missing:
         reason = f"{version}: {', '.join(missing)}"
         if version in os.environ.get("ROBOSC_REQUIRE", "").split(","):
@@ -42,7 +44,7 @@ def test_packages_build(version: str, tmp_path: Path) -> None:
     assert headers >= expected[version]
 
 
-@pytest.mark.parametrize("model", EXAMPLES, ids=lambda each: each.stem)
+@pytest.mark.parametrize("model", EXAMPLES, ids=lambda model: model.stem)
 def test_examples_fit(model: Path) -> None:
     reading = read(model)
     assert [*reading.findings, *check(reading.base, reading.findings, RosTypes([PACKAGES]))] == []
@@ -67,4 +69,4 @@ def test_examples_fit(model: Path) -> None:
 def test_what_the_printed_listings_say_of_ros_types(name: str, expected: list[tuple[str, int]]) -> None:
     reading = read(LISTINGS / f"{name}.rscd")
     found = check(reading.base, reading.findings, RosTypes([PACKAGES]))
-    assert [(each.rule, each.span.line) for each in found if each.rule.startswith("interface-")] == expected
+    assert [(finding.rule, finding.span.line) for finding in found if finding.rule.startswith("interface-")] == expected

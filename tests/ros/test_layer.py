@@ -47,7 +47,7 @@ class Trial:
 
     def blocked(self, step: str) -> list[tuple[str, str, list[str]]]:
         """What was blocked, and why."""
-        return [(each["name"], each["reason"], each["because"]) for each in self.steps[step]["blocked"]]
+        return [(told["name"], told["reason"], told["because"]) for told in self.steps[step]["blocked"]]
 
 
 @pytest.fixture(scope="module", params=["ros1", "ros2", "run-ros1", "run-ros2"])
@@ -84,7 +84,7 @@ def remapped(version: int) -> list[str]:
     if version == 1:
         launch = ElementTree.parse(USHER / "ros1-layer" / "launch" / "usher_layer.launch")  # noqa: S314  # our own text
         given = {"/$(arg namespace)": "", "$(arg name)": "usher_layer"}
-        remaps = [(str(each.get("from")), str(each.get("to"))) for each in launch.iter("remap")]
+        remaps = [(str(remap.get("from")), str(remap.get("to"))) for remap in launch.iter("remap")]
         for argument, value in given.items():
             remaps = [(name, other.replace(argument, value)) for name, other in remaps]
         return [f"{name}:={other}" for name, other in remaps]
@@ -102,7 +102,7 @@ def test_messages_pass_in_both_directions(trial: Trial) -> None:
 def test_what_can_not_be_read_is_handed_on_but_counts_as_not_received(trial: Trial) -> None:
     assert (trial.controller("short"), trial.controller("long")) == ([["scan", 1]], [["scan", 2]])
     assert "/scan: there is no element 1 in an array of 1" in trial.output
-    scans = [each["data"] for each in trial.log if each["event"] == "message_scan.u_response"]
+    scans = [entry["data"] for entry in trial.log if entry["event"] == "message_scan.u_response"]
     assert scans == [{"value": {"ranges": {"1": 0.75}}}]
     scanner = trial.steps["low"]["blocked"][0]["components"]["Scanner"]
     assert scanner == {"state": "seen", "variables": {"second": 0.75}}
@@ -119,7 +119,7 @@ def test_the_supervisor_hears_before_the_controller(trial: Trial) -> None:
     # The controller sends a speed as soon as it hears of the stop: twenty times.
     assert trial.robot("stops") == []
     assert trial.blocked("stops") == 20 * [("Drive.speed", "requirement", ["requirement speed needs Guard.clear"])]
-    told = [(each["direction"], each["event"]) for each in trial.log]
+    told = [(entry["direction"], entry["event"]) for entry in trial.log]
     first = told.index(("in", "message_stop.u_response"))
     assert told[first + 1] == ("blocked", "message_speed.c_trigger")
 
@@ -234,8 +234,8 @@ def test_what_goes_on_is_reliable_however_it_was_heard(trial: Trial) -> None:
 def test_everything_fits_its_schema(trial: Trial) -> None:
     steps = [step for step in trial.steps.values() if "states" in step]
     told = {
-        "blocked": [each for step in steps for each in step["blocked"]],
-        "state": [each for step in steps for each in step["states"]],
+        "blocked": [told for step in steps for told in step["blocked"]],
+        "state": [state for step in steps for state in step["states"]],
         "event-log": trial.log,
     }
     for name, lines in told.items():
@@ -243,7 +243,7 @@ def test_everything_fits_its_schema(trial: Trial) -> None:
         assert lines
         assert not [error for line in lines for error in validator.iter_errors(line)]
     # Provided data is none of the layer's business.
-    assert not [each for each in trial.log if each["event"].startswith("data_")]
+    assert not [entry for entry in trial.log if entry["event"].startswith("data_")]
 
 
 def events(trial: Trial, step: str) -> list[str]:

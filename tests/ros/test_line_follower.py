@@ -76,7 +76,7 @@ def test_what_is_received_is_what_was_decided(drive: Drive) -> None:
 
 
 def test_answers_in_every_tick(drive: Drive) -> None:
-    sent = {each["event"] for each in drive.log if each["direction"] == "out"}
+    sent = {entry["event"] for entry in drive.log if entry["direction"] == "out"}
     # A report is the end of a tick.
     ticks = [report["data"] for report in drive.reports if report["topic"] == "state"]
     assert all(sent & set(tick["transitions"]) for tick in ticks[1:])
@@ -88,20 +88,28 @@ def test_reports_state_and_definition(drive: Drive) -> None:
     definitions = [report["data"] for report in drive.reports if report["topic"] == "definition"]
     states = [report["data"] for report in drive.reports if report["topic"] == "state"]
     assert len(definitions) == 1
-    assert [each["name"] for each in definitions[0]["components"]] == ["LineDetector", "Lidar", "EmergencyStop"]
+    assert [component["name"] for component in definitions[0]["components"]] == [
+        "LineDetector",
+        "Lidar",
+        "EmergencyStop",
+    ]
     seen = {(name, component["state"]) for state in states for name, component in state["components"].items()}
-    declared = {(each["name"], state["name"]) for each in definitions[0]["components"] for state in each["states"]}
+    declared = {
+        (component["name"], state["name"])
+        for component in definitions[0]["components"]
+        for state in component["states"]
+    }
     assert seen == declared
     assert sum(event == "message_stop.u_response" for state in states for event in state["transitions"]) == 1
     assert all(state["transitions"] for state in states[1:])
     told = [event for state in states for event in state["transitions"]]
-    happened = [each["event"] for each in drive.log]
+    happened = [entry["event"] for entry in drive.log]
     first = next((at for at in range(len(happened)) if happened[at : at + len(told)] == told), None)
     assert first is not None, "from the first report on each event is told, once, in its order"
     # ROS 2 may find the listener late.
     assert len(told) > len(happened) / 2
     # In every tick something is sent, and reported. A few commands more are answers that wait for no tick.
-    ticks = sum(each["direction"] == "out" for each in drive.log[first : first + len(told)])
+    ticks = sum(entry["direction"] == "out" for entry in drive.log[first : first + len(told)])
     assert ticks * 0.9 < len(states) <= ticks + 2
 
 

@@ -19,7 +19,7 @@ LAYER, CONTROLLER = f"{ROBOT}_layer", f"{ROBOT}_controller"
 NODE = """\
 #!/bin/sh
 echo "started ${0##*/} $*"
-for each; do case $each in /tmp/*) cat "$each" ;; esac; done
+for argument; do case $argument in /tmp/*) cat "$argument" ;; esac; done
 """
 
 

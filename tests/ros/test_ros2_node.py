@@ -70,7 +70,7 @@ class Graph:
 
     def commands(self, topic: str) -> int:
         """How many commands the world has heard."""
-        return sum(each["heard"] == topic for each in self.world.all("heard"))
+        return sum(entry["heard"] == topic for entry in self.world.all("heard"))
 
     def until_commanded(self, topic: str) -> None:
         heard = self.commands(topic)
@@ -115,7 +115,7 @@ def test_two_components_in_one_container(graph: Graph) -> None:
     container = start_container(graph, "component_container")
     logs = {side: graph.folder / f"{side}.jsonl" for side in ("left", "right")}
     loaded = {side: graph.manage("load", "scout_controller", f"/{side}", log) for side, log in logs.items()}
-    assert [each["error"] for each in loaded.values()] == ["", ""]
+    assert [answer["error"] for answer in loaded.values()] == ["", ""]
     assert loaded["left"]["name"] == "/left/scout_controller"
     for log in logs.values():
         graph.processes.wait_until(lambda log=log: log.exists() and log.stat().st_size > 0, "events happen")

@@ -92,7 +92,7 @@ def node_commands(kind: Workspace | Runner, name: str, log: str) -> list[list[st
             return [[*kind.command(model, log, *clock)]]
         return [kind.node(f"{name}_controller", log, *clock)]
     layer, controller, behind = LAYERS[name]
-    remappings = [f"{each}:=/{layer}/controller{each}" for each in ("/correction", "/no_line", "/simple_movement")]
+    remappings = [f"{topic}:=/{layer}/controller{topic}" for topic in ("/correction", "/no_line", "/simple_movement")]
     if isinstance(kind, Runner):
         return [
             kind.command(model, log, *clock, layer=True),
@@ -119,7 +119,7 @@ def test_sends_nothing_forbidden(run: LiveRun, name: str) -> None:
     while log[-1]["direction"] == "outside":
         # At the very end, when it is shut down, the node halts the robot whatever the requirements say.
         log.pop()
-    assert sum(each["direction"] == "out" for each in log) >= 3
+    assert sum(entry["direction"] == "out" for entry in log) >= 3
     assert BOOKS[name]().violations(log) == []
 
 

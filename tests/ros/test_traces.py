@@ -40,7 +40,7 @@ def rostest(workspace: Workspace, package: str, folder: Path, trace: str = "rand
     (result,) = results.rglob(f"rosunit-{trace}.xml")
     suite = ElementTree.parse(result).getroot()  # noqa: S314  # rosunit's own
     assert suite.get("tests") == "1", done.stdout + done.stderr
-    return done.returncode, "\n".join(each.text or "" for each in suite.iter("failure"))
+    return done.returncode, "\n".join(failure.text or "" for failure in suite.iter("failure"))
 
 
 @pytest.mark.parametrize("package", MODELS)
@@ -159,10 +159,10 @@ def parameters(test: Path, folder: Path) -> list[str]:
     known = json.loads((test / "connections.json").read_text(encoding="utf-8"))
     found = {"use_sim_time": "true", "watchdog_stops": "false", "event_log": str(folder / "events.jsonl")}
     for kind in ("services", "actions"):
-        for each in known[kind]:
-            found["retry_ms"] = str(round(each["retry"] * 1000))
-            if "timeout" in each:
-                found["service_timeout_ms"] = str(round(each["timeout"] * 1000))
+        for client in known[kind]:
+            found["retry_ms"] = str(round(client["retry"] * 1000))
+            if "timeout" in client:
+                found["service_timeout_ms"] = str(round(client["timeout"] * 1000))
     return [f"{name}:={value}" for name, value in found.items()]
 
 

@@ -29,7 +29,7 @@ def fill(message, fields):
 def plain(value):
     """A message as nested dicts."""
     if hasattr(value, "__slots__"):
-        names = (each.lstrip("_") for each in value.__slots__ if each != "_check_fields")
+        names = (slot.lstrip("_") for slot in value.__slots__ if slot != "_check_fields")
         return {name: plain(getattr(value, name)) for name in names}
     return value if isinstance(value, (bool, int, float, str)) else str(value)
 

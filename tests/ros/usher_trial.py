@@ -201,7 +201,7 @@ class Trial:
 
     def was_blocked(self, name, count=1):
         """Waits until something of that name was blocked so often."""
-        self.wait(lambda: sum(each["name"] == name for each in self.blocked) >= count, f"{name} is blocked")
+        self.wait(lambda: sum(entry["name"] == name for entry in self.blocked) >= count, f"{name} is blocked")
 
     def happened(self, event, since=0):
         """Waits until the layer has told of an event."""
@@ -229,8 +229,8 @@ class Trial:
         self.ros.receive(0.2)  # no order is promised across topics
         self.told.pop(max(at for at, what in enumerate(self.told) if what == last))
         self.steps[name] = {**self.seen(), "states": list(self.states)}
-        for each in (self.robot.received, self.told, self.blocked, self.states):
-            del each[:]
+        for received in (self.robot.received, self.told, self.blocked, self.states):
+            del received[:]
 
     def run(self):
         self.wait(self.ros.heard, "everyone is there")
@@ -261,10 +261,10 @@ class Trial:
         }
         return {
             what: [
-                each.qos_profile.reliability.name
+                finding.qos_profile.reliability.name
                 for topic in topics
-                for each in found(topic)
-                if each.node_name == LAYER[1:]
+                for finding in found(topic)
+                if finding.node_name == LAYER[1:]
             ]
             for what, (found, topics) in ends.items()
         }

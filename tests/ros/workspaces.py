@@ -106,7 +106,7 @@ class Workspace:
         """The command that starts a node with parameters (`name:=value`): for ROS 1 by its launch file."""
         if self.ros.version == 1:
             return ["roslaunch", "--wait", package, f"{package}.launch", *parameters]
-        options = [each for parameter in parameters for each in ("-p", parameter)]
+        options = [word for parameter in parameters for word in ("-p", parameter)]
         return [self.folder / f"install/{package}/lib/{package}/{package}", "--ros-args", *options]
 
     def environment(self) -> dict[str, str]:
@@ -121,8 +121,8 @@ class Workspace:
         installed = sorted(path for path in (self.folder / "install").iterdir() if path.is_dir())
         found = {
             "AMENT_PREFIX_PATH": installed,
-            "LD_LIBRARY_PATH": [each / "lib" for each in installed],
-            "PYTHONPATH": [path for each in installed for path in each.glob("lib/python3*/site-packages")],
+            "LD_LIBRARY_PATH": [prefix / "lib" for prefix in installed],
+            "PYTHONPATH": [path for prefix in installed for path in prefix.glob("lib/python3*/site-packages")],
         }
         return environment | {
             name: ":".join([*map(str, paths), environment.get(name, "")]) for name, paths in found.items()

@@ -43,12 +43,12 @@ def run_of(name: str) -> Run:
 
 def poses(record: Iterable[Entry], start: float = 0.0, end: float = math.inf) -> list[Mapping[str, Any]]:
     """Where the robot was in a span of time."""
-    return [each["data"] for each in record if each["topic"] == "pose" and start <= each["time"] < end]
+    return [entry["data"] for entry in record if entry["topic"] == "pose" and start <= entry["time"] < end]
 
 
 def times_of(record: Iterable[Entry], topic: str) -> list[float]:
     """When something was sent to a topic."""
-    return [each["time"] for each in record if each["topic"] == topic]
+    return [entry["time"] for entry in record if entry["topic"] == topic]
 
 
 def moved_while_stopped(record: Sequence[Entry], allowance: float) -> float:
@@ -58,7 +58,7 @@ def moved_while_stopped(record: Sequence[Entry], allowance: float) -> float:
         stood = poses(record, stop + allowance, go)
         assert len(stood) > 3, "stopped for too short a time to tell"
         first = stood[0]
-        for each in stood:
-            away = math.hypot(each["x"] - first["x"], each["y"] - first["y"])
-            most = max(most, away, abs(each["heading"] - first["heading"]))
+        for pose in stood:
+            away = math.hypot(pose["x"] - first["x"], pose["y"] - first["y"])
+            most = max(most, away, abs(pose["heading"] - first["heading"]))
     return most

@@ -31,7 +31,7 @@ def test_reaches_its_goal(name: str) -> None:
 @EACH
 def test_sends_nothing_forbidden(name: str) -> None:
     log = run_of(name).log
-    assert sum(each["direction"] == "out" for each in log) >= 3
+    assert sum(entry["direction"] == "out" for entry in log) >= 3
     assert BOOKS[name]().violations(log) == []
 
 
@@ -73,8 +73,8 @@ def test_the_navigators_get_around_what_is_on_no_map() -> None:
     run = run_of("obstacle_navigation")
     # Nearer than Nav2 keeps only to what was moved before the robot.
     assert min(pose["gap"] for pose in poses(run.record)) > 0.02
-    feedback = [each["data"]["value"] for each in run.log if each["event"] == "action_navigate.u_feedback"]
-    assert {each["number_of_recoveries"] if isinstance(each, dict) else each for each in feedback} == {0, 1}
+    feedback = [entry["data"]["value"] for entry in run.log if entry["event"] == "action_navigate.u_feedback"]
+    assert {value["number_of_recoveries"] if isinstance(value, dict) else value for value in feedback} == {0, 1}
 
 
 def test_a_click_before_the_robot_is_located_starts_nothing() -> None:
@@ -84,13 +84,13 @@ def test_a_click_before_the_robot_is_located_starts_nothing() -> None:
 
 
 def test_the_object_finder_sees_other_things_before_the_sign() -> None:
-    events = [each for each in run_of("object_finder").log if each["event"] == "message_objects.u_response"]
+    events = [entry for entry in run_of("object_finder").log if entry["event"] == "message_objects.u_response"]
     assert next(event["data"]["value"] for event in events) == "something_else"
     assert [event["data"]["value"] for event in events][-1] == "stop_sign"
 
 
 def test_the_maze_has_turns_to_both_sides_and_a_dead_end() -> None:
-    events = [each["event"].removesuffix(".c_trigger") for each in run_of("maze_solver").log]
+    events = [entry["event"].removesuffix(".c_trigger") for entry in run_of("maze_solver").log]
     turns = [event.rpartition("_")[2] for event in events if event in ("message_rotate_left", "message_rotate_right")]
     assert ("left", "left") in pairwise(turns)
     assert ("right", "right") in pairwise(turns)
@@ -98,7 +98,7 @@ def test_the_maze_has_turns_to_both_sides_and_a_dead_end() -> None:
 
 def test_the_ball_slips_aside_and_is_caught_again() -> None:
     run = run_of("push_ball")
-    assert sum(each["event"] == "message_needs_adjustment.u_response" for each in run.log) > 10
+    assert sum(entry["event"] == "message_needs_adjustment.u_response" for entry in run.log) > 10
     ways = [pose["ball"] for pose in poses(run.record)]
     assert ways[-1][0] - ways[0][0] > 2.0
 
@@ -113,10 +113,10 @@ def test_the_person_is_followed_at_a_distance() -> None:
 
 def test_the_layer_blocks_steps_of_a_controller_that_knows_no_danger() -> None:
     run = run_of("supervised_line_follower")
-    blocked = [each["time"] for each in run.log if each["direction"] == "blocked"]
+    blocked = [entry["time"] for entry in run.log if entry["direction"] == "blocked"]
     (stop,), (go,) = times_of(run.record, "/stop"), times_of(run.record, "/continue")
-    assert sum(stop < each < go for each in blocked) > 10
+    assert sum(stop < time < go for time in blocked) > 10
     # Before the obstacle, too: where the robot stood for seconds.
     waiting = [pose["travelled"] for pose in poses(run.record, 8.0, 11.0)]
     assert max(waiting) - min(waiting) < 0.01
-    assert sum(8.0 < each < 11.0 for each in blocked) > 20
+    assert sum(8.0 < time < 11.0 for time in blocked) > 20

@@ -26,7 +26,7 @@ def test_pictures_are_up_to_date(name: str, golden) -> None:
 def test_a_picture_shows_all_that_happened(name: str) -> None:
     run = run_of(name)
     drawing = ElementTree.fromstring(picture(run.simulation))  # noqa: S314  # our own
-    texts = [each.text or "" for each in drawing.iter("{http://www.w3.org/2000/svg}text")]
+    texts = [node.text or "" for node in drawing.iter("{http://www.w3.org/2000/svg}text")]
     assert [
         happening.words for happening in run.simulation.happenings if not any(happening.words in text for text in texts)
     ] == []

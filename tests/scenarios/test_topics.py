@@ -16,7 +16,7 @@ def test_every_topic_is_there(name: str) -> None:
     wanted = [
         (simulation.says, [(subscription.topic, subscription.interface) for subscription in graph.subscriptions]),
         (simulation.hears, [(publisher.topic, publisher.interface) for publisher in graph.publishers]),
-        (simulation.serves, [(each.identifier, each.interface) for each in graph.actionClients]),
+        (simulation.serves, [(client.identifier, client.interface) for client in graph.actionClients]),
     ]
     assert sum(len(connections) for _, connections in wanted) >= 5
     for offered, connections in wanted:

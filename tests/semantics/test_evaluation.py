@@ -35,4 +35,4 @@ def huge() -> ex.Expression:
     ],
 )
 def test_integers_become_doubles(expression: ex.Expression, expected: Any) -> None:
-    assert evaluate(expression, lambda each: each) == expected
+    assert evaluate(expression, lambda value: value) == expected

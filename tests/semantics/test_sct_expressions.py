@@ -48,6 +48,8 @@ def test_a_copy_reads_the_same_and_shares_nothing(made):
     for requirement in made.requirements:
         copy = copied(requirement.condition)
         assert text(copy) == text(requirement.condition)
-        assert not {id(each) for _, each in tree(copy)} & {id(each) for _, each in tree(requirement.condition)}
+        assert not {id(element) for _, element in tree(copy)} & {
+            id(element) for _, element in tree(requirement.condition)
+        }
         assert copy.eContainer() is None
         assert requirement.condition.eContainer() is requirement

@@ -49,12 +49,12 @@ SUMS: dict[tuple[Type, Type], Type] = {
 }
 
 
-def data_type(each: Type) -> rsc.DataType | None:
-    match each:
+def data_type(kind: Type) -> rsc.DataType | None:
+    match kind:
         case ArrayType():
-            return rsc.Array(type=data_type(each.element))
+            return rsc.Array(type=data_type(kind.element))
         case ObjectType() | EnumType():
-            return rsc.ComplexDataTypeReference(type=each.definition)
+            return rsc.ComplexDataTypeReference(type=kind.definition)
     basic = {
         BOOLEAN: rsc.BooleanDataType,
         INTEGER: rsc.IntegerDataType,
@@ -62,20 +62,20 @@ def data_type(each: Type) -> rsc.DataType | None:
         STRING: rsc.StringDataType,
         NONE: rsc.NoneDataType,
     }
-    return basic[each]() if each in basic else None
+    return basic[kind]() if kind in basic else None
 
 
-def variable(each: Type) -> rsc.Access:
+def variable(kind: Type) -> rsc.Access:
     """An expression of a type; an access to nothing for UNKNOWN."""
-    if each == UNKNOWN:
+    if kind == UNKNOWN:
         return rsc.Access()
-    return rsc.Access(item=rsc.Variable(name="v", type=data_type(each)))
+    return rsc.Access(item=rsc.Variable(name="v", type=data_type(kind)))
 
 
-@pytest.mark.parametrize("each", [*ALL, UNKNOWN], ids=str)
-def test_variable_has_its_declared_type(each: Type) -> None:
-    assert declared_type(data_type(each)) == each
-    assert infer(variable(each)) == each
+@pytest.mark.parametrize("kind", [*ALL, UNKNOWN], ids=str)
+def test_variable_has_its_declared_type(kind: Type) -> None:
+    assert declared_type(data_type(kind)) == kind
+    assert infer(variable(kind)) == kind
 
 
 @pytest.mark.parametrize(
@@ -114,9 +114,9 @@ def test_quotient_is_always_double(left: Type, right: Type) -> None:
     assert infer(ex.Division(left=variable(left), right=variable(right))) == DOUBLE
 
 
-@pytest.mark.parametrize("each", [*ALL, UNKNOWN], ids=str)
-def test_minus_keeps_the_type_of_a_number(each: Type) -> None:
-    assert infer(ex.UnaryMinus(operand=variable(each))) == (each if each in {INTEGER, DOUBLE} else UNKNOWN)
+@pytest.mark.parametrize("kind", [*ALL, UNKNOWN], ids=str)
+def test_minus_keeps_the_type_of_a_number(kind: Type) -> None:
+    assert infer(ex.UnaryMinus(operand=variable(kind))) == (kind if kind in {INTEGER, DOUBLE} else UNKNOWN)
 
 
 def test_names() -> None:

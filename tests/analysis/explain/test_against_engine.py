@@ -286,7 +286,7 @@ def check_loosenings(model, loosenings, helps) -> None:
         assert not helps(model)
         model.requirements.extend(requirements)
     else:
-        assert {loosening.requirements for loosening in loosenings} == {(each,) for each in helpful}
+        assert {loosening.requirements for loosening in loosenings} == {(requirement,) for requirement in helpful}
 
 
 def changes_something(model, event):

@@ -30,7 +30,7 @@ def test_paragraphs_stand_on_lines_of_their_own() -> None:
 @given(st.lists(_risky.filter(lambda text: "\0" not in text), min_size=80, max_size=80))
 def test_a_string_is_what_it_was(tmp_path_factory, texts: list[str]) -> None:
     folder = tmp_path_factory.mktemp("strings")
-    lines = "".join(f"    fwrite({each}, 1, sizeof {each}, stdout);\n" for each in map(string_literal, texts))
+    lines = "".join(f"    fwrite({literal}, 1, sizeof {literal}, stdout);\n" for literal in map(string_literal, texts))
     (folder / "main.c").write_text(f"#include <stdio.h>\nint main(void)\n{{\n{lines}    return 0;\n}}\n")
     strict = ["-std=c99", "-Wall", "-Wextra", "-Werror"]
     subprocess.run(["gcc", *strict, folder / "main.c", "-o", folder / "main"], check=True)

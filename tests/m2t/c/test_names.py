@@ -14,11 +14,11 @@ _words = st.sampled_from(["a", "b", "a_b", "b_a", "a_b_a", "int", "event", "name
 
 def _all(names: CNames, made: sct.SupervisoryControlModel) -> tuple[list[str], list[str], list[str]]:
     """Names at file level, members of the state, members of the inputs."""
-    enumerators = [names.enumerator(each) for owner in made.plants for each in (*owner.events, *owner.locations)] + [
-        names.enumerator(literal) for owner in made.enumerations for literal in owner.literals
-    ]
-    functions = [names.lookup(each) for each in (*made.plants, *made.enumerations)]
-    members = [names.member(each) for owner in made.plants for each in (owner, *owner.variables)]
+    enumerators = [
+        names.enumerator(element) for owner in made.plants for element in (*owner.events, *owner.locations)
+    ] + [names.enumerator(literal) for owner in made.enumerations for literal in owner.literals]
+    functions = [names.lookup(element) for element in (*made.plants, *made.enumerations)]
+    members = [names.member(element) for owner in made.plants for element in (owner, *owner.variables)]
     return enumerators + functions, members, [names.member(input_) for owner in made.plants for input_ in owner.inputs]
 
 
@@ -32,23 +32,23 @@ def test_names_are_one_to_one_and_no_keywords(plants: list[str], inner: list[str
     made = model(
         [
             plant(
-                each,
+                plant_name,
                 {location: [] for location in locations},
                 controllable=inner,
                 variables=dict.fromkeys(inner, "bool"),
                 inputs=dict.fromkeys(inner, "bool"),
             )
-            for each in plants
+            for plant_name in plants
         ],
-        enumerations={each: [f"l{number}" for number in range(2)] for each in plants},
+        enumerations={plant_name: [f"l{number}" for number in range(2)] for plant_name in plants},
         name="A",
     )
     names = CNames(made)
     for scope in _all(names, made):
         assert len(set(scope)) == len(scope)
         assert not set(scope) & KEYWORDS
-        assert all(each.isascii() and each.isidentifier() for each in scope)
-    own = {f"a_{each}" for each in ("event", "state", "init", "perform", "event_name", "supervisor")}
+        assert all(identifier.isascii() and identifier.isidentifier() for identifier in scope)
+    own = {f"a_{word}" for word in ("event", "state", "init", "perform", "event_name", "supervisor")}
     assert not set(_all(names, made)[0]) & own
 
 
@@ -60,7 +60,7 @@ def test_names_are_what_the_model_says_where_nothing_clashes() -> None:
     assert names.macro == "SWAP"
     assert names.enumerator(a.events[0]) == "swap_a_u_response"
     assert names.enumerator(a.locations[1]) == "swap_a_y"
-    assert [names.member(each) for each in (a, a.variables[0])] == ["a", "a_v"]
+    assert [names.member(element) for element in (a, a.variables[0])] == ["a", "a_v"]
     assert names.lookup(a) == "swap_location_name_a"
 
 

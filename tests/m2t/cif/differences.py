@@ -59,17 +59,17 @@ class _Comparison:
     def requirements(self) -> Iterator[str]:
         """What is asked of one event twice in the same words may stand there once."""
         mine, yours = [], list(self.other.requirements)
-        for each in self.one.requirements:
-            again = [one for one in mine if (one.event, str(one.kind)) == (each.event, str(each.kind))]
-            if not any(_shape(one.condition) == _shape(each.condition) for one in again):
-                mine.append(each)
-        for each, other in zip_longest(mine, yours):
-            if _name(each.event) != _name(other.event) or str(each.kind) != str(other.kind):
-                yield f"{each.kind} {_name(each.event)} is {other.kind} {_name(other.event)}"
-            yield from self.expression("requirement", each.condition, other.condition)
+        for requirement in self.one.requirements:
+            again = [one for one in mine if (one.event, str(one.kind)) == (requirement.event, str(requirement.kind))]
+            if not any(_shape(one.condition) == _shape(requirement.condition) for one in again):
+                mine.append(requirement)
+        for requirement, other in zip_longest(mine, yours):
+            if _name(requirement.event) != _name(other.event) or str(requirement.kind) != str(other.kind):
+                yield f"{requirement.kind} {_name(requirement.event)} is {other.kind} {_name(other.event)}"
+            yield from self.expression("requirement", requirement.condition, other.condition)
 
     def names(self, what: str, mine: Any, yours: Any) -> Iterator[str]:
-        first, second = [each.name for each in mine], [your.name for your in yours]
+        first, second = [own.name for own in mine], [your.name for your in yours]
         if first != second:
             yield f"{what} {first} are {second}"
 
@@ -77,7 +77,7 @@ class _Comparison:
         for members in ("events", "inputs", "variables", "locations"):
             if mine.kind == sct.PlantKind.message and members == "locations":
                 continue  # its only location has no name in CIF
-            there = [each for each in getattr(mine, members) if each not in self.absent]
+            there = [member for member in getattr(mine, members) if member not in self.absent]
             yield from self.names(f"{members} of {mine.name}", there, getattr(yours, members))
         events = [event for event in mine.events if event not in self.absent]
         for one, other in zip(events, yours.events, strict=False):
@@ -153,14 +153,14 @@ def _domain(kind: Any) -> list[Any]:
 
 def _cells(expression: Any) -> dict[str, list[Any]]:
     cells: dict[str, list[Any]] = {}
-    for _, each in tree(expression):
-        match each:
+    for _, element in tree(expression):
+        match element:
             case sct.VariableReference():
-                cells[_name(each.variable)] = _domain(each.variable.type)
+                cells[_name(element.variable)] = _domain(element.variable.type)
             case sct.InputReference():
-                cells[_name(each.input)] = _domain(each.input.type)
+                cells[_name(element.input)] = _domain(element.input.type)
             case sct.LocationReference():
-                owner = each.location.eContainer()
+                owner = element.location.eContainer()
                 cells[owner.name] = list(range(len(owner.locations)))
     return cells
 
@@ -169,19 +169,19 @@ def _states(mine: Any, yours: Any) -> list[dict[str, Any]]:
     cells = _cells(mine) | _cells(yours)
     all_states = list(product(*cells.values()))
     step = max(1, len(all_states) // _MOST)
-    return [dict(zip(cells, each, strict=True)) for each in [*all_states[::step], all_states[-1]]]
+    return [dict(zip(cells, values, strict=True)) for values in [*all_states[::step], all_states[-1]]]
 
 
 def _value(expression: Any, state: dict[str, Any], target: Any) -> Any:
-    def read(each: Any) -> Any:
-        match each:
+    def read(reference: Any) -> Any:
+        match reference:
             case sct.VariableReference():
-                return state[_name(each.variable)]
+                return state[_name(reference.variable)]
             case sct.InputReference():
-                return state[_name(each.input)]
+                return state[_name(reference.input)]
             case sct.LocationReference():
-                return state[each.location.eContainer().name] == _index(each.location)
-        return each.literal.name
+                return state[reference.location.eContainer().name] == _index(reference.location)
+        return reference.literal.name
 
     value = evaluate(expression, read)
     if isinstance(target, ex.IntegerType):

@@ -9,7 +9,7 @@ from robosc.metamodel import sct
 from robosc.metamodel.reflection import tree
 
 _KINDS = {"message": "message", "service": "service", "action": "action", "component": "behaviour", "data": "data"}
-_EVENTS = [each.name for each in sct.EventKind.eLiterals]  # type: ignore[attr-defined]
+_EVENTS = [literal.name for literal in sct.EventKind.eLiterals]  # type: ignore[attr-defined]
 _PLANT = re.compile(r"plant \$?(\w+):")
 _SHIFTED = re.compile(r'  @doc\("\$?(\w+) \+ (\d+), with \$?\1 in (-\d+)\.\.(-?\d+)"\)')
 
@@ -48,7 +48,7 @@ def _give_locations(model: sct.SupervisoryControlModel) -> None:
             number = plant.variables[-1]
             assert number.name.startswith("choice")
             (only,) = plant.locations
-            names = ["none", *(f"d{each}" for each in range(1, number.type.maximum + 1))]
+            names = ["none", *(f"d{index}" for index in range(1, number.type.maximum + 1))]
             plant.locations.extend(sct.Location(name=name, marked=only.marked) for name in names)
             plant.locations.remove(only)
             plant.locations[number.initial.value].initial = True
@@ -60,10 +60,10 @@ def _give_locations(model: sct.SupervisoryControlModel) -> None:
                 plant.edges.append(edge)
             plant.variables.remove(number)
             numbers[number] = plant
-    for _, each in list(tree(model)):
-        if isinstance(each, ex.Equation) and getattr(each.left, "variable", None) in numbers:
-            location = numbers[each.left.variable].locations[each.right.value]
-            setattr(each.eContainer(), each.eContainmentFeature().name, sct.LocationReference(location=location))
+    for _, element in list(tree(model)):
+        if isinstance(element, ex.Equation) and getattr(element.left, "variable", None) in numbers:
+            location = numbers[element.left.variable].locations[element.right.value]
+            setattr(element.eContainer(), element.eContainmentFeature().name, sct.LocationReference(location=location))
 
 
 def _name_kinds(plant: sct.Plant) -> None:
@@ -80,7 +80,9 @@ def _name_kinds(plant: sct.Plant) -> None:
 def _shifts(model: sct.SupervisoryControlModel, text: str) -> dict[Any, int]:
     """How much is added to each variable and input; its type becomes that of the model."""
     shifts = {}
-    members = {(plant.name, each.name): each for plant in model.plants for each in (*plant.variables, *plant.inputs)}
+    members = {
+        (plant.name, member.name): member for plant in model.plants for member in (*plant.variables, *plant.inputs)
+    }
     plant = ""
     for line in text.splitlines():
         if heading := _PLANT.match(line):
@@ -95,16 +97,18 @@ def _shifts(model: sct.SupervisoryControlModel, text: str) -> dict[Any, int]:
 
 
 def _shift_back(model: sct.SupervisoryControlModel, shifts: dict[Any, int]) -> None:
-    for _, each in list(tree(model)):
-        match each:
+    for _, element in list(tree(model)):
+        match element:
             case sct.VariableReference() | sct.InputReference():
-                shift = shifts.get(each.variable if isinstance(each, sct.VariableReference) else each.input)
+                shift = shifts.get(element.variable if isinstance(element, sct.VariableReference) else element.input)
                 if shift:
-                    owner, feature = each.eContainer(), each.eContainmentFeature().name
-                    setattr(owner, feature, ex.Addition(left=each, right=ex.IntegerLiteral(value=shift)))
-            case sct.Update() if each.variable in shifts:
-                each.value = ex.Subtraction(left=each.value, right=ex.IntegerLiteral(value=shifts[each.variable]))
-            case sct.DiscreteVariable() if each in shifts:
-                number = each.initial.value - shifts[each]
+                    owner, feature = element.eContainer(), element.eContainmentFeature().name
+                    setattr(owner, feature, ex.Addition(left=element, right=ex.IntegerLiteral(value=shift)))
+            case sct.Update() if element.variable in shifts:
+                element.value = ex.Subtraction(
+                    left=element.value, right=ex.IntegerLiteral(value=shifts[element.variable])
+                )
+            case sct.DiscreteVariable() if element in shifts:
+                number = element.initial.value - shifts[element]
                 literal = ex.IntegerLiteral(value=abs(number))
-                each.initial = literal if number >= 0 else ex.UnaryMinus(operand=literal)
+                element.initial = literal if number >= 0 else ex.UnaryMinus(operand=literal)

@@ -123,8 +123,8 @@ def test_the_supervised_system(golden) -> None:
         bddNodes=1,
         guards=[
             sct.EventGuard(event=event, everEnabled=True)
-            for each in given.plants
-            for event in each.events
+            for automaton in given.plants
+            for event in automaton.events
             if event.controllable
         ],
     )
@@ -145,9 +145,9 @@ def test_plain_models_come_back_as_they_were() -> None:
     given = listings()
     again = rebuild(generated(given)["Listings.cif"])
     assert differences(given, again, exact=True) == []
-    assert [str(each.kind) for each in again.plants] == [str(each.kind) for each in given.plants]
-    assert [[str(event.kind) for event in each.events] for each in again.plants] == [
-        [str(event.kind) for event in each.events] for each in given.plants
+    assert [str(automaton.kind) for automaton in again.plants] == [str(automaton.kind) for automaton in given.plants]
+    assert [[str(event.kind) for event in automaton.events] for automaton in again.plants] == [
+        [str(event.kind) for event in automaton.events] for automaton in given.plants
     ]
 
 
@@ -171,7 +171,7 @@ ROOT = HERE.parents[2]
 MODELS = [ROOT / "tests" / "metamodel" / "warehouse.rscd", *sorted((ROOT / "examples").glob("*/*.rscd"))]
 
 
-@pytest.mark.parametrize("path", MODELS, ids=[each.stem for each in MODELS])
+@pytest.mark.parametrize("path", MODELS, ids=[path.stem for path in MODELS])
 def test_whole_robots_keep_their_meaning(path: Path) -> None:
     given = robosc_to_sct.transform(read(path).base)[0]
     given.supervisor = synthesize(given).supervisor
@@ -307,7 +307,7 @@ def test_what_cannot_be_said_in_a_guard_stands_at_its_event() -> None:
     guard = sct.EventGuard(event=given.plants[0].events[0], requirement=condition)
     given.supervisor = sct.Supervisor(guards=[guard])
     found = cif.preconditions(Models(given), Configuration())
-    assert [each.span for each in found] == [Span(9, 5, 9, 9), Span(7, 5, 8, 9)]
+    assert [finding.span for finding in found] == [Span(9, 5, 9, 9), Span(7, 5, 8, 9)]
 
 
 def test_expressions_of_too_large_a_number_draw_nothing_further() -> None:
@@ -358,7 +358,7 @@ def test_an_event_that_can_never_happen_is_left_out() -> None:
 
 def chosen(number: int) -> sct.SupervisoryControlModel:
     """A data plant with so many choices, each by a value of its own."""
-    names = [f"d{each}" for each in range(1, number + 1)]
+    names = [f"d{index}" for index in range(1, number + 1)]
     edges = [edge(f"c_{name}", name, when=f"p.n == {at}") for at, name in enumerate(names, 1)]
     edges.append(edge("c_none", "none", when=" and ".join(f"not (p.n == {at})" for at in range(1, number + 1))))
     locations = ["none", *names]
@@ -369,7 +369,7 @@ def chosen(number: int) -> sct.SupervisoryControlModel:
                 "data_x",
                 dict.fromkeys(locations, ()),
                 everywhere=edges,
-                controllable=[each.event for each in edges],
+                controllable=[made.event for made in edges],
                 kind="data",
                 marked=locations,
             ),
@@ -529,7 +529,7 @@ def test_nothing_breaks_out_of_its_place(text: str) -> None:
     )
     files = generated(quoting)
     assert differences(quoting, rebuild(files["robot.cif"])) == []
-    assert all(each.isprintable() and each.isascii() for each in files["robot.cif"].replace("\n", ""))
+    assert all(character.isprintable() and character.isascii() for character in files["robot.cif"].replace("\n", ""))
     named = model([plant("p", {"l": [edge("e")]}, controllable=["e"])])
     for _, element in tree(named):
         if isinstance(element, ex.NamedElement):

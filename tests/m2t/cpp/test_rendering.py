@@ -37,7 +37,7 @@ def test_a_raw_literal_ends_where_it_should(text: str) -> None:
 
 @given(st.text())
 def test_xml_holds_any_text(text: str) -> None:
-    kept = "".join(each for each in text if each.isprintable() or each in "\n\t")
+    kept = "".join(character for character in text if character.isprintable() or character in "\n\t")
     element = ET.fromstring(f"<e a={xml_attribute(text)}>{xml_text(text)}</e>")  # noqa: S314  # our own text
     assert (element.text or "") == kept
     assert element.get("a") == kept

@@ -90,9 +90,9 @@ def test_a_layer_and_its_controller_share_a_workspace(usher: robosc.Models) -> N
 
 
 NAMES = {
-    "ros1-layer": [f"/go_to/{each}" for each in ("goal", "cancel", "result", "feedback", "status")],
+    "ros1-layer": [f"/go_to/{part}" for part in ("goal", "cancel", "result", "feedback", "status")],
     "ros2-layer": [
-        f"/go_to/_action/{each}" for each in ("send_goal", "cancel_goal", "get_result", "feedback", "status")
+        f"/go_to/_action/{part}" for part in ("send_goal", "cancel_goal", "get_result", "feedback", "status")
     ],
 }
 
@@ -101,7 +101,7 @@ def test_the_launch_file_of_ros1_re_maps_everything(usher: robosc.Models, settin
     text = robosc.generate("ros1-layer", usher, settings)["launch/usher_layer.launch"]
     group = ElementTree.fromstring(text).find("group")  # noqa: S314  # our own text
     assert group is not None
-    found = {each.get("from"): each.get("to") for each in group.findall("remap")}
+    found = {remap.get("from"): remap.get("to") for remap in group.findall("remap")}
     names = ["/stop", "/resume", "battery", "/scan", "/speed", "label", "/lamp/light", *NAMES["ros1-layer"]]
     assert found == {name: f"/$(arg namespace)/$(arg name)/controller/{name.lstrip('/')}" for name in names}
     (node,) = group.findall("node")
@@ -149,7 +149,13 @@ def test_a_controller_with_a_launch_file_of_its_own(usher: robosc.Models) -> Non
     assert [path.positional[0][0].positional, path.positional[0][1]] == [("my_robot",), "launch/drive.launch"]
     assert there.actions.index(include) > there.actions.index(remaps[-1])
     hidden = there.of("UnsetLaunchConfiguration")
-    assert [each.positional[0] for each in hidden] == ["name", "namespace", "log_level", "event_log", "use_sim_time"]
+    assert [action.positional[0] for action in hidden] == [
+        "name",
+        "namespace",
+        "log_level",
+        "event_log",
+        "use_sim_time",
+    ]
     assert there.actions.index(include) > there.actions.index(hidden[-1])
 
 
@@ -223,7 +229,7 @@ def test_two_communications_on_one_topic(target: str, tmp_path: Path) -> None:
     cart.write_text(SHARED, encoding="utf-8")
     models = models_of(cart)
     found = TARGETS[target].findings(models, Configuration())
-    assert [(each.rule, each.severity.value, each.span.line) for each in found] == [
+    assert [(finding.rule, finding.severity.value, finding.span.line) for finding in found] == [
         ("layer-topic", "error", 5),
         ("layer-topic", "error", 9),
     ]
@@ -266,8 +272,8 @@ def test_settings_that_mean_nothing_to_a_layer(usher: robosc.Models) -> None:
     settings = Configuration.model_validate({"retryMs": 5, "onShutdown": ["speed"], "watchdogMs": {"stop": 100}})
     for target in LAYERS:
         found = TARGETS[target].findings(usher, settings)
-        assert [each.severity.value for each in found] == 3 * ["warning"]
-        assert [each.message.split()[0] for each in found] == ['"retryMs"', '"watchdogMs"', '"onShutdown"']
+        assert [finding.severity.value for finding in found] == 3 * ["warning"]
+        assert [finding.message.split()[0] for finding in found] == ['"retryMs"', '"watchdogMs"', '"onShutdown"']
 
 
 def test_says_what_synthesis_added_is_the_reason(usher: robosc.Models) -> None:

@@ -98,10 +98,10 @@ def test_package_lists_what_services_actions_and_managed_nodes_need(
 def test_launch_file_is_python(name: str, files: dict[str, str], managed_files: dict[str, str]) -> None:
     path = {"courier": "launch/courier_controller.launch.py", "managed": "launch/managed_porter.launch.py"}[name]
     tree = ast.parse((files | managed_files)[path])
-    functions = [each.name for each in tree.body if isinstance(each, ast.FunctionDef)]
+    functions = [node.name for node in tree.body if isinstance(node, ast.FunctionDef)]
     assert functions == ["start", "generate_launch_description"]
-    imported = [alias.name for each in tree.body if isinstance(each, ast.ImportFrom) for alias in each.names]
-    used = {each.id for each in ast.walk(tree) if isinstance(each, ast.Name)}
+    imported = [alias.name for node in tree.body if isinstance(node, ast.ImportFrom) for alias in node.names]
+    used = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
     assert set(imported) <= used
 
 

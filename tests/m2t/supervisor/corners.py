@@ -181,7 +181,10 @@ def shared() -> sct.SupervisoryControlModel:
     }
     store = plant(
         "store",
-        {"here": [edge(each, to="there", do=do) for each, do in steps.items()], "there": [edge("u_error", to="here")]},
+        {
+            "here": [edge(event, to="there", do=do) for event, do in steps.items()],
+            "there": [edge("u_error", to="here")],
+        },
         uncontrollable=list(steps),
         variables={"n": "0..9 = 5", "m": "0..9"},
     )

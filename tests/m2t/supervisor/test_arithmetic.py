@@ -59,7 +59,7 @@ def _model(values: list[tuple[str, str]]) -> sct.SupervisoryControlModel:
 @given(st.lists(st.tuples(st.sampled_from(list(_RANGES)), _numbers), min_size=60, max_size=60), st.integers(0, 99))
 def test_arithmetic(values: list[tuple[str, str]], seed: int) -> None:
     made = _model(values)
-    assert sum(len(each.updates) for each in made.plants[1].locations[0].edges) > 30
+    assert sum(len(made_edge.updates) for made_edge in made.plants[1].locations[0].edges) > 30
     walk = Walk(made, Settings(), seed)
     for _ in range(400):
         walk.perform()

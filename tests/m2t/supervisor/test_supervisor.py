@@ -56,14 +56,14 @@ def sources(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
     """The sources of all corner models and of two real ones, each as it is and as if it were large."""
     models = [make() for make in corners.ALL] + [dock(), line_follower()]
     return [
-        write(each, folder, small=small)
+        write(path, folder, small=small)
         for folder, small in ((tmp_path_factory.mktemp("sources"), POLLED), (tmp_path_factory.mktemp("large"), 0))
-        for each in models
+        for path in models
     ]
 
 
 def call(*command: object, cwd: Path | None = None) -> str:
-    words = [str(each) for each in command]
+    words = [str(word) for word in command]
     if shutil.which(words[0]) is None:
         pytest.skip(f"{words[0]} is not installed")
     done = subprocess.run(words, cwd=cwd, capture_output=True, text=True, check=False)
@@ -112,7 +112,7 @@ def test_the_golden_files(golden: Callable[[Path, str], None]) -> None:
 
 def test_two_controllers_fit_in_one_program(tmp_path: Path) -> None:
     models = [corners.swap(), dock()]
-    written = [write(each, tmp_path) for each in models]
+    written = [write(path, tmp_path) for path in models]
     (tmp_path / "main.c").write_text(
         """
         #include "swap_supervisor.h"
@@ -226,9 +226,9 @@ def test_what_could_overflow_is_refused_where_it_stands(update: str, fits: bool)
     made.plants[0].locations[0].edges[0].updates[0].source = Place.parse("big.rscd:3:5-3:17")
     found = supervisor.preconditions(Models(made), Configuration())
     assert bool(found) is not fits
-    for each in found:
-        assert (each.file, each.span.line, each.span.column, each.rule) == ("big.rscd", 3, 5, "c-overflow")
-        assert "64 bits" in each.message
+    for finding in found:
+        assert (finding.file, finding.span.line, finding.span.column, finding.rule) == ("big.rscd", 3, 5, "c-overflow")
+        assert "64 bits" in finding.message
     if fits:
         supervisor.generate(Models(made), Configuration())
 

@@ -24,7 +24,7 @@ class Walk:
         roles = self.loop.engine.roles
         #: Events as the header orders them.
         order = (*roles.cancels, *roles.triggers, *roles.silent, *(e for es in roles.data for e in es), *roles.incoming)
-        self._events = [f"{each.eContainer().name}.{each.name}" for each in order]
+        self._events = [f"{event.eContainer().name}.{event.name}" for event in order]
         self._by_name = dict(zip(self._events, order, strict=True))
         self._inputs = {plant: number for number, plant in enumerate(x for p in model.plants for x in p.inputs)}
 
@@ -71,10 +71,10 @@ class Walk:
         self._happened.append("livelock!")
 
     def _say(self, operation: str, result: bool) -> None:
-        values = [int(each) if isinstance(each, bool) else each for each in self.loop.state.values()]
+        values = [int(value) if isinstance(value, bool) else value for value in self.loop.state.values()]
         enabled = [event for event in self._events if self.loop.enabled(event)]
         parts = (f"{operation}:", *self._happened, f"= {int(result)};", *values)
-        self.said.append(" ".join(map(str, parts)) + ";" + "".join(f" {each}" for each in enabled))
+        self.said.append(" ".join(map(str, parts)) + ";" + "".join(f" {number}" for number in enabled))
         self._happened.clear()
 
     def _value(self, kind: ex.Type) -> tuple[bool | int | str, int]:

@@ -68,13 +68,13 @@ class Peer:
 
     def all(self, kind: str, since: int = 0) -> list[dict[str, Any]]:
         """What the peer said with a certain key, such as `heard` or `goal`."""
-        return [each for each in self.said[since:] if kind in each]
+        return [entry for entry in self.said[since:] if kind in entry]
 
     def wait(self, kind: str, since: int = 0, value: Any = None, seconds: float = PATIENCE) -> dict[str, Any]:
         """The first thing that the peer says with a certain key, and a certain value where one is given."""
 
         def found() -> list[dict[str, Any]]:
-            return [each for each in self.all(kind, since) if value is None or each[kind] == value]
+            return [entry for entry in self.all(kind, since) if value is None or entry[kind] == value]
 
         with self._said_something:
             if not self._said_something.wait_for(found, seconds):
@@ -213,7 +213,7 @@ class Scout:
 
     def events(self, since: Moment, name: str) -> list[dict[str, Any]]:
         """The events of a certain name."""
-        return [each for each in self.log(since) if each["event"] == name]
+        return [entry for entry in self.log(since) if entry["event"] == name]
 
     def output(self, since: Moment | None = None) -> str:
         """What the node printed."""
@@ -222,7 +222,7 @@ class Scout:
 
     def commands(self, since: Moment) -> list[dict[str, Any]]:
         """What the world received on /cmd_vel."""
-        return [each for each in self.world.all("heard", since.world) if each["heard"] == "/cmd_vel"]
+        return [entry for entry in self.world.all("heard", since.world) if entry["heard"] == "/cmd_vel"]
 
     def speeds(self, since: Moment) -> list[float]:
         """The forward speeds that the world received."""
@@ -236,7 +236,7 @@ class Scout:
     def states(self, since: Moment) -> list[dict[str, Any]]:
         """What the node reported of its state."""
         heard = self.world.all("heard", since.world)
-        return [json.loads(each["data"]["data"]) for each in heard if each["heard"] == STATE]
+        return [json.loads(entry["data"]["data"]) for entry in heard if entry["heard"] == STATE]
 
     def until_reported(self) -> None:
         """Waits for a report on all that has happened until now; what comes first may have been on its way already."""
@@ -252,7 +252,7 @@ class Scout:
         return self._last_report()["components"][component]["variables"][name]
 
     def _last_report(self) -> Any:
-        last = next(each for each in reversed(self.world.said) if each.get("heard") == STATE)
+        last = next(entry for entry in reversed(self.world.said) if entry.get("heard") == STATE)
         return json.loads(last["data"]["data"])
 
     @staticmethod

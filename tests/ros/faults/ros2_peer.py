@@ -64,7 +64,10 @@ class Ros:
         return publisher.get_subscription_count()
 
     def asked_for(self, topic):
-        return [each.qos_profile.reliability.name for each in self.node.get_subscriptions_info_by_topic(topic)]
+        return [
+            subscription.qos_profile.reliability.name
+            for subscription in self.node.get_subscriptions_info_by_topic(topic)
+        ]
 
     def time(self, seconds):
         return Time(nanoseconds=int(seconds * 1e9)).to_msg()

@@ -29,7 +29,7 @@ def test_absent_at_start(scout: Scout) -> None:
     scout.until_event(since, ERROR, count=2)
     assert scout.says(since, "/travel: no server within 1000 ms") == 1
     assert scout.ticked_between(since, TRIGGER, ERROR)
-    steps = [each for each in scout.log(since) if each["event"].startswith("action_travel")]
+    steps = [entry for entry in scout.log(since) if entry["event"].startswith("action_travel")]
     assert [step["event"] for step in steps[:4]] == [TRIGGER, ERROR, "action_travel.c_reset", TRIGGER]
     assert steps[1]["time"] - steps[0]["time"] > TIMEOUT - 0.1
     assert steps[2]["time"] - steps[1]["time"] > RETRY - 0.01

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from tests.ros.faults.partners import Moment, Peer, Scout
 
 TRIGGER, RESPONSE, FEEDBACK, ERROR, CANCEL = (
-    f"action_travel.{each}" for each in ("c_trigger", "u_response", "u_feedback", "u_error", "c_cancel")
+    f"action_travel.{event}" for event in ("c_trigger", "u_response", "u_feedback", "u_error", "c_cancel")
 )
 
 

@@ -111,7 +111,9 @@ def test_no_number_is_sent(scout: Scout) -> None:
         assert scout.events(since, "message_move.c_trigger") == []
     scout.until_says(before, "move is withheld: its linear.x would not be finite")
     # In its place what the configuration names, once, though no requirement allows it.
-    assert [each["event"] for each in scout.log(before) if each["direction"] == "outside"] == ["message_halt.c_trigger"]
+    assert [entry["event"] for entry in scout.log(before) if entry["direction"] == "outside"] == [
+        "message_halt.c_trigger"
+    ]
 
 
 @pytest.mark.parametrize(("sent", "stored"), [(30000, 100), (-32768, 0), (101, 100), (-1, 0), (100, 100), (42, 42)])

@@ -14,4 +14,4 @@ def test_all_quoted_messages_are_looked_for() -> None:
     tests = "".join(path.read_text() for path in sorted(HERE.glob("test_*.py")))
     quoted = MESSAGE.findall(DOCUMENTATION.read_text())
     assert len(quoted) > 15
-    assert [each for each in quoted if f'"{each}"' not in tests] == []
+    assert [text for text in quoted if f'"{text}"' not in tests] == []

@@ -38,7 +38,7 @@ def test_shutdown_while_driving(guarded: Scout, number: signal.Signals) -> None:
     assert guarded.process.wait(PATIENCE) == 0
     server.wait("cancel", value=goal)
     guarded.until(lambda: guarded.speeds(since)[-1] == 0.0, "the last command is to halt")
-    last = [each for each in guarded.log(since) if each["direction"] in ("out", "outside")][-1]
+    last = [entry for entry in guarded.log(since) if entry["direction"] in ("out", "outside")][-1]
     assert (last["direction"], last["event"]) == HALT
     assert last["data"] == {"value": {"linear": {"x": 0.0}}}
     assert "Traceback" not in guarded.output()
@@ -53,7 +53,7 @@ def test_shutdown_before_acceptance(guarded: Scout) -> None:
     since = guarded.now()
     os.kill(guarded.process.pid, signal.SIGINT)
     # It waits no longer than `action_timeout_ms` for the goal's acceptance: this is decided as soon as it ends.
-    guarded.until(lambda: HALT in [(each["direction"], each["event"]) for each in guarded.log(since)], "it stops")
+    guarded.until(lambda: HALT in [(entry["direction"], entry["event"]) for entry in guarded.log(since)], "it stops")
     server.do("decide", number=goal, accept=True)
     server.wait("cancel", heard, value=goal)
     assert guarded.process.wait(PATIENCE) == 0

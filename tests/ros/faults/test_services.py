@@ -9,7 +9,7 @@ import pytest
 if TYPE_CHECKING:
     from tests.ros.faults.partners import Scout
 
-TRIGGER, RESPONSE, ERROR = (f"service_lamp.{each}" for each in ("c_trigger", "u_response", "u_error"))
+TRIGGER, RESPONSE, ERROR = (f"service_lamp.{event}" for event in ("c_trigger", "u_response", "u_error"))
 #: Seconds, as `controller-config.json` has them.
 TIMEOUT, RETRY = 1.0, 0.4
 LIT = {"success": True, "message": "lit"}
@@ -27,7 +27,7 @@ def test_absent_at_start(scout: Scout) -> None:
     server.do("answer_at_once", fields=LIT)
     scout.until_state("Lamp", "lit")
     assert scout.variable("Lamp", "answer") == "lit"
-    steps = [each for each in scout.log(since) if each["event"].startswith("service_lamp")]
+    steps = [entry for entry in scout.log(since) if entry["event"].startswith("service_lamp")]
     assert [step["event"] for step in steps[:4]] == [TRIGGER, ERROR, "service_lamp.c_reset", TRIGGER]
     assert steps[1]["time"] - steps[0]["time"] > TIMEOUT - 0.1
     assert steps[2]["time"] - steps[1]["time"] > RETRY - 0.01

@@ -51,7 +51,7 @@ def two_models(controller: Compiled, processes: Processes) -> None:
     processes.wait_until(lambda: heard(world, "/cmd_vel", speed)[-1:] == [0.0], "the scout halts")
     world.do("publish", topic="/count", fields={"data": 3})
     processes.wait_until(lambda: heard(world, "/sum", plain)[-1:] == [47], "the courier counts on")
-    robots = {json.loads(each)["robot"] for each in heard(world, "/two_in_one/state", plain)}
+    robots = {json.loads(report)["robot"] for report in heard(world, "/two_in_one/state", plain)}
     assert robots == {"Scout", "Courier"}
     assert processes.stop(process) == 0
 
@@ -87,7 +87,7 @@ def two_components(controller: Compiled, processes: Processes) -> None:
 
 def heard(world: Peer, topic: str, value: Callable[[Any], Any]) -> list[Any]:
     """The values that the world heard on a topic."""
-    return [value(each["data"]) for each in world.all("heard") if each["heard"] == topic]
+    return [value(entry["data"]) for entry in world.all("heard") if entry["heard"] == topic]
 
 
 def speed(twist: Any) -> Any:

@@ -29,7 +29,7 @@ def test_silent_with_watchdog(scout: Scout) -> None:
     scout.world.do("repeat", topic="/scan", fields={"ranges": [1.0, PACE]}, hz=20)
     scout.until_says(since, "/scan: speaks again")
     assert scout.says(since, "/scan: silent for 500 ms") == 1
-    assert "outside" not in {each["direction"] for each in scout.log(since)}
+    assert "outside" not in {entry["direction"] for entry in scout.log(since)}
 
 
 def test_silent_with_watchdog_that_stops(guarded: Scout) -> None:
@@ -46,16 +46,16 @@ def test_silent_with_watchdog_that_stops(guarded: Scout) -> None:
     scout.until_says(since, "/travel: cancelled by the controller itself, an error to the model")
     assert scout.says(since, "/travel: cancelled by someone else") == 0
     # The server may hear of the cancel before the node has got to its last message.
-    scout.until(lambda: [each for each in scout.log(since) if each["direction"] == "outside"], "it sends onShutdown")
-    outside = [each for each in scout.log(since) if each["direction"] == "outside"]
-    assert [each["event"] for each in outside] == ["message_halt.c_trigger"]
+    scout.until(lambda: [entry for entry in scout.log(since) if entry["direction"] == "outside"], "it sends onShutdown")
+    outside = [entry for entry in scout.log(since) if entry["direction"] == "outside"]
+    assert [entry["event"] for entry in outside] == ["message_halt.c_trigger"]
     tripped = scout.now()
     # No requirement allows to halt here: it is sent all the same, and then nothing until the sensor speaks.
     scout.until(lambda: scout.speeds(since)[-1] == 0.0, "the robot is told to halt")
     halted = scout.now()  # what was sent before has arrived now
     scout.send("/light", data=True)
     scout.nothing(0.7)
-    assert [each["event"] for each in scout.log(tripped) if each["direction"] == "out"] == []
+    assert [entry["event"] for entry in scout.log(tripped) if entry["direction"] == "out"] == []
     assert scout.speeds(halted) == []
     scout.send("/light", data=False)
     scout.send("/travel_order", data=False)

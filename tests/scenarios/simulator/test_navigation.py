@@ -51,7 +51,7 @@ def test_it_arrives() -> None:
     assert (world.pose.x, world.pose.y) == pytest.approx((2.5, 1.2), abs=0.12)
     told = [data for _, what, data in navigation.events if what == "feedback"]
     assert told[0]["distance_remaining"] > told[-1]["distance_remaining"]
-    assert {each["number_of_recoveries"] for each in told} == {0}
+    assert {feedback["number_of_recoveries"] for feedback in told} == {0}
 
 
 def test_it_drives_around_what_is_not_on_the_map() -> None:
@@ -102,7 +102,7 @@ def test_a_way_around_a_wall() -> None:
     assert way is not None
     assert way[-1] == (2.0, 0.0)
     assert max(y for _, y in way) > 1.1
-    assert min(Segment(1.0, -2.0, 1.0, 1.0).distance(*each) for each in way) > 0.15
+    assert min(Segment(1.0, -2.0, 1.0, 1.0).distance(*leg) for leg in way) > 0.15
 
 
 def test_no_way_into_what_is_blocked() -> None:
