@@ -51,17 +51,23 @@ def shared_folder(pytestconfig: pytest.Config) -> Path:
 
 @pytest.hookimpl(trylast=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Tests over ROS come first: they wait, and others fill the time. What they need is built meanwhile."""
+    """Tests over ROS come first: they wait, and others fill the time. What they need is built meanwhile.
+
+    At the end come short tests, which leave no process idle.
+    """
     for item in items:
         if item.get_closest_marker("xdist_group") is None:
             item.add_marker(pytest.mark.xdist_group(item.path.name))
-    items.sort(key=_turn)
+    long = {item.path for item in items if item.get_closest_marker("slow") or item.get_closest_marker("build")}
+    items.sort(key=lambda item: _turn(item, item.path in long))
 
 
-def _turn(item: pytest.Item) -> int:
+def _turn(item: pytest.Item, is_long: bool) -> int:
     if ROS in item.path.parents:
         return 2 if item.get_closest_marker("build") else 0
-    return 1 if GENERATORS in item.path.parents else 3
+    if GENERATORS in item.path.parents:
+        return 1
+    return 3 if is_long else 4
 
 
 @pytest.fixture

@@ -234,3 +234,15 @@ def test_what_the_page_names_is_there() -> None:
     named = set(re.findall(r"`((?:robosc|grammar|metamodel|docs|tests)/[\w./]+)`", PAGE))
     assert len(named) > 40
     assert sorted(path for path in named if not (ROOT / path).exists() and not (ROOT / f"{path}.py").exists()) == []
+
+
+@pytest.mark.parametrize("folder", ["robosc", "tests", "benchmarks", "examples"])
+def test_variables_are_named_for_what_they_hold(folder: str) -> None:
+    texts = {path: path.read_text(encoding="utf-8") for path in sorted((ROOT / folder).rglob("*.py"))}
+    assert [
+        f"{path.relative_to(ROOT)}:{node.lineno}: a variable says what it holds: `edge`, not `each`"
+        for path, text in texts.items()
+        if re.search(r"\beach\b", text)
+        for node in ast.walk(ast.parse(text))
+        if (isinstance(node, ast.Name) and node.id == "each") or (isinstance(node, ast.arg) and node.arg == "each")
+    ] == []

@@ -59,9 +59,9 @@ def test_what_is_in_the_wheel(wheel: Path) -> None:
 
 
 def test_the_installed_wheel_generates_the_same(wheel: Path, tmp_path: Path) -> None:
-    run(sys.executable, "-m", "venv", "environment", cwd=tmp_path)
+    run(sys.executable, "-m", "venv", "--without-pip", "environment", cwd=tmp_path)
     programs = tmp_path / "environment" / "bin"
-    run(programs / "python", "-m", "pip", "install", "--quiet", wheel, cwd=tmp_path)
+    run(sys.executable, "-m", "pip", "--python", programs / "python", "install", "--quiet", wheel, cwd=tmp_path)
     model = tmp_path / "elsewhere"
     model.mkdir()
     for path in MODEL.glob("*"):

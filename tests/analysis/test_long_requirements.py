@@ -39,6 +39,7 @@ def counter(kind: type[ex.BinaryExpression], *, left: bool) -> sct.SupervisoryCo
     return made
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("left", [True, False], ids=["left", "right"])
 @pytest.mark.parametrize("kind", [ex.Conjunction, ex.Disjunction])
 def test_long_requirements_take_no_stack(kind: type[ex.BinaryExpression], left: bool) -> None:

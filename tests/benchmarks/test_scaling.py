@@ -50,7 +50,7 @@ def test_the_command_writes_the_page_and_the_plots(quick):
 
 def test_a_limit_ends_a_series(tmp_path):
     command = [sys.executable, ROOT / "benchmarks" / "scaling.py", "--families", "warehouse", "--tools", "definition"]
-    done = subprocess.run([*command, "--limit", "9", "--output", tmp_path], capture_output=True, text=True, check=False)
+    done = subprocess.run([*command, "--limit", "4", "--output", tmp_path], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     *finished, last = json.loads((tmp_path / "scaling.json").read_text())["families"]["warehouse"]["definition"]
     assert all(point["finished"] for point in finished)

@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING
 
+import pytest
+
 from robosc.diagnostics import Diagnostic, Severity, Span, as_text
 
 if TYPE_CHECKING:
@@ -15,6 +17,7 @@ if TYPE_CHECKING:
 FAULTS = 2000
 
 
+@pytest.mark.slow
 def test_a_line_with_thousands_of_faults(run: Run, tmp_path: Path) -> None:
     file = tmp_path / "line.rscd"
     file.write_text(f"robot R {{{'component A { x } ' * FAULTS}}}", encoding="utf-8")

@@ -149,6 +149,7 @@ def skeleton(notation: str, text: str) -> list[str]:
     return [node.tag.rpartition("}")[2] for node in root.iter()]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("notation", GRAPH_NOTATIONS)
 @pytest.mark.parametrize("states", [True, False])
 @settings(max_examples=60, deadline=None)

@@ -187,6 +187,7 @@ def test_a_failure_of_any_change_undoes_all(
         }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("again", [False, True], ids=["once", "again and again"])
 @pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT])
 def test_a_signal_at_any_change_leaves_all_or_nothing(tmp_path: Path, sent: signal.Signals, again: bool) -> None:

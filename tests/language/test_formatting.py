@@ -115,6 +115,7 @@ def layouts(draw: st.DrawFn) -> tuple[str, str]:
     return path.read_text(encoding="utf-8"), "".join(parts)
 
 
+@pytest.mark.slow
 @settings(max_examples=120, deadline=None, suppress_health_check=list(HealthCheck))
 @given(layouts())
 def test_whatever_the_layout(texts: tuple[str, str]) -> None:
@@ -129,6 +130,7 @@ def test_whatever_the_layout(texts: tuple[str, str]) -> None:
     assert re.search(r"\n\n\n|\{\n\n|\n\n *\}", result) is None
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.relative_to(ROOT).as_posix())
 def test_blanks_between_words_decide_nothing(path: Path) -> None:
     text = " ".join(word for _, word in words(path))

@@ -260,6 +260,7 @@ def test_no_words_are_too_strange(tmp_path: Path, words: list[str], framed: bool
 PIECES = MODEL.replace("\n", " \n ").split(" ")
 
 
+@pytest.mark.slow
 @settings(deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(
     st.lists(

@@ -53,6 +53,7 @@ def transformed(robot: robosc.Robot) -> None:
     assert [fault for _, fault in faults(graph)] == []
 
 
+@pytest.mark.slow
 def test_a_random_robot_is_transformed(path: Path) -> None:
     clean = 0
     for seed in range(MODELS):

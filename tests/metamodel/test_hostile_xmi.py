@@ -141,6 +141,7 @@ def test_what_no_text_could_say_is_said(
     assert {diagnostic.rule for diagnostic in error.value.diagnostics} == {"xmi"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("file", [ROBOT, GRAPH, "LineFollower.sct.xmi"])
 def test_any_change_ends_in_findings(saved: Mapping[str, str], tmp_path: Path, file: str) -> None:
     for name, text in saved.items():

@@ -300,6 +300,7 @@ def test_a_truncated_file_is_a_finding(folder: Path, texts: dict[str, str], name
         assert [finding.rule for finding in findings(folder / name)] == ["syntax"]
 
 
+@pytest.mark.slow
 @settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(data=st.data())
 def test_no_damage_makes_anything_but_findings(folder: Path, texts: dict[str, str], data: st.DataObject) -> None:

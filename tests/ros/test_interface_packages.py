@@ -1,47 +1,32 @@
 """The packages of ROS types that no registry has: they build, and the models that use them fit."""
 
-import os
-import shutil
+from __future__ import annotations
+
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 
 from robosc.checks import check
 from robosc.language import read
 from robosc.ros_types import RosTypes
-from tests.ros.installations import find_ros1, find_ros2
+
+if TYPE_CHECKING:
+    from tests.ros.workspaces import Workspace
 
 HERE = Path(__file__).parent
 PACKAGES = HERE / "interfaces"
 EXAMPLES = sorted((HERE.parents[1] / "examples").glob("*/*.rscd"))
 LISTINGS = HERE.parents[2] / "shared" / "thesis" / "models"
-#: What the two generators of interfaces need beside what the nodes need.
-NEEDED = {"ros1": ["actionlib_msgs", "message_generation"], "ros2": ["action_msgs", "rosidl_default_generators"]}
 
 
-@pytest.mark.parametrize("version", ["ros1", "ros2"])
-def test_packages_build(version: str, tmp_path: Path) -> None:
-    found = find_ros1() if version == "ros1" else find_ros2()
-    environment = found.ros.environment if found.ros else {}
-    folders = [Path(part) for part in environment.get("ROS_PACKAGE_PATH", "").split(os.pathsep) if part]
-    folders += [Path(part) / "share" for part in environment.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if part]
-    there = {
-        package for package in NEEDED[version] for folder in folders if (folder / package / "package.xml").exists()
-    }
-    missing = [*found.missing, *(f"no {package}" for package in NEEDED[version] if package not in there)]
-    if found.ros is None or missing:
-        reason = f"{version}: {', '.join(missing)}"
-        if version in os.environ.get("ROBOSC_REQUIRE", "").split(","):
-            pytest.fail(reason)
-        pytest.skip(reason)
-    shutil.copytree(PACKAGES / version, tmp_path / "src")
-    found.ros.built(tmp_path)
-    headers = {path.name for path in tmp_path.rglob("*.h*")}
+def test_packages_build(workspace: Workspace) -> None:
+    headers = {path.name for path in workspace.folder.rglob("*.h*")}
     expected = {
-        "ros1": {"BoundingBoxes.h", "ObjectCount.h", "NavigateToPoseAction.h", "LightBulbService.h"},
-        "ros2": {"bounding_boxes.hpp", "object_count.hpp", "navigate_to_pose.hpp", "light_bulb_service.hpp"},
+        1: {"BoundingBoxes.h", "ObjectCount.h", "NavigateToPoseAction.h", "LightBulbService.h"},
+        2: {"bounding_boxes.hpp", "object_count.hpp", "navigate_to_pose.hpp", "light_bulb_service.hpp"},
     }
-    assert headers >= expected[version]
+    assert headers >= expected[workspace.ros.version]
 
 
 @pytest.mark.parametrize("model", EXAMPLES, ids=lambda model: model.stem)

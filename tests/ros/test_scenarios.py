@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from examples.simulator.scenarios import SCENARIOS
+from tests.ros.installations import find_ros2
 from tests.ros.running import Runner
 from tests.ros.workspaces import EXAMPLES, Workspace, middleware
 from tests.scenarios.rules.books import BOOKS
@@ -26,8 +27,6 @@ if TYPE_CHECKING:
 SPEED = 4
 #: Seconds of the world for a command on its way, and for the robot to come to rest.
 ALLOWANCE = 1.0
-#: `ros2` only where there is an rclcpp to build with.
-KINDS = ["ros1", "run-ros2", "ros2"]
 #: The scenario with a supervisory layer: its package, that of the controller behind it, and that one's model.
 LAYERS = {
     "supervised_line_follower": (
@@ -50,11 +49,12 @@ class LiveRun:
     node_output: str
 
 
-@pytest.fixture(scope="session", params=KINDS)
+@pytest.fixture(scope="session", params=["ros1", "ros2"])
 def kind(request: pytest.FixtureRequest) -> Workspace | Runner:
-    """Nodes of one kind: compiled, or run straight from their models."""
-    fixtures = {"ros1": "ros1_workspace", "run-ros2": "run_ros2", "ros2": "ros2_workspace"}
-    made: Workspace | Runner = request.getfixturevalue(fixtures[request.param])
+    """Nodes of each ROS: compiled; in ROS 2 run straight from their models where there is no rclcpp to build with."""
+    compiled = request.param == "ros1" or find_ros2().ros is not None
+    made: Workspace | Runner
+    made = request.getfixturevalue(f"{request.param}_workspace" if compiled else f"run_{request.param}")
     return made
 
 

@@ -294,6 +294,7 @@ _STEPS = st.lists(
 )
 
 
+@pytest.mark.slow
 @settings(max_examples=40, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(steps=_STEPS)
 def test_what_goes_out_is_what_is_logged(steps: list[tuple[str, int]], tmp_path: Path) -> None:

@@ -178,6 +178,7 @@ def needs(following: bool, recorder: str, tags: Sequence[int]) -> bool:
     return planner and (recorder != "empty" or (len(tags) > 0 and tags[0] > 1))
 
 
+@pytest.mark.slow
 @settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(
     st.lists(

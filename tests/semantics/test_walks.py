@@ -53,6 +53,7 @@ assert done == [True]
 """
 
 
+@pytest.mark.slow
 def test_a_long_expression_on_a_small_stack(tmp_path: Path) -> None:
     path = write("operators", 1800, tmp_path)
     done = subprocess.run([sys.executable, "-c", SCRIPT, path], cwd=ROOT, capture_output=True, text=True, check=False)

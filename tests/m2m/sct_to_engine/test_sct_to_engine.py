@@ -270,6 +270,7 @@ def _supervised(made: sct.SupervisoryControlModel) -> sct.SupervisoryControlMode
     return made
 
 
+@pytest.mark.slow
 @settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
 @given(sct_models(), st.randoms(use_true_random=False))
 def test_an_engine_model_means_what_its_sct_model_does(made: sct.SupervisoryControlModel, random) -> None:
@@ -356,6 +357,7 @@ def _long(operators: int, *, nested: bool) -> sct.SupervisoryControlModel:
     return made
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("nested", [False, True])
 def test_long_expressions_need_no_deep_calls(nested: bool) -> None:
     """In a thread with half a megabyte, under the limit that Python sets."""

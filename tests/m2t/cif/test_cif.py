@@ -151,6 +151,7 @@ def test_plain_models_come_back_as_they_were() -> None:
     ]
 
 
+@pytest.mark.slow
 @settings(max_examples=60, deadline=None)
 @given(given=sct_models())
 def test_every_model_keeps_its_meaning(given: sct.SupervisoryControlModel) -> None:
