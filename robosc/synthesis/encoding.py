@@ -392,10 +392,13 @@ def _groups_of_wide(model: sct.SupervisoryControlModel) -> dict[Element, list[El
 
 def _computations(model: sct.SupervisoryControlModel) -> Iterator[list[Element]]:
     """What each comparison reads, what each assignment reads and writes, and what each edge counts."""
+    inner: set[object] = set()
     for _, node in tree(model):
         if isinstance(node, sct.Update):
             yield [node.variable, *referenced(node.value)]
         elif isinstance(node, sct.Edge):
             yield [update.variable for update in node.updates if update.variable in referenced(update.value)]
-        elif type(node) in _COMPARISON:
+        elif type(node) in _COMPARISON and node not in inner:
+            # It reads what the comparisons in it read: they need no look of their own.
+            inner.update(operand for _, operand in tree(node) if type(operand) in _COMPARISON)
             yield list(referenced(node))
