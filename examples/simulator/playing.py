@@ -8,7 +8,7 @@ import time
 from .world import STEP
 
 #: How long the world runs on without a command that is due, in its own time; how long it waits then, in real time.
-ANSWER_WITHIN, PATIENCE = 0.25, 30.0
+ANSWER_WITHIN, PATIENCE = 0.25, 120.0
 #: As long may the first answer take: a controller hears of the clock late, and counts its period from then.
 FIRST_ANSWER_WITHIN = 2.0
 #: How long the time at the start is told, in real time, before the world goes on.

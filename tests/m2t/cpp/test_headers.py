@@ -38,7 +38,7 @@ def run(compiler: str, source: str, sanitizers: str, files: dict[str, str], fold
     subprocess.run([compiler, *options, Path(__file__).parent / source, "-o", program], check=True)
     # The program's addresses stay where ThreadSanitizer expects them.
     command = ["setarch", "--addr-no-randomize", program, folder]
-    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=300)
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=900)
     return done.returncode, done.stdout, done.stderr
 
 
@@ -75,7 +75,7 @@ def test_compiles_alone(header: str) -> None:
         pytest.skip(f"no g++, or no {header.partition('/')[0].removeprefix('robosc_')}")
     command = ["g++", "-std=c++17", "-fsyntax-only", *WARNINGS, f"-I{INCLUDE}", *found, "-x", "c++", "-"]
     text = f'#include "{header}"\n'
-    done = subprocess.run(command, input=text, capture_output=True, text=True, check=False, timeout=300)
+    done = subprocess.run(command, input=text, capture_output=True, text=True, check=False, timeout=900)
     assert (done.returncode, done.stderr) == (0, "")
 
 

@@ -156,6 +156,6 @@ def build(
 def run(built: Path, script: Sequence[str], *arguments: str) -> list[str]:
     """What the program says, a line for each operation of the script."""
     command = [built, *arguments]
-    done = subprocess.run(command, input="\n".join(script), capture_output=True, text=True, check=False, timeout=60)
+    done = subprocess.run(command, input="\n".join(script), capture_output=True, text=True, check=False, timeout=600)
     assert done.returncode == 0, done.stderr
     return done.stdout.splitlines()
