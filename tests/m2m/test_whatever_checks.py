@@ -1,12 +1,10 @@
 """What the checks let pass can be transformed, and no text at all breaks reading and checking.
 
-Models are the repository's own, and random ones. `tests/fuzz` adds faults to them. The environment variable
-ROBOSC_MODELS says how many to try.
+Models are the repository's own, and random ones. `tests/fuzz` adds faults to them.
 """
 
 from __future__ import annotations
 
-import os
 from typing import TYPE_CHECKING
 
 import pytest
@@ -21,12 +19,13 @@ from robosc.metamodel import robosc
 from robosc.metamodel.validity import faults
 from tests.fuzz.mutants import LIBRARIES, sources
 from tests.random_robots import random_robot
+from tests.searching import examples
 
 if TYPE_CHECKING:
     from pathlib import Path
 
 SOURCES = sources()
-MODELS = int(os.environ.get("ROBOSC_MODELS", "50"))
+MODELS = examples(50)
 
 
 def examined(path: Path) -> tuple[robosc.Base | None, list[Diagnostic]]:

@@ -10,12 +10,13 @@ from robosc.semantics.printing import SctPrinter
 from robosc.semantics.roles import event_name
 from robosc.synthesis import Synthesis, encoding, synthesize
 from tests.random_sct import sct_models
+from tests.searching import examples
 from tests.synthesis.oracle import Oracle
 
 pytestmark = pytest.mark.slow
 
 RANDOM_MODELS = settings(
-    max_examples=70, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
+    max_examples=examples(35), deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
 )
 
 

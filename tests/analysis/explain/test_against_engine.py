@@ -25,12 +25,13 @@ from robosc.synthesis.decoding import Value, text
 from tests.analysis.test_blocking import Replay, is_blocked, is_never_marked
 from tests.analysis.test_observations import Definitions
 from tests.random_sct import sct_models
+from tests.searching import examples
 from tests.synthesis.oracle import Oracle, values_of
 from tests.synthesis.test_against_oracle import RANDOM_MODELS
 
 pytestmark = pytest.mark.slow
 
-SOME_MODELS = settings(RANDOM_MODELS, max_examples=25)
+SOME_MODELS = settings(RANDOM_MODELS, max_examples=examples(12))
 
 
 def supervised(model: sct.SupervisoryControlModel) -> Engine:

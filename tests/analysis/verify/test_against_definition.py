@@ -13,6 +13,7 @@ from robosc.synthesis import acceleration, encoding, synthesize
 from tests.analysis.verify.explicit import Explicit
 from tests.random_sct import sct_models
 from tests.sct_models import edge, model, plant
+from tests.searching import examples
 from tests.synthesis.oracle import State
 
 pytestmark = pytest.mark.slow
@@ -39,7 +40,7 @@ def supervised_models(draw: st.DrawFn) -> sct.SupervisoryControlModel:
 
 
 @given(supervised_models())
-@settings(max_examples=40, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
+@settings(max_examples=examples(20), suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
 def test_random_models(model: sct.SupervisoryControlModel) -> None:
     explicit = Explicit(model)
     assume(len(explicit.states) < 100)
@@ -161,7 +162,7 @@ def internal_models(draw: st.DrawFn) -> sct.SupervisoryControlModel:
 
 
 @given(internal_models())
-@settings(max_examples=40, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=examples(20), suppress_health_check=[HealthCheck.too_slow])
 def test_internal_events(made: sct.SupervisoryControlModel) -> None:
     by_name = {verdict.property: verdict for verdict in verify_system(made)}
     check_silent_events(Explicit(made), by_name)
@@ -171,7 +172,7 @@ def test_internal_events(made: sct.SupervisoryControlModel) -> None:
 
 
 @given(sct_models())
-@settings(max_examples=40, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
+@settings(max_examples=examples(20), suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
 def test_what_synthesis_makes_keeps_its_promises(model: sct.SupervisoryControlModel) -> None:
     model.supervisor = synthesize(model).supervisor
     assume(model.supervisor is not None)

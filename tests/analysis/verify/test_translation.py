@@ -21,6 +21,7 @@ from tests.m2t.supervisor import corners
 from tests.m2t.supervisor.test_supervisor import dock
 from tests.random_sct import sct_models
 from tests.sct_models import disables, edge, model, needs, plant
+from tests.searching import examples
 
 pytestmark = pytest.mark.slow
 
@@ -112,7 +113,7 @@ def test_the_examples_are_translated_faithfully(name: str) -> None:
     assert in_c.evidence.startswith(f"{models.sct.supervisor.controlledStates:,} states, ")
 
 
-@settings(max_examples=12, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
+@settings(max_examples=examples(6), suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
 @given(sct_models())
 def test_random_models_are_translated_faithfully(made: sct.SupervisoryControlModel) -> None:
     if supervised(made).supervisor is None:

@@ -17,6 +17,7 @@ from robosc.synthesis import synthesize
 from tests.m2m.sct_to_engine import oracle
 from tests.random_sct import sct_models
 from tests.sct_models import edge, model, plant
+from tests.searching import examples
 
 _SYMBOLS = {
     ex.Equation: "==", ex.Inequation: "!=", ex.LessThan: "<", ex.LessOrEqual: "<=", ex.GreaterThan: ">",
@@ -271,7 +272,7 @@ def _supervised(made: sct.SupervisoryControlModel) -> sct.SupervisoryControlMode
 
 
 @pytest.mark.slow
-@settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=examples(60), deadline=None, suppress_health_check=list(HealthCheck))
 @given(sct_models(), st.randoms(use_true_random=False))
 def test_an_engine_model_means_what_its_sct_model_does(made: sct.SupervisoryControlModel, random) -> None:
     _supervised(made)

@@ -1,6 +1,5 @@
-"""The engine in C does what the interpreter does, event for event: `ROBOSC_MODELS=200` tries more models."""
+"""The engine in C does what the interpreter does, event for event: `benchmarks/search.py` tries more models."""
 
-import os
 import tempfile
 from pathlib import Path
 
@@ -17,14 +16,14 @@ from tests.engine.robots import robots
 from tests.m2t.supervisor.driver import build, run
 from tests.m2t.supervisor.walk import Walk
 from tests.random_sct import sct_models
+from tests.searching import TIMES, examples
 
 pytestmark = pytest.mark.build
 
-MODELS = int(os.environ.get("ROBOSC_MODELS", "8"))
 _few = settings(
-    max_examples=MODELS,
+    max_examples=examples(8),
     deadline=None,
-    derandomize="ROBOSC_MODELS" not in os.environ,
+    derandomize=TIMES == 1,
     phases=(Phase.explicit, Phase.generate),
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much, HealthCheck.data_too_large],
 )
