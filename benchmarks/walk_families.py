@@ -125,7 +125,7 @@ def states(number: int) -> Files:
 
 
 def components(number: int) -> Files:
-    """Components that know nothing of each other."""
+    """Components that know nothing of each other: eight lines each, up to 40,000 lines."""
     return _robot(
         *(
             _behaviour(
@@ -137,6 +137,27 @@ def components(number: int) -> Files:
             for i in range(number)
         ),
         *(f"requirement move{i} needs Door{i}.closed" for i in range(number)),
+    )
+
+
+def lines(number: int) -> Files:
+    """Components of ten lines, up to 50,000 lines, and a requirement on nothing behind them."""
+    return _robot(
+        *(
+            f"""\
+component C{i} {{
+  outgoing message m{i} with type: boolean
+  incoming message k{i} with type: none
+  behaviour {{
+    variable v: boolean = false
+    initial marked state A {{ on response from m{i} do v := value goto B }}
+    state B {{ on response from m{i} do v := value goto A }}
+  }}
+}}
+requirement k{i} needs C{i}.A or C{max(i - 1, 0)}.v"""
+            for i in range(number)
+        ),
+        "requirement Nobody.nowhere needs C0.A",
     )
 
 
@@ -192,9 +213,9 @@ def faults(number: int) -> Files:
 
 
 FAMILIES: Mapping[str, Callable[[int], Files]] = {
-    each.__name__: each
-    for each in (
-        *(provides, imports, imports_beside, members, operators, namespaces, states, components, topics),
+    family.__name__: family
+    for family in (
+        *(provides, imports, imports_beside, members, operators, namespaces, states, components, lines, topics),
         *(enum_rules, requirements, faults),
     )
 }

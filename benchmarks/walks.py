@@ -34,7 +34,7 @@ from robosc.language import read  # noqa: E402
 
 SIZES = (100, 400, 1600, 5000)
 TARGETS = ("cif", "supervisor", "ros1", "ros2", "xmi")
-MOST = 1.3
+MOST = 1.2
 
 HEAD = """\
 # Long models
@@ -51,7 +51,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--families", nargs="+", choices=list(FAMILIES), default=list(FAMILIES))
     parser.add_argument("--sizes", nargs="+", type=int, default=SIZES)
-    parser.add_argument("--limit", type=int, default=120, help="the seconds of the processor that a model may take")
+    parser.add_argument("--limit", type=int, default=600, help="the seconds of the processor that a model may take")
     parser.add_argument("--output", type=Path, help="a folder for the page and what is kept")
     parser.add_argument("--machine", default="two shared cores", help="what the page says of the machine")
     parser.add_argument("--one", nargs=3, metavar=("FAMILY", "N", "FOLDER"), help=argparse.SUPPRESS)
@@ -66,7 +66,9 @@ def main() -> int:
     for family in options.families:
         results["families"][family] = [_measured(family, number, options.limit) for number in options.sizes]
         kept.write_text(json.dumps(results, indent=1, sort_keys=True) + "\n")
-        print(family, *(f"{each['seconds']:.1f}" for each in results["families"][family]), file=sys.stderr, flush=True)
+        print(
+            family, *(f"{point['seconds']:.1f}" for point in results["families"][family]), file=sys.stderr, flush=True
+        )
     (options.output or ROOT / "docs").joinpath("walks.md").write_text(page(results))
     steep = [family for family, points in results["families"].items() if exponent(points) >= MOST]
     print(*(f"{family} grows faster than N^{MOST}" for family in steep), sep="\n", file=sys.stderr)
@@ -115,7 +117,7 @@ def exponent(points: list[dict[str, Any]]) -> float:
     if len(finished) < 2:
         return float("inf")
     slope = linear_regression(
-        [log(each["n"]) for each in finished], [log(max(each["seconds"], 0.01)) for each in finished]
+        [log(point["n"]) for point in finished], [log(max(point["seconds"], 0.01)) for point in finished]
     ).slope
     return float(slope)
 
@@ -129,14 +131,16 @@ def page(results: dict[str, Any]) -> str:
         f"| --- |{' ---: |' * (len(sizes) + 3)}",
     ]
     for family in FAMILIES:
-        points = {each["n"]: each for each in results["families"].get(family, ())}
+        points = {point["n"]: point for point in results["families"].get(family, ())}
         if not points:
             continue
         title = (FAMILIES[family].__doc__ or family).partition("\n")[0].rstrip(".")
         cells = [_seconds(points.get(size)) for size in sizes]
         memory = max(point["memory"] for point in points.values())
         measured = [points[size] for size in sizes if size in points]
-        steep = [f"{exponent(each):.2f}" for each in (measured, [each for each in measured if each["finished"]][-2:])]
+        steep = [
+            f"{exponent(series):.2f}" for series in (measured, [point for point in measured if point["finished"]][-2:])
+        ]
         lines.append(f"| {title} | {' | '.join(cells)} | {memory:.0f} | {' | '.join(steep)} |")
     return "\n".join([*lines, ""])
 

@@ -9,12 +9,11 @@ from pathlib import Path
 import pytest
 
 import robosc
+from benchmarks import walks
 from benchmarks.walk_families import FAMILIES, write
-from benchmarks.walks import exponent as slope
-from benchmarks.walks import page
 from robosc.checks import check
 from robosc.diagnostics import ModelError
-from robosc.language import Documents, read
+from robosc.language import read
 from robosc.metamodel import sct
 
 pytestmark = pytest.mark.slow
@@ -102,42 +101,23 @@ def test_generating(family, tmp_path):
 
 def test_data_plants_are_as_long_as_the_text(tmp_path):
     model = robosc.to_sct(robosc.load(write("provides", 50, tmp_path)))
-    assert sum(1 for each in model.eAllContents() if isinstance(each, sct.Edge)) < 60
+    assert sum(1 for element in model.eAllContents() if isinstance(element, sct.Edge)) < 60
 
 
 def test_the_page_in_the_documentation_is_that_of_the_results():
     results = json.loads((ROOT / "benchmarks" / "walks.json").read_text())
-    assert (ROOT / "docs" / "walks.md").read_text() == page(results)
+    assert (ROOT / "docs" / "walks.md").read_text() == walks.page(results)
     for family, points in results["families"].items():
-        assert slope(points) < MOST, family
-        assert slope(points[-2:]) < MOST, f"the two longest of {family}"
+        assert walks.exponent(points) < walks.MOST, family
+        assert walks.exponent(points[-2:]) < walks.MOST, f"the two longest of {family}"
 
 
-def lines(number: int) -> str:
-    """A robot of ten lines for each of as many components."""
-    parts = [
-        f"""component C{i} {{
-          outgoing message m{i} with type: none
-          incoming message k{i} with type: boolean
-          behaviour {{
-            variable v: boolean = false
-            initial marked state A {{ on response from k{i} do v := value goto B }}
-            state B {{ transition if v goto A }}
-          }}
-        }}
-        requirement C{i}.m{i} needs C{i}.A and C{max(i - 1, 0)}.v"""
-        for i in range(number)
-    ]
-    return "\n".join(["robot Long {", *parts, "}", ""])
-
-
-@pytest.mark.parametrize("broken", [False, True])
-def test_a_model_of_thousands_of_lines(broken):
+def test_thousands_of_lines_after_a_fault(tmp_path):
     counts = []
-    for number in (1, 100, 400):
-        text = lines(number).replace("needs C7.A", "needs needs C7.A" if broken else "needs C7.A")
-        documents = Documents({"model.rscd": text})
-        read_calls, found = calls(lambda: read("model.rscd", documents=documents))  # noqa: B023
-        check_calls, _ = calls(check, found.base, found.findings)
-        counts.append(read_calls + check_calls)
-    assert log(counts[2] / counts[1]) / log(4) < 1.2
+    for number in SIZES:
+        (tmp_path / str(number)).mkdir()
+        path = write("lines", number, tmp_path / str(number))
+        path.write_text(path.read_text().replace("needs C7.A", "needs needs C7.A"))
+        reading(path)
+        counts.append(calls(reading, path)[0])
+    assert exponent(*counts) < MOST, counts
