@@ -80,7 +80,7 @@ def test_a_generated_layer_says_it_when_it_blocks(porter: rosgraph.RosGraph, tar
     text = robosc.generate(target, Models(porter.model, porter))["src/porter_layer_node.cpp"]
     [literal] = [line.strip() for line in text.splitlines() if "add_consequence" in line]
     assert literal == f'reasons.add_consequence("{WHY}");'
-    entering = text.partition("bool pass_message_enter()")[2].partition("\n  }\n\n")[0]
+    entering = text.partition("bool pass_enter()")[2].partition("\n  }\n\n")[0]
     assert literal in entering
 
 
