@@ -15,7 +15,6 @@ import click
 
 from robosc import __version__
 from robosc.cli import interruption
-from robosc.cli.saying import say
 from robosc.diagnostics.visible import visible, visible_lines
 from robosc.files.reading import noting
 
@@ -41,6 +40,16 @@ _COMMANDS = {
     "rule": "Say what a rule means.",
     "diagram": "Draw a model or a metamodel.",
 }
+
+
+def say(text: str = "", *, err: bool = False, nl: bool = True) -> None:
+    """Prints text for people, on the standard error output if `err`: nothing in it steers the terminal."""
+    click.echo(visible_lines(text), err=err, nl=nl)
+
+
+def put(text: str, *, err: bool = False, nl: bool = True) -> None:
+    """Prints text as it is: what a program reads, or what is visible already and painted."""
+    click.echo(text, err=err, nl=nl)
 
 
 class CallError(click.ClickException):

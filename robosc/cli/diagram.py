@@ -6,11 +6,10 @@ from typing import TYPE_CHECKING
 
 import click
 
-from robosc.cli import CallError, interruption
+from robosc.cli import CallError, interruption, put
 from robosc.cli.options import FILE, Paths, paths
 from robosc.cli.reading import read, read_models
 from robosc.cli.report import Report
-from robosc.cli.saying import put
 from robosc.diagrams import (
     GRAPH_NOTATIONS,
     METAMODELS,

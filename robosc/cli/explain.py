@@ -19,12 +19,11 @@ from robosc.analysis.explain import (
     state_given,
 )
 from robosc.analysis.supervise import supervise
-from robosc.cli import CallError
+from robosc.cli import CallError, put, say
 from robosc.cli.options import Paths, model, paths
 from robosc.cli.progress import progress
 from robosc.cli.reading import read_models
 from robosc.cli.report import Report
-from robosc.cli.saying import put, say
 from robosc.diagnostics.visible import visible
 from robosc.metamodel.places import place
 

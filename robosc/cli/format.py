@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING, NoReturn
 
 import click
 
-from robosc.cli import ERRORS_FOUND, CallError, interruption
+from robosc.cli import ERRORS_FOUND, CallError, interruption, say
 from robosc.cli.report import Report
-from robosc.cli.saying import say
 from robosc.diagnostics.visible import visible
 from robosc.files import reading as files
 from robosc.files.writing import write_file

@@ -16,8 +16,6 @@ from robosc.metamodel import robosc as rsc
 from robosc.ros_types import RosTypes
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from robosc.cli.options import Paths
     from robosc.cli.report import Report
     from robosc.configuration import Configuration
@@ -31,14 +29,21 @@ def read(path: str, paths: Paths, report: Report) -> Root | None:
     None where so little could be read that there is none. Raises ModelError for an XMI file with faults.
     """
     interfaces = RosTypes(paths.interfaces)
+
+    def locate(name: str) -> str | None:
+        # Whoever saved a model chose the names of the texts that it came from: they are looked for in a few folders.
+        folders = [Path(path).parent, *search_folders(paths.libraries)]
+        found = next((text for folder in folders if (text := _text_below(folder, name))), None)
+        if found is not None:
+            report.may_quote(found)
+        return found
+
     if path.endswith(".xmi"):
         from robosc.metamodel import xmi
 
         texts: dict[str, str] = {}
         try:
-            root: Root | engine.EngineModel | None = xmi.load(
-                path, texts, _Sources(path, paths.libraries, report).locate
-            )
+            root: Root | engine.EngineModel | None = xmi.load(path, texts, locate)
         finally:
             report.add((), texts)
         if isinstance(root, engine.EngineModel):
@@ -53,26 +58,8 @@ def read(path: str, paths: Paths, report: Report) -> Root | None:
     return root
 
 
-class _Sources:
-    """Finds the texts that a saved model came from, by the names that it has of them.
-
-    Whoever saved the model chose the names: a text is a `.rscd` file in the folder of the saved model or below, or in a
-    folder of the call that libraries are looked for in.
-    """
-
-    def __init__(self, path: str, library_paths: Sequence[str], report: Report) -> None:
-        self._folders = [Path(path).parent, *search_folders(library_paths)]
-        self._report = report
-
-    def locate(self, name: str) -> str | None:
-        """The path of a text, whose lines may then be quoted; None where there is none."""
-        path = next((path for folder in self._folders if (path := _text_below(folder, name))), None)
-        if path is not None:
-            self._report.may_quote(path)
-        return path
-
-
 def _text_below(folder: Path, name: str) -> str | None:
+    """The path of a `.rscd` file of that relative name in a folder or below; None where there is none."""
     relative = PurePath(name)
     if relative.is_absolute() or ".." in relative.parts:
         return None

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Literal
 
 import click
 
-from robosc.cli import EMPTY_SUPERVISOR, ERRORS_FOUND
-from robosc.cli.saying import put
+from robosc.cli import EMPTY_SUPERVISOR, ERRORS_FOUND, put
 from robosc.diagnostics import ModelError, has_errors
 from robosc.files import reading as files
 

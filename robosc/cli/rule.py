@@ -9,7 +9,7 @@ import click
 from rich.console import Console
 from rich.markdown import Markdown
 
-from robosc.cli.saying import put
+from robosc.cli import put
 from robosc.diagnostics.rules import page, rules
 
 

@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from robosc.analysis.wording import with_words
+from robosc.cli import put, say
 from robosc.cli.options import FILE, Paths, model, paths
 from robosc.cli.reading import read_configuration, read_models, supervise_models
 from robosc.cli.report import Report
-from robosc.cli.saying import put, say
 from robosc.engine import Settings
 from robosc.files import reading as files
 from robosc.language.text import decode

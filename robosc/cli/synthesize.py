@@ -10,11 +10,11 @@ import click
 
 from robosc.analysis.supervise import EmptySupervisorError, supervise
 from robosc.analysis.wording import change
+from robosc.cli import put, say
 from robosc.cli.options import Paths, memory, model, paths
 from robosc.cli.progress import synthesizing
 from robosc.cli.reading import read_models
 from robosc.cli.report import Report
-from robosc.cli.saying import put, say
 from robosc.metamodel import sct
 from robosc.semantics.printing import SctPrinter, conjunction
 from robosc.semantics.roles import SILENT, event_name
@@ -69,9 +69,7 @@ def _show_json(model: sct.SupervisoryControlModel, synthesis: Synthesis) -> None
         "uncontrolled_states": synthesis.uncontrolled_states,
         "controlled_states": synthesis.controlled_states,
         "empty": synthesis.supervisor is None,
-        "events": [
-            _controllable(guards[event]) if event in guards else _uncontrollable(event, synthesis) for event in events
-        ],
+        "events": [_event(event, guards.get(event), synthesis) for event in events],
         "seconds": round(synthesis.seconds, 3),
         "bdd_nodes": synthesis.bdd_nodes,
         **_cost(synthesis.statistics),
@@ -99,26 +97,17 @@ def _peak_bytes() -> int | None:
     return most if sys.platform == "darwin" else most * 1024
 
 
-def _controllable(guard: sct.EventGuard) -> dict[str, Any]:
+def _event(event: sct.Event, guard: sct.EventGuard | None, synthesis: Synthesis) -> dict[str, Any]:
+    """An event with its guard; of an event without one, whether the plants ever let it happen depends on others."""
     shown = SctPrinter()
-    whole = conjunction(copied(part) for part in (guard.requirement, guard.synthesis) if part)
-    return {
-        "name": event_name(guard.event),
-        "controllable": guard.event.controllable,
-        "guard": shown(whole) if whole else "true",
-        "added_by_synthesis": shown(guard.synthesis) if guard.synthesis else None,
-        "ever_enabled": guard.everEnabled,
-    }
-
-
-def _uncontrollable(event: sct.Event, synthesis: Synthesis) -> dict[str, Any]:
-    """No supervisor restricts it; whether the plants ever let it happen still depends on what else may."""
+    parts = [part for part in (guard.requirement, guard.synthesis) if part] if guard else []
+    whole = conjunction(map(copied, parts))
     return {
         "name": event_name(event),
-        "controllable": False,
-        "guard": "true",
-        "added_by_synthesis": None,
-        "ever_enabled": event in synthesis.possible,
+        "controllable": event.controllable,
+        "guard": shown(whole) if whole else "true",
+        "added_by_synthesis": shown(guard.synthesis) if guard and guard.synthesis else None,
+        "ever_enabled": guard.everEnabled if guard else event in synthesis.possible,
     }
 
 
@@ -130,7 +119,7 @@ def _show(model: sct.SupervisoryControlModel, synthesis: Synthesis) -> None:
     for guard in synthesis.supervisor.guards:
         if guard.event.kind == sct.EventKind.data:
             continue
-        event = _controllable(guard)
+        event = _event(guard.event, guard, synthesis)
         heading = change(guard.event) if guard.event.kind in SILENT else event["name"]
         say(f"\n{heading}{'' if event['ever_enabled'] else ' (never enabled)'}")
         if event["ever_enabled"] or event["guard"] != "true":

@@ -7,12 +7,11 @@ from typing import TYPE_CHECKING
 
 import click
 
-from robosc.cli import CallError, interruption
+from robosc.cli import CallError, interruption, say
 from robosc.cli.options import Paths, configuration, findings_format, memory, model, paths
 from robosc.cli.progress import progress
 from robosc.cli.reading import read_configuration, read_models, supervise_models
 from robosc.cli.report import Report
-from robosc.cli.saying import say
 from robosc.configuration import LOCATIONS
 from robosc.files.writing import write
 from robosc.m2t.targets import TARGETS, Target, together

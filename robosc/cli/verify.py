@@ -11,12 +11,11 @@ from rich.text import Text
 
 from robosc.analysis.verify import Outcome, verify
 from robosc.analysis.verify.verdict import TRUSTED, as_json, as_junit, details, summary
-from robosc.cli import ERRORS_FOUND, interruption
+from robosc.cli import ERRORS_FOUND, interruption, put, say
 from robosc.cli.options import Paths, configuration, model, paths
 from robosc.cli.progress import progress
 from robosc.cli.reading import read_configuration, read_models, supervise_models
 from robosc.cli.report import Report
-from robosc.cli.saying import put, say
 from robosc.diagnostics.visible import visible
 from robosc.files.writing import refuse, write_file
 
