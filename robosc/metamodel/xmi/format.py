@@ -1,7 +1,11 @@
-"""What writing and reading of XMI have to agree on."""
+"""What writing and reading of XMI have to agree on: names, limits, and the text of values."""
 
+import math
 import re
+from collections.abc import Callable, Mapping
 from typing import Any
+
+from pyecore.ecore import EEnum
 
 XMI = "http://www.omg.org/XMI"
 XSI = "http://www.w3.org/2001/XMLSchema-instance"
@@ -10,8 +14,48 @@ XSI = "http://www.w3.org/2001/XMLSchema-instance"
 DEEPEST = 6000
 #: What XML 1.0 can't hold, not even escaped.
 UNWRITABLE = re.compile("[^\t\n\r -\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+_LONG = range(-(2**63), 2**63)
+_DOUBLE = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]{1,4})?")
 
 
-def a(metaclass: Any) -> str:
-    """The name of a class with its article."""
-    return f"{'an' if metaclass.name[0] in 'AEIOU' else 'a'} {metaclass.name}"
+def to_text(value: object) -> str:
+    """The text of a value, as EMF reads it."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    return repr(value) if isinstance(value, float) else str(value)
+
+
+def from_text(kind: Any, text: str) -> object | None:
+    """The value of a data type or an enumeration that a text stands for; None where it stands for none."""
+    if isinstance(kind, EEnum):
+        literal: object | None = kind.getEEnumLiteral(name=text)
+        return literal
+    return _READERS[kind.name](text)
+
+
+def _integer(text: str) -> int | None:
+    return int(text) if re.fullmatch("[+-]?[0-9]{1,4000}", text) else None
+
+
+def _long(text: str) -> int | None:
+    value = _integer(text)
+    return value if value is not None and value in _LONG else None
+
+
+def _double(text: str) -> float | None:
+    value = float(text) if _DOUBLE.fullmatch(text) else math.inf
+    return value if math.isfinite(value) else None
+
+
+def _boolean(text: str) -> bool | None:
+    return {"true": True, "false": False}.get(text)
+
+
+_READERS: Mapping[str, Callable[[str], object | None]] = {
+    "EString": str,
+    "EBoolean": _boolean,
+    "ELong": _long,
+    "ELongObject": _long,
+    "EBigInteger": _integer,
+    "EDouble": _double,
+}

@@ -1,22 +1,33 @@
 """XMI files to models, with everything found wrong at once."""
 
 import re
-from collections.abc import Callable, MutableMapping
+from collections import Counter
+from collections.abc import Callable, Iterator, MutableMapping
+from dataclasses import dataclass, field
+from functools import cache, partial
 from pathlib import Path, PurePosixPath
-from typing import TYPE_CHECKING, Any
+from typing import Any, NamedTuple
 from urllib.parse import unquote
 
-from robosc.diagnostics import ModelError, Span
+from pyecore.ecore import EClass, EEnum
+
+from robosc.diagnostics import START, Diagnostic, ModelError, Severity, Span
 from robosc.files.reading import read
+from robosc.metamodel._ecore import packages
+from robosc.metamodel.places import Place, SourceFile
 from robosc.metamodel.reflection import features, is_attribute
 from robosc.metamodel.validity import faults
-from robosc.metamodel.xmi.building import Document, Reference, build
-from robosc.metamodel.xmi.format import a
-from robosc.metamodel.xmi.markup import parse
+from robosc.metamodel.xmi.format import XMI, XSI, from_text
+from robosc.metamodel.xmi.markup import Element, parse
 
-if TYPE_CHECKING:
-    from robosc.metamodel.places import SourceFile
-
+#: What a file may hold: a class of each metamodel that describes something whole.
+ROOTS = {
+    "robosc": ("Robot", "Library"),
+    "sct": ("SupervisoryControlModel",),
+    "rosgraph": ("RosGraph",),
+    "engine": ("EngineModel",),
+}
+_ECORE = "http://www.eclipse.org/emf/2002/Ecore"
 _FRAGMENT = re.compile(r"/(/@\w+(\.[0-9]{1,9})?)*", re.ASCII)
 _ADDRESS = re.compile(r"[\w.+-]+:|/")
 
@@ -39,6 +50,145 @@ def load(
         for source in loading.sources.values():
             source.path = locate(source.name) or source.name
     return loading.root
+
+
+class Reference(NamedTuple):
+    """A reference to be resolved: `target` is a fragment path, with a file's relative path before the `#`."""
+
+    element: Any
+    feature: Any
+    target: str
+    where: Callable[[], Span]
+
+
+@dataclass(eq=False)
+class Document:
+    """A file: its name as the user would write it, its root (None where it has no usable one) and what was found.
+
+    `sources` are the files that the elements come from, by their names, for all documents of a model.
+    """
+
+    name: str
+    path: Path
+    sources: dict[str, SourceFile]
+    root: Any = None
+    markup: dict[Any, Element] = field(default_factory=dict)
+    references: list[Reference] = field(default_factory=list)
+    findings: list[Diagnostic] = field(default_factory=list)
+    #: The file of the places that name none.
+    source: str = ""
+
+    def report(self, span: Span, message: str, hint: str | None = None) -> None:
+        """Adds a finding of the rule `xmi`."""
+        self.findings.append(Diagnostic(self.name, span, Severity.ERROR, "xmi", message, hint))
+
+    def build(self, top: Element) -> None:
+        """Makes the elements of the file whose outermost XML element is `top`; references are left to be resolved."""
+        metaclass = self._root_class(top)
+        if metaclass is None:
+            return
+        self.root = metaclass.python_class()
+        self.source = top.attributes.get(("", "file"), "")
+        pending = [(top, self.root)]
+        while pending:
+            markup, element = pending.pop()
+            self.markup[element] = markup
+            pending += reversed(self._fill(markup, element))
+
+    def _root_class(self, top: Element) -> Any:
+        package = _package(top.namespace)
+        if top.namespace == _ECORE:
+            self.report(top.span, "this is a metamodel (Ecore), not a model")
+        elif (top.namespace, top.name) == (XMI, "XMI"):
+            self.report(top.span, "this file has several models; one is wanted")
+        elif package is None:
+            known = ", ".join(packages()[root].nsURI for root in ROOTS)
+            self.report(top.span, f"no model of RoboSC has the namespace '{top.namespace}'", f"known are {known}")
+        elif top.name not in ROOTS.get(package.name, ()):
+            wanted = ", ".join(name for names in ROOTS.values() for name in names)
+            self.report(top.span, f"a file can't hold a {top.name} by itself", f"it may hold {wanted}")
+        else:
+            return package.getEClassifier(top.name)
+        return None
+
+    def _fill(self, markup: Element, element: Any) -> list[tuple[Element, Any]]:
+        """Sets the features of an element; its children are made, and given back to be filled."""
+        declared, named = features(element.eClass), a(element.eClass)
+        given = Counter(self._fill_attributes(markup, element))
+        children = list(self._fill_children(markup, element, given))
+        if markup.text.strip():
+            self.report(markup.span, f"{named} holds no text")
+        for name, feature in declared.items():
+            # What EMF leaves out has a default: a boolean, a number, the first literal of an enumeration.
+            if feature.lowerBound and name not in given and (feature.many or getattr(element, name) is None):
+                self.report(markup.span, f"{named} needs '{name}'")
+        return children
+
+    def _fill_attributes(self, markup: Element, element: Any) -> Iterator[str]:
+        """Sets what stands in attributes, and gives the names of these features."""
+        for (namespace, name), text in markup.attributes.items():
+            if namespace in (XMI, XSI) and name in ("version", "type", "schemaLocation"):
+                continue
+            feature = None if namespace else features(element.eClass).get(name)
+            where = partial(markup.attribute_span, name)
+            if feature is None or (not is_attribute(feature) and feature.containment):
+                self.report(where(), f"{a(element.eClass)} has no attribute '{name}'")
+                continue
+            yield name
+            if is_attribute(feature):
+                self._set(element, feature, text, where)
+            elif not feature.many and len(text.split()) != 1:
+                self.report(where(), f"'{name}' refers to one element")
+            else:
+                self.references += [Reference(element, feature, f"#{target}", where) for target in text.split()]
+
+    def _fill_children(self, markup: Element, element: Any, given: Counter[str]) -> Iterator[tuple[Element, Any]]:
+        """Sets what stands in elements inside of an element, and gives those that are elements of the model.
+
+        `given` counts what is there for each feature.
+        """
+        for child in markup.children:
+            feature = None if child.namespace else features(element.eClass).get(child.name)
+            where = partial(getattr, child, "span")
+            if feature is None:
+                self.report(where(), f"{a(element.eClass)} has no '{child.name}'")
+                continue
+            given[child.name] += 1
+            if given[child.name] > 1 and not feature.many:
+                self.report(where(), f"{a(element.eClass)} has only one '{child.name}'")
+            elif is_attribute(feature):
+                self._set(element, feature, child.text, where)
+            elif not feature.containment:
+                target = child.attributes.get(("", "href"), "")
+                self.references.append(Reference(element, feature, target, where))
+            elif (metaclass := self._child_class(child, feature)) is not None:
+                made = metaclass.python_class()
+                _put(element, feature, made)
+                yield child, made
+
+    def _child_class(self, child: Element, feature: Any) -> Any:
+        """The class of a child: the one that it names, else its feature's; None with a finding where it can't be."""
+        found = feature.eType if child.type is None else _classifier(*child.type)
+        if found is None or not isinstance(found, EClass):
+            written = child.attributes.get((XSI, "type"))
+            self.report(child.attribute_span("xsi:type"), f"there is no class '{written}'")
+        elif not issubclass(found.python_class, feature.eType.python_class):
+            self.report(child.span, f"'{feature.name}' wants {a(feature.eType)}, which {a(found)} is not")
+        elif found.abstract:
+            self.report(child.span, f"{found.name} is abstract", "say what it is with xsi:type")
+        else:
+            return found
+        return None
+
+    def _set(self, element: Any, feature: Any, text: str, where: Callable[[], Span]) -> None:
+        kind = feature.eType
+        value = Place.parse(text, self.sources, self.source) if kind.eType is Place else from_text(kind, text)
+        if value is None:
+            literals = ", ".join(literal.name for literal in kind.eLiterals) if isinstance(kind, EEnum) else ""
+            hint = f"one of {literals}" if literals else None
+            self.report(where(), f"'{feature.name}' can't be '{text[:80]}'", hint)
+        else:
+            _put(element, feature, value)
 
 
 class _Loading:
@@ -74,9 +224,9 @@ class _Loading:
             try:
                 content = read(document.path)
                 self._texts[document.name] = content.decode("utf-8", errors="replace")
-                build(document, parse(content, document.name))
+                document.build(parse(content, document.name))
             except OSError as error:
-                document.report(Span(1, 1, 1, 1), f"the file can't be read: {error.strerror}")
+                document.report(START, f"the file can't be read: {error.strerror}")
             except ModelError as error:
                 document.findings += error.diagnostics
             pending += self._referred(document)
@@ -93,9 +243,9 @@ class _Loading:
             path = self._path(document, href)
             if path is None:
                 message = f"'{href}' is not in the folder of this model or below; nothing else is read"
-                document.report(reference.span, message)
+                document.report(reference.where(), message)
             elif not path.is_file():
-                document.report(reference.span, f"there is no file '{href}'")
+                document.report(reference.where(), f"there is no file '{href}'")
             elif path not in self._documents:
                 name = (PurePosixPath(document.name).parent / href).as_posix()
                 found.append(self._documents.setdefault(path, Document(name, path, self.sources)))
@@ -118,16 +268,37 @@ class _Loading:
         target = _walk(other.root, fragment)
         shown = reference.target.removeprefix("#")
         if target is None:
-            document.report(reference.span, f"'{feature.name}' refers to '{shown}', where nothing is")
+            document.report(reference.where(), f"'{feature.name}' refers to '{shown}', where nothing is")
         elif not isinstance(target, feature.eType.python_class):
             message = f"'{feature.name}' refers to {a(target.eClass)}, but wants {a(feature.eType)}"
-            document.report(reference.span, message)
-        elif not feature.many:
-            setattr(element, feature.name, target)
-        elif target in getattr(element, feature.name):
-            document.report(reference.span, f"'{feature.name}' names '{shown}' twice")
+            document.report(reference.where(), message)
+        elif feature.many and target in getattr(element, feature.name):
+            document.report(reference.where(), f"'{feature.name}' names '{shown}' twice")
         else:
-            getattr(element, feature.name).append(target)
+            _put(element, feature, target)
+
+
+def _put(element: Any, feature: Any, value: object) -> None:
+    """Sets a feature, or adds to one with many values."""
+    if feature.many:
+        getattr(element, feature.name).append(value)
+    else:
+        setattr(element, feature.name, value)
+
+
+def a(metaclass: Any) -> str:
+    """The name of a class with its article."""
+    return f"{'an' if metaclass.name[0] in 'AEIOU' else 'a'} {metaclass.name}"
+
+
+def _package(uri: str | None) -> Any:
+    return next((package for package in packages().values() if package.nsURI == uri), None)
+
+
+@cache
+def _classifier(uri: str | None, name: str) -> Any:
+    package = _package(uri)
+    return None if package is None else package.getEClassifier(name)
 
 
 def _walk(root: Any, fragment: str) -> Any:

@@ -11,8 +11,7 @@ from robosc.diagnostics import Diagnostic, ModelError, Severity
 from robosc.metamodel._ecore import PACKAGES, packages
 from robosc.metamodel.places import place
 from robosc.metamodel.reflection import contents, features, is_attribute
-from robosc.metamodel.xmi.format import DEEPEST, UNWRITABLE, XMI, XSI
-from robosc.metamodel.xmi.values import to_text
+from robosc.metamodel.xmi.format import DEEPEST, UNWRITABLE, XMI, XSI, to_text
 
 _DEEPEST_INDENT = 40
 
