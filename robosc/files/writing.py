@@ -32,7 +32,7 @@ if sys.platform != "win32":
 from robosc.files.json_reading import json_value
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
 #: How long a folder is waited for that another process writes to.
 PATIENCE_SECONDS = 60.0
@@ -74,8 +74,7 @@ def write_file(path: str | os.PathLike[str], text: str) -> None:
     """
     try:
         refuse(path)
-        mode = _mode(Path.stat, path)
-        if mode is not None and not stat.S_ISREG(mode):
+        if Path(path).exists() and not Path(path).is_file():
             _pour(path, text)
             return
         target = Path(os.path.realpath(path))
@@ -131,12 +130,18 @@ def _pour(path: str | os.PathLike[str], text: str) -> None:
 
 def _write(trees: Mapping[Path, Mapping[str, str]], signals: _Signals) -> list[Path]:
     placed: dict[Path, dict[Path, str]] = {}
+    texts: dict[Path, str] = {}
     for named, files in trees.items():
         folder = named.resolve()
-        _place(folder, files, placed.setdefault(folder, {}))
-    _refuse_conflicts(placed)
+        for name, text in files.items():
+            path = _inside(folder, name)
+            if path.is_dir() and not path.is_symlink():
+                raise OutputError(f"{path} is a folder: a file of that name can't be written")
+            if texts.setdefault(path, text) != text:
+                raise OutputError(f"{path} would be written twice, with different texts")
+            placed.setdefault(folder, {})[path] = text
     with ExitStack() as made, ExitStack() as locks:
-        for folder in sorted(folder for folder, files in placed.items() if files):
+        for folder in sorted(placed):
             locks.enter_context(_locked(folder, made, signals))
             for left in _left_over(folder):
                 left.undo()
@@ -153,14 +158,6 @@ def _write(trees: Mapping[Path, Mapping[str, str]], signals: _Signals) -> list[P
     return [path for files in changed.values() for path in files]
 
 
-def _place(folder: Path, files: Mapping[str, str], placed: dict[Path, str]) -> None:
-    for name, text in files.items():
-        path = _inside(folder, name)
-        if path.is_dir() and not path.is_symlink():
-            raise OutputError(f"{path} is a folder: a file of that name can't be written")
-        _refuse_two(path, placed.setdefault(path, text), text)
-
-
 def _inside(folder: Path, name: str) -> Path:
     """The path of a name below a folder. Raises OutputError where that is not inside of it."""
     relative = PurePosixPath(name)
@@ -170,18 +167,6 @@ def _inside(folder: Path, name: str) -> Path:
     if not path.parent.resolve().is_relative_to(folder):
         raise OutputError(f"{path} leads out of {folder}: there is a link on the way")
     return path
-
-
-def _refuse_conflicts(placed: Mapping[Path, Mapping[Path, str]]) -> None:
-    texts: dict[Path, str] = {}
-    for files in placed.values():
-        for path, text in files.items():
-            _refuse_two(path, texts.setdefault(path, text), text)
-
-
-def _refuse_two(path: Path, one: str, other: str) -> None:
-    if one != other:
-        raise OutputError(f"{path} would be written twice, with different texts")
 
 
 def _refuse_existing(path: Path, found: os.stat_result) -> None:
@@ -408,14 +393,6 @@ def _is(path: Path, content: bytes) -> bool:
         return stat.S_ISREG(found.st_mode) and found.st_size == len(content) and path.read_bytes() == content
     except (FileNotFoundError, NotADirectoryError):
         return False
-
-
-def _mode(look: Callable[[Path], os.stat_result], path: str | os.PathLike[str]) -> int | None:
-    try:
-        mode: int = look(Path(path)).st_mode
-    except (FileNotFoundError, NotADirectoryError):
-        return None
-    return mode
 
 
 def _reason(error: OSError | RuntimeError) -> str:
