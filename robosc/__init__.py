@@ -159,8 +159,8 @@ def synthesize(model: SupervisoryControlModel) -> Supervisor:
     """The maximally permissive, controllable, non-blocking supervisor of a model, which becomes its `supervisor`.
 
     Raises EmptySupervisorError, a ModelError that says why, where there is none; ModelError where an action would
-    cancel itself; MemoryError where the decision diagrams would take more than 4 GB. What is merely doubtful about the
-    supervisor, `robosc.analysis.supervise.supervise` tells.
+    cancel itself; MemoryError where the decision diagrams would take more than 4 GB. Warnings about the supervisor
+    come from `robosc.analysis.supervise.supervise`.
     """
     from robosc.analysis.supervise import supervise
     from robosc.diagnostics import ModelError, has_errors

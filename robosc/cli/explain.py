@@ -80,17 +80,14 @@ def command(
     with Report(aside=True) as report:
         plants = read_models(model, paths, report).sct
         with progress("exploring what the robot can do"):
-            told = explored(plants, emptiness if why_empty else _question(plants, event, state, why_never))
-        if told is None and not why_empty:
+            answer = explored(plants, emptiness if why_empty else _question(plants, event, state, why_never))
+        if answer is None and not why_empty:
             supervise(plants)  # raises, and says why there is no supervisor
         elif as_data:
-            put(json.dumps(data_of(told, _position), indent=2))
+            put(json.dumps(data_of(answer, _position), indent=2))
         else:
-            say(
-                Renderer(plants, lambda element: visible("{file}:{line}:{column}".format(**_position(element)))).answer(
-                    told
-                )
-            )
+            renderer = Renderer(plants, lambda element: visible("{file}:{line}:{column}".format(**_position(element))))
+            say(renderer.answer(answer))
 
 
 def _question(

@@ -104,7 +104,7 @@ def read_models(path: str, paths: Paths, report: Report) -> Models:
 
 
 def supervise_models(models: Models, report: Report, *, memory: int | None = None) -> None:
-    """Gives the sct model its supervisor, unless it has one; what is doubtful about it goes to the report.
+    """Gives the sct model its supervisor, unless it has one; warnings about it go to the report.
 
     `memory` is the most that the process may take, in bytes, if not the default of synthesis. Ends the report where
     there are errors. Raises EmptySupervisorError where there is no supervisor.

@@ -105,14 +105,14 @@ def command(
         with progress(f"writing to {folder}"):  # it may wait for another run
             changed = set(write(trees))
     for written, texts in trees.items():
-        home = written.resolve()
-        say(f"{written}: {len(texts)} files, {sum(home / name in changed for name in texts)} written", err=True)
+        resolved = written.resolve()
+        say(f"{written}: {len(texts)} files, {sum(resolved / name in changed for name in texts)} written", err=True)
 
 
 def _copies(
-    home: Path, targets: Sequence[Target], configuration: Configuration, confirmed: Sequence[str], report: Report
+    folder: Path, targets: Sequence[Target], configuration: Configuration, confirmed: Sequence[str], report: Report
 ) -> dict[Target, Path]:
-    """The folders that get copies, as the configuration asks; what is wrong with them goes to the report.
+    """The folders that get copies, as the configuration of the model in `folder` asks; errors go to the report.
 
     Whoever wrote the configuration may be somebody else than who runs the tool: what lies outside of the model's folder
     has to be confirmed.
@@ -124,8 +124,8 @@ def _copies(
             continue
         key = LOCATIONS[target.location]
         try:
-            copies[target] = home / Path(named).expanduser()
-            inside = copies[target].resolve().is_relative_to(home.resolve())
+            copies[target] = folder / Path(named).expanduser()
+            inside = copies[target].resolve().is_relative_to(folder.resolve())
         except (OSError, RuntimeError, ValueError) as error:
             report.add([configuration.error(tuple(key.split(".")), f'"{key}" names no folder: {error}')])
             continue

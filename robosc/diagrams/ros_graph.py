@@ -10,7 +10,7 @@ from robosc.semantics.naming import controller_name
 from robosc.semantics.roles import plant_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Sequence
 
     from robosc.diagrams.graph import Label
     from robosc.metamodel import rosgraph
@@ -26,12 +26,12 @@ def ros_graph(graph: rosgraph.RosGraph) -> Graph:
     nodes = [*_topics(graph), *_servers("s", "service", graph.serviceClients)]
     nodes += _servers("a", "action", graph.actionClients)
     controller = Node(_CONTROLLER, "controller", visible(controller_name(graph)))
-    heard = {visible(subscription.topic) for subscription in graph.subscriptions}
-    told = {visible(publisher.topic) for publisher in graph.publishers}
+    subscribed = {visible(subscription.topic) for subscription in graph.subscriptions}
+    published = {visible(publisher.topic) for publisher in graph.publishers}
     arrows = []
     for node in nodes:
-        comes = node.kind != "topic" or node.title in heard
-        goes = node.kind != "topic" or node.title in told
+        comes = node.kind != "topic" or node.title in subscribed
+        goes = node.kind != "topic" or node.title in published
         ends = (node.key, _CONTROLLER) if node.kind == "topic" and comes else (_CONTROLLER, node.key)
         arrows.append(Arrow(*ends, both=comes and goes))
     return Graph(f"{visible(graph.name)}: ROS graph", [Group("g", "", (), [*nodes, controller], arrows)])
@@ -40,12 +40,12 @@ def ros_graph(graph: rosgraph.RosGraph) -> Graph:
 def _topics(graph: rosgraph.RosGraph) -> Iterator[Node]:
     types: dict[str, dict[Label, None]] = {}
     uses: dict[str, list[Label]] = {}
-    for heard in graph.subscriptions:
-        types.setdefault(heard.topic, {})[_type(heard.interface)] = None
-        uses.setdefault(heard.topic, []).extend(map(_use, heard.receptions))
-    for told in graph.publishers:
-        types.setdefault(told.topic, {})[_type(told.interface)] = None
-        uses.setdefault(told.topic, []).extend(map(_use, told.sendings))
+    ends: list[tuple[str, rosgraph.Interface, Sequence[rosgraph.Reception | rosgraph.Sending]]]
+    ends = [(end.topic, end.interface, end.receptions) for end in graph.subscriptions]
+    ends += [(end.topic, end.interface, end.sendings) for end in graph.publishers]
+    for topic, interface, messages in ends:
+        types.setdefault(topic, {})[_type(interface)] = None
+        uses.setdefault(topic, []).extend(map(_use, messages))
     for number, topic in enumerate(types, 1):
         yield Node(f"t{number}", "topic", visible(topic), [*types[topic], *uses[topic]])
 

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 _LARGEST = 2**63 - 1
 _IDENTIFIER = re.compile("[A-Za-z_][A-Za-z0-9_]*")
 _PACKAGE = re.compile("[A-Za-z][A-Za-z0-9_-]*")
-#: What is told to people, in logs too, as it stands.
-_TOLD = ("text", "origin", "explanation")
+#: The features whose texts people read as they stand, in logs too.
+_SHOWN = ("text", "origin", "explanation")
 
 
 def faults(root: Any) -> Iterator[Fault]:
@@ -52,10 +52,10 @@ def _identifier(feature: str) -> Check:
     return check
 
 
-def _told(element: Any, _model: Model) -> Iterator[Fault]:
-    for feature in _TOLD:
-        told = getattr(element, feature, None)
-        if told is not None and visible(told) != told:
+def _shown(element: Any, _model: Model) -> Iterator[Fault]:
+    for feature in _SHOWN:
+        text = getattr(element, feature, None)
+        if text is not None and visible(text) != text:
             yield element, f"'{feature}' is to be one line without hidden characters"
 
 
@@ -75,7 +75,7 @@ _INDEX = demand(lambda step: step.index >= 0, "an index counts from 0")
 
 _CHECKS: Checks = {
     ex.NamedElement: [_identifier("name")],
-    object: [_told],
+    object: [_shown],
     ex.IntegerLiteral: [_literal],
     ex.DoubleLiteral: [_literal],
     robosc.Interface: _INTERFACE,
