@@ -57,19 +57,15 @@ class ClassDiagram:
 
 
 def _class(classifier: Any, package: Any) -> Class:
-    if hasattr(classifier, "eLiterals"):
-        literals = [literal.name for literal in classifier.eLiterals]
-        return Class(classifier.name, False, documentation(classifier), (), (), (), literals)
-    own = [parent.ePackage.name == package.name for parent in classifier.eSuperTypes]
-    parents = list(zip(classifier.eSuperTypes, own, strict=True))
+    parents = [(parent, parent.ePackage.name == package.name) for parent in getattr(classifier, "eSuperTypes", ())]
     return Class(
         name=classifier.name,
-        abstract=classifier.abstract,
+        abstract=getattr(classifier, "abstract", False),
         documentation=documentation(classifier),
-        parents=[parent.name for parent, near in parents if near],
-        foreign_parents=[f"{parent.ePackage.name}.{parent.name}" for parent, near in parents if not near],
-        features=[_feature(feature, package) for feature in classifier.eStructuralFeatures],
-        literals=(),
+        parents=[parent.name for parent, own in parents if own],
+        foreign_parents=[f"{parent.ePackage.name}.{parent.name}" for parent, own in parents if not own],
+        features=[_feature(feature, package) for feature in getattr(classifier, "eStructuralFeatures", ())],
+        literals=[literal.name for literal in getattr(classifier, "eLiterals", ())],
     )
 
 
