@@ -41,12 +41,15 @@ def contents(element: Any) -> Iterator[tuple[str, Any]]:
 
 
 def tree(root: Any) -> Iterator[tuple[str, Any]]:
-    """An element and all below it, each before what it contains, with their fragment paths (`/`, `//@plants.0`)."""
-    pending = [("/", root)]
+    """An element and all below it, each before what it contains, with its step in a fragment path, empty for the root.
+
+    Takes time in proportion to the number of elements, however deep they are inside each other.
+    """
+    pending = [("", root)]
     while pending:
-        path, element = pending.pop()
-        yield path, element
-        pending += [(f"{path}/{step}", child) for step, child in reversed(list(contents(element)))]
+        step, element = pending.pop()
+        yield step, element
+        pending += reversed(list(contents(element)))
 
 
 def metamodel(name: str) -> Any:

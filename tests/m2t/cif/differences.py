@@ -6,7 +6,7 @@ from typing import Any
 
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
-from robosc.metamodel.reflection import tree
+from robosc.metamodel.reflection import contents, tree
 from robosc.semantics.edges import edges_from, edges_of
 from robosc.semantics.evaluation import evaluate, saturate
 
@@ -202,5 +202,5 @@ def _shape(expression: Any) -> Any:
             return expression.literal.name
         case ex.BooleanLiteral() | ex.IntegerLiteral():
             return expression.value
-    children = [child for path, child in tree(expression) if path.count("/") == 2]
+    children = [child for _, child in contents(expression)]
     return (type(expression).__name__, *map(_shape, children))
