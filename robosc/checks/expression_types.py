@@ -72,7 +72,7 @@ class ExpressionCheck:
             self.report(expression, f"{what} must be {wants}, found {finds}", repair(expression, found, wanted))
 
     def provided(self, value: ex.Expression | None, wanted: Type, what: str) -> None:
-        """Demands that provided data has this type; of an object value each property has its own."""
+        """Demands that provided data has this type; of an object value each property is checked by its own type."""
         if isinstance(wanted, EnumType) or wanted == NONE:
             wanted = UNKNOWN  # That no such data goes out is the matter of `data-type` and of `data-provisioning`.
         if not isinstance(value, rsc.ObjectValue):

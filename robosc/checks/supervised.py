@@ -43,7 +43,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Fault:
-    """An element that the supervisor needs and that has to change, and what it is needed for."""
+    """An element in the cone of influence that has to change, and the first reason why it is in there."""
 
     element: ex.Located
     reason: Reason

@@ -156,7 +156,7 @@ def _values(enum: EnumType) -> list[str]:
 
 
 def _text(expression: ex.Expression) -> str:
-    """What stands there, if it is short enough to be repeated; names of the own component without it."""
+    """An access as the text has it, members of the own component unqualified; `(…)` for any other expression."""
     if not isinstance(expression, rsc.Access):
         return "(…)"
     text, own = RoboscPrinter()(expression), component_of(expression)

@@ -35,7 +35,7 @@ class Fault:
 
 @dataclass(frozen=True)
 class Unknown:
-    """Why nothing is known of the ROS type itself."""
+    """The definition of the ROS type is missing or unreadable; says why."""
 
     message: str
     hint: str
@@ -100,7 +100,7 @@ class _Comparison:
         self._around: list[tuple[object, Nested]] = []
 
     def whole(self, declared: rsc.DataType, fields: Fields, name: str) -> Iterator[Fault]:
-        """Data that goes as a whole with a part; its fields are those of an object, or one holds the value."""
+        """The faults of a section: an object is compared field by field, a basic value with its one field."""
         carried = wire_type(declared)
         if isinstance(carried, rsc.InterfaceTypeReference) and _ros_type(carried) != self._ros_type:
             message = f"the data is {_ros_type(carried)} here, and the communication is {self._ros_type}"

@@ -35,7 +35,7 @@ class Level:
     unknown: Level | None = None
 
     def starter(self, token: Token) -> str | None:
-        """The keyword that a token is or, misspelt, was meant to be."""
+        """The starter that a token is, or that it is most like; None where it is like none."""
         if token.kind is not Kind.WORD:
             return None
         return next(iter(get_close_matches(token.text, sorted(self.starters), n=1, cutoff=0.7)), None)
@@ -111,7 +111,7 @@ class Brace:
 
 
 class Outline:
-    """Finds the items in a range of tokens. `braces` are those that it had to add or take away."""
+    """Finds the items in a range of tokens; `braces` are the ones that it had to add or to leave out for this."""
 
     def __init__(self, tokens: Tokens, first: int = 0, limit: int | None = None) -> None:
         self.braces: list[Brace] = []
@@ -228,7 +228,7 @@ class Outline:
         return level.bodies.get(starter) if starter else level.unknown
 
     def _skip(self, levels: tuple[Level, ...]) -> None:
-        """Passes braces that hold no items of their own, with what they hold."""
+        """Moves behind a pair of braces that holds no items, such as that of an object value."""
         depth = 0
         while not self._ended():
             doubled = depth and self._is("{") and self._tokens[self._at - 1].is_keyword("{")

@@ -12,7 +12,6 @@ from robosc.language.explaining import did_you_mean
 from robosc.language.libraries import LibraryPath
 from robosc.language.linking import RULE, link
 from robosc.language.recovery import parse_file
-from robosc.language.scopes import File
 from robosc.language.text import Documents, Repair, decode
 from robosc.metamodel import robosc as rsc
 from robosc.ros_types import RosTypes
@@ -22,6 +21,7 @@ if TYPE_CHECKING:
 
     from robosc.diagnostics import Diagnostic
     from robosc.language.building import Name
+    from robosc.language.scopes import File
     from robosc.semantics.instances import Resolved
 
 
@@ -106,9 +106,8 @@ class _Reader:
         name = self._name(path)
         text, findings = decode(shown, content, name)
         self.findings += findings
-        parsed = parse_file(text)
-        self.findings += parsed.findings
-        file = self.files[shown] = File(text, parsed.base, parsed.references, parsed.declared, parsed.regions)
+        file = self.files[shown] = parse_file(text)
+        self.findings += file.findings
         self._files[identity] = file
         self._paths[identity] = path
         references = file.references.items() if file.base is not None else ()

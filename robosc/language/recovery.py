@@ -6,23 +6,21 @@ parse is a finding and is blanked out, and the text that remains, parsed as a wh
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from difflib import get_close_matches
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from robosc.language.building import Builder
 from robosc.language.explaining import expected, found, hint
 from robosc.language.grammar import Failure, first_words, is_reserved, parse
 from robosc.language.outline import DECLARED, DEFINITIONS, PROPERTIES, RULES, Block, Brace, Outline
-from robosc.language.scopes import Declared, SkippedRegions
+from robosc.language.scopes import Declared, File, SkippedRegions
 from robosc.language.text import Repair
 from robosc.language.tokens import Kind, Token, Tokens, too_complex
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable
 
     from robosc.diagnostics import Diagnostic
-    from robosc.language.building import Name
     from robosc.language.text import Text
     from robosc.metamodel import robosc as rsc
 
@@ -30,33 +28,18 @@ if TYPE_CHECKING:
 _DECLARING_NOTHING = first_words("Requirement", "ProvideStatement", "Transition")
 
 
-@dataclass(frozen=True)
-class Parsed:
-    """The model of a text, its names not linked.
-
-    `base` is None where nothing could be read. `references`: the names by element and feature; `declared`: the names
-    of elements; `regions`: what was skipped.
-    """
-
-    base: rsc.Base | None
-    references: dict[Any, dict[str, Name]] = field(default_factory=dict)
-    declared: Mapping[Any, Name] = field(default_factory=dict)
-    findings: list[Diagnostic] = field(default_factory=list)
-    regions: SkippedRegions = field(default_factory=SkippedRegions)
-
-
-def parse_file(text: Text) -> Parsed:
-    """Parses the text of a file. Findings are of the rule `syntax`."""
+def parse_file(text: Text) -> File:
+    """What can be read of a text, its names not linked. Findings are of the rule `syntax`."""
     tokens = Tokens(text.content)
     tree = None if too_complex(tokens) else parse(text.content, "Base")
     if tree is None or isinstance(tree, Failure):
         return recovered(text, tokens)
     builder = Builder(text)
     base = builder.build(tree)
-    return Parsed(base, builder.references, builder.declared, builder.findings)
+    return File(text, base, builder.references, builder.declared, findings=builder.findings)
 
 
-def recovered(text: Text, tokens: Tokens) -> Parsed:
+def recovered(text: Text, tokens: Tokens) -> File:
     """What can be read of a text that the grammar does not allow, and why it doesn't; `tokens` are the text's."""
     return _Recovery(text, tokens).parse()
 
@@ -75,7 +58,7 @@ class _Recovery:
         self._regions = SkippedRegions()
         self._is_library = tokens[0].text == "library"
 
-    def parse(self) -> Parsed:
+    def parse(self) -> File:
         """All findings, and the model of what is left."""
         tokens = self._tokens
         first, last = tokens[0], tokens[len(tokens) - 1]
@@ -85,7 +68,7 @@ class _Recovery:
         if not {"robot", "library"} & {first.text, _meant(first)} and DEFINITIONS.starter(first) is None:
             if first is not last or last.kind is not Kind.OPEN_COMMENT:
                 self._report(0, f"found {found(first)}, expected `robot` or `library`")
-            return Parsed(None, findings=self._findings)
+            return File(self._text, None, findings=self._findings)
         outline = Outline(tokens)
         root = outline.file()
         self._mend(outline.braces)
@@ -95,7 +78,7 @@ class _Recovery:
         builder = Builder(self._text)
         base = self._base(root, builder)
         findings = sorted([*self._findings, *builder.findings], key=lambda finding: finding.span)
-        return Parsed(base, builder.references, builder.declared, findings, self._regions)
+        return File(self._text, base, builder.references, builder.declared, self._regions, findings=findings)
 
     # Braces
 
@@ -205,7 +188,7 @@ class _Recovery:
         return self._tokens[block.first].is_keyword(*words)
 
     def _own_text(self, block: Block) -> str:
-        """The text of an item without what its braces hold."""
+        """The text of an item, with blanks in place of the items between its braces."""
         content = self._content[block.start : block.end]
         for item in block.items:
             content[item.start - block.start : item.end - block.start] = " " * (item.end - item.start)

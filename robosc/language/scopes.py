@@ -14,7 +14,7 @@ from robosc.semantics.instances import Instance, Instances
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from robosc.diagnostics import Span
+    from robosc.diagnostics import Diagnostic, Span
     from robosc.language.building import Name
     from robosc.language.text import Text
     from robosc.semantics.instances import Resolved
@@ -70,7 +70,7 @@ class SkippedRegions:
         return any(kind in kinds and (span is None or span.contains(place)) for kind, place in self.nameless)
 
     def is_uncertain(self, offset: int) -> bool:
-        """Whether what stands at an offset may not mean what it seems to."""
+        """Whether an offset lies in an item that is followed by text that could not be read and may belong to it."""
         return any(start <= offset < end for start, end in self.uncertain)
 
 
@@ -99,11 +99,13 @@ class File:
 
     text: Text
     base: rsc.Base | None
-    references: dict[Any, dict[str, Name]]
+    references: dict[Any, dict[str, Name]] = field(default_factory=dict)
     declared_names: Mapping[Any, Name] = field(default_factory=dict)
     regions: SkippedRegions = field(default_factory=SkippedRegions)
     #: The files of the libraries that it imports from, by the libraries' names; None: none that can be used.
     libraries: dict[str, File | None] = field(default_factory=dict)
+    #: The faults of the text itself, in order.
+    findings: list[Diagnostic] = field(default_factory=list)
 
     @cached_property
     def names(self) -> list[Reference]:
@@ -195,7 +197,7 @@ class Scope:
         self.incomplete = any(self.members(component) is None for component in self.components.values())
 
     def find(self, kind: type[Any], name: str) -> list[tuple[File, Any]]:
-        """The definitions of a kind with a name: the own one, else those of directly imported libraries."""
+        """The definitions of a kind with a name, with their files: the own one, else those of imported libraries."""
         own = self._file.declared[kind].get(name)
         if own is not None:
             return [(self._file, own)]

@@ -1,4 +1,7 @@
-"""Cuts a text into words, for what the parser can't say: what it found, and where the next definition begins."""
+"""The tokens of a text: for bounds on its complexity, and for findings and recovery where it can't be parsed.
+
+The parser matches regular expressions at offsets: only the rule at hand tells a keyword from a name.
+"""
 
 from __future__ import annotations
 

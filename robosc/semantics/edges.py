@@ -11,13 +11,13 @@ if TYPE_CHECKING:
 
 
 def edges_from(location: sct.Location, event: sct.Event | None = None) -> list[sct.Edge]:
-    """Its own edges, then those that every location of its plant has; with `event` only those for this event."""
+    """The edges that leave a location, then those that leave each location of its plant; `event` selects by event."""
     edges = [*location.edges, *location.eContainer().edges]
     return edges if event is None else [edge for edge in edges if edge.event is event]
 
 
 def edges_of(plant: sct.Plant, event: sct.Event | None = None) -> list[sct.Edge]:
-    """All edges of a plant, each once; with `event` only those for this event."""
+    """All edges of a plant, each once; `event` selects by event."""
     edges = [*(edge for location in plant.locations for edge in location.edges), *plant.edges]
     return edges if event is None else [edge for edge in edges if edge.event is event]
 

@@ -1,4 +1,4 @@
-"""The components that a robot really has: its own, and one instance of a library's component for each import."""
+"""Instances of components: each component of a robot's own text, and one of a library's component for each import."""
 
 from __future__ import annotations
 
@@ -101,7 +101,7 @@ class Instances:
     """
 
     def __init__(self, base: robosc.Base, resolved: Resolved | None = None) -> None:
-        """`resolved` is what is known of the imports below, which stay as they are, and is added to."""
+        """`resolved` caches the instances of imported components across several bases; it is added to."""
         self.base = base
         self._of: dict[robosc.Component, Instance] = {}
         resolved = {} if resolved is None else resolved

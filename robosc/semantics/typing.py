@@ -158,7 +158,10 @@ def is_number(kind: Type) -> bool:
 
 
 def operator_type(row: Operator, operands: Sequence[Type]) -> Type:
-    """The type of an operator's value, given its operands' types; as good as known even if an operand is wrong."""
+    """The type of an operator's value, given its operands' types: a condition is boolean whatever they are.
+
+    UNKNOWN for a call with wrong arguments, and for arithmetic whose operands are no numbers or are unknown.
+    """
     if row.parameters not in {0, len(operands)}:
         return UNKNOWN  # the rule `argument`
     if row.rule in CONDITIONS:

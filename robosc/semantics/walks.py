@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 _Node = TypeVar("_Node")
 _Result = TypeVar("_Result")
-_Expression = TypeVar("_Expression", bound=ex.Expression)
+_Element = TypeVar("_Element")
 
 
 def operands(expression: ex.Expression | None) -> list[ex.Expression]:
@@ -116,8 +116,8 @@ def walk(
     return result  # type: ignore[no-any-return]
 
 
-def copied(expression: _Expression) -> _Expression:
-    """A tree of its own that means the same: whoever contains the expression keeps it."""
+def copied(root: _Element) -> _Element:
+    """A copy of an expression or a type with all that it contains; what contains the original keeps it."""
 
     def copy(original: Any, children: list[Any]) -> Any:
         made, inside = type(original)(), iter(children)
@@ -133,5 +133,5 @@ def copied(expression: _Expression) -> _Expression:
                 setattr(made, name, next(inside))
         return made
 
-    made: _Expression = fold(copy, expression, lambda element: [child for _, child in contents(element)])
+    made: _Element = fold(copy, root, lambda element: [child for _, child in contents(element)])
     return made

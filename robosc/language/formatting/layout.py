@@ -23,8 +23,7 @@ _LISTS = {"ObjectValue", "CommunicationTypeSet"}
 _INLINED = {"", "ComponentType", "LocalComponent", "ImportedComponent", "Automaton"}
 #: Rules without a space between their words.
 _TIGHT = {"Access", "CommunicationReference", "PropertySegment", "IndexSegment", "IntegerDataType", "Array"}
-_TIGHT |= {"InterfaceTypeReference"}
-_TIGHT |= {"Negation", "UnaryMinus"}
+_TIGHT |= {"InterfaceTypeReference", "Negation", "UnaryMinus"}
 #: By rule the words that a line may break before, and those that it may break behind.
 _COMMUNICATION: tuple[set[str], set[str]] = (set(), {"with", ","})
 CLAUSES: dict[str, tuple[set[str], set[str]]] = {

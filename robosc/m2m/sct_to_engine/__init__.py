@@ -115,7 +115,7 @@ def _choices(
     edges: EdgeTable,
     lower: Lowering,
 ) -> list[engine.Choice]:
-    """The choices of the data to send; tells each trigger whose data is chosen its own."""
+    """The choices of the data to send; sets `choice` of the triggers."""
     roles, choices = Roles(model), {}
     for alternatives in roles.data:
         plant = plant_of(alternatives[0])

@@ -79,7 +79,7 @@ def _leaf(term: Term, before: Collection[engine.StateVariable]) -> ex.Expression
 
 
 def _built(term: Term, operands: list[ex.Expression]) -> Any:
-    """An operator on operands that are converted to what it computes in."""
+    """The expression of an operator, its operands converted to the width in which it computes."""
     kind: Any = term.operator
     if kind is engine.Saturation:
         low, high = term.leaf
@@ -101,7 +101,7 @@ def _built(term: Term, operands: list[ex.Expression]) -> Any:
 
 
 def _convert(term: Term, numbers: list[int], operands: list[ex.Expression]) -> None:
-    """Converts the operands that are numbers; those of a choice are both to be of one storage, literals too."""
+    """Converts operands that are numbers to the width of the operator; of a choice literals too, of others none."""
     choice = term.operator is ex.Conditional
     wanted = _working(term)
     for position in numbers:

@@ -1,4 +1,4 @@
-"""Pass: the events in the order of the control loop, with what it and a reader have to know about each."""
+"""Pass: the events in the order in which the control loop asks them, with their sources, groups and descriptions."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ def collect_events(
 def collect_sources(
     model: sct.SupervisoryControlModel, events: Mapping[sct.Event, engine.Event]
 ) -> list[engine.Source]:
-    """What incoming events come from; tells each event its own."""
+    """The sources of incoming events: topics, services and actions; sets `source` of the events."""
     roles, sources = Roles(model), []
     batches = {together[0] for together in roles.batches}
     for together in roles.sources:
@@ -89,7 +89,7 @@ def collect_sources(
 
 
 def collect_groups(model: sct.SupervisoryControlModel, events: Mapping[sct.Event, engine.Event]) -> list[engine.Group]:
-    """The triggers that exclude each other in a round, then those that run once in a tick; tells each its group."""
+    """Groups of triggers that exclude each other in a round or run once in a tick; sets `group` of the events."""
     roles, groups = Roles(model), []
     for together in roles.shared_topics:
         groups.append(engine.Group(name=plant_of(together[0]).topic, span=engine.Span.round))

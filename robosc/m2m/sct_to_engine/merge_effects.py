@@ -1,4 +1,4 @@
-"""Pass: one simultaneous effect an event, of what its edges do in all plants."""
+"""Pass: one simultaneous effect for each event, made of the updates and moves of its edges in all plants."""
 
 from __future__ import annotations
 

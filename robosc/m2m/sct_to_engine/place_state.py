@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING, TypeVar
 from robosc.metamodel import engine, sct
 from robosc.metamodel import expression as ex
 from robosc.semantics.domains import domain, storage
+from robosc.semantics.evaluation import evaluate
 from robosc.semantics.naming import Names
+from robosc.semantics.walks import copied
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -44,31 +46,19 @@ def _state(plant: sct.Plant) -> Iterator[tuple[sct.Plant | sct.DiscreteVariable,
         initial = next(number for number, location in enumerate(plant.locations) if location.initial)
         yield plant, plant.name, engine.LocationType(plant=plant), initial
     for variable in plant.variables:
-        yield variable, f"{plant.origin or plant.name}.{variable.name}", variable.type, literal_value(variable.initial)
+        initial = int(evaluate(variable.initial, _position))  # type: ignore[call-overload]
+        yield variable, f"{plant.origin or plant.name}.{variable.name}", variable.type, initial
 
 
-def literal_value(literal: ex.Expression) -> int:
-    """The value of a literal, with a sign or without."""
-    match literal:
-        case ex.UnaryMinus():
-            return -literal_value(literal.operand)
-        case ex.EnumerationLiteralReference():
-            return list(literal.literal.eContainer().literals).index(literal.literal)
-        case ex.BooleanLiteral() | ex.IntegerLiteral():
-            return int(literal.value)
-    raise ValueError(f"{type(literal).__name__} is no literal")
+def _position(reference: ex.Expression) -> int:
+    """The position of a literal in its enumeration."""
+    assert isinstance(reference, ex.EnumerationLiteralReference)
+    return list(reference.literal.eContainer().literals).index(reference.literal)
 
 
 def _keep(declared: _Declared, kind: ex.Type) -> _Declared:
-    """Says of what type it is, by a copy, as each type has one owner; its range, and its storage."""
-    match kind:
-        case ex.IntegerType():
-            kind = ex.IntegerType(minimum=kind.minimum, maximum=kind.maximum)
-        case ex.EnumerationType():
-            kind = ex.EnumerationType(enumeration=kind.enumeration)
-        case ex.BooleanType():
-            kind = ex.BooleanType()
-    declared.type = kind
+    """Fills in the type, as a copy, since each type has one owner, and from it the range and the storage."""
+    declared.type = copied(kind)
     declared.minimum, declared.maximum = domain(kind)
     declared.bits, declared.signed = storage(domain(kind))
     return declared

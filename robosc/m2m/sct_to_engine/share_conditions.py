@@ -58,7 +58,7 @@ class Shared:
         return {operand: stands.get(operand, operand) for operand in operands}
 
     def operands(self, term: Term) -> Sequence[Term]:
-        """The operands of a term, shared ones for those that they stand for."""
+        """The operands of a term; several that make up a shared junction are replaced by it."""
         if term.operator not in _JUNCTIONS:
             return term.operands
         return list(dict.fromkeys(self.folded(term.operator, term.operands, term).values()))
@@ -78,7 +78,7 @@ class Shared:
         return found
 
     def ask_for(self, guard: GuardTerms) -> dict[Term, list[engine.Origin]]:
-        """The terms of a guard with those who ask for them: none twice, those together that are shared."""
+        """The terms whose conjunction is a guard, with the origins that ask for each; shared junctions are one."""
         if guard.whole.constant is not None:
             false = [origin for origin, part in guard.parts if part is guard.whole]
             either = [origin for origin, part in guard.parts if part.constant is None]
