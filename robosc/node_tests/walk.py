@@ -18,7 +18,8 @@ from robosc.runtime.core.event_log import EventLog, ReceivedData, json_text, nes
 from robosc.runtime.core.event_loop import EventLoop
 from robosc.runtime.core.node_data import NodeData
 from robosc.runtime.core.port import Outcome
-from robosc.runtime.core.settings import Settings, controller_parameters
+from robosc.runtime.core.settings import Settings
+from robosc.semantics.parameters import controller_parameters
 from robosc.semantics.roles import event_name
 
 if TYPE_CHECKING:

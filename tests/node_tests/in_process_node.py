@@ -13,7 +13,8 @@ from robosc.runtime.core.controller import Controller
 from robosc.runtime.core.event_log import EventLog
 from robosc.runtime.core.event_loop import EventLoop
 from robosc.runtime.core.port import Outcome
-from robosc.runtime.core.settings import Settings, controller_parameters
+from robosc.runtime.core.settings import Settings
+from robosc.semantics.parameters import controller_parameters
 
 if TYPE_CHECKING:
     from collections.abc import Callable

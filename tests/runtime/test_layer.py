@@ -13,7 +13,8 @@ from robosc.configuration import Configuration
 from robosc.files.resources import locate
 from robosc.runtime.core.event_loop import EventLoop
 from robosc.runtime.core.layer import Layer
-from robosc.runtime.core.settings import Settings, layer_parameters
+from robosc.runtime.core.settings import Settings
+from robosc.semantics.parameters import layer_parameters
 from tests.runtime.fake import FakePort, Record, supervised
 
 if TYPE_CHECKING:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import re
-from itertools import count
 from typing import TYPE_CHECKING, TypeVar
 
 from robosc.m2t.c.names import KEYWORDS, CNames
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
 from robosc.semantics.naming import Names
+from robosc.semantics.parameters import topic_words
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -42,12 +42,7 @@ class CppNames:
             for component in self.components
             for variable, name in _fresh(kept_for(graph.variables, component)).items()
         }
-        topics: list[rosgraph.Subscription | rosgraph.Publisher] = [*graph.subscriptions, *graph.publishers]
-        self._words: dict[rosgraph.Subscription | rosgraph.Publisher, str] = {}
-        for topic in topics:
-            word, taken = _word(topic.topic), self._words.values()
-            alternatives = (f"{word}_{number}" for number in count(2))
-            self._words[topic] = word if word not in taken else next(name for name in alternatives if name not in taken)
+        self._words = topic_words(graph)
 
     def enumeration(self, enumeration: ex.Enumeration) -> str | None:
         """The type of an enumeration that only the node knows; None for one of the sct model."""
@@ -104,7 +99,3 @@ def identifier(name: str) -> str:
 def _fresh(elements: Sequence[_Element]) -> dict[_Element, str]:
     names = Names(KEYWORDS | _MACROS)
     return {element: names.fresh(identifier(element.name)) for element in elements}
-
-
-def _word(topic: str) -> str:
-    return re.sub(r"[^A-Za-z0-9]+", "_", topic).strip("_") or "topic"

@@ -13,6 +13,7 @@ from robosc.m2t.ros.names import CppNames, kept_for
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
 from robosc.semantics.messages import parts_with_headers, reads_elements
+from robosc.semantics.naming import Names
 from robosc.semantics.operators import PRECEDENCE
 from robosc.semantics.typing import DOUBLE, infer
 from robosc.semantics.walks import parts
@@ -187,6 +188,7 @@ class Node:
         self._names = CppNames(graph)
         self._printer = CppPrinter(self._names)
         self._reasons = Reasons(graph.model)
+        self._sent = Names()
         self.robot = graph.name
         self.prefix = self._names.c.prefix
         self.enumerations = [self._enumeration(enumeration) for enumeration in graph.enumerations]
@@ -392,7 +394,7 @@ class Node:
     def _message(self, sending: rosgraph.Sending) -> Message:
         plant: sct.Plant = sending.event.eContainer()
         return Message(
-            self._names.c.member(plant).removeprefix(f"{plant.kind.name}_"),
+            self._sent.fresh(self._names.c.member(plant).removeprefix(f"{plant.kind.name}_")),
             self._names.c.enumerator(sending.event),
             self._reasons.of(sending.event),
             [self._alternative(provided) for provided in sending.alternatives],

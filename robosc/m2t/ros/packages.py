@@ -14,6 +14,7 @@ from robosc.m2t.ros.layer import LayerNode
 from robosc.m2t.ros.node import Node
 from robosc.m2t.ros.rendering import fold, node_environment
 from robosc.semantics.definition import definition_text
+from robosc.semantics.parameters import controller_parameters, layer_parameters
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -117,6 +118,7 @@ class RosTarget:
         reports = {"std_msgs"} if configuration.publish_state_information or (layer and layer.gates) else set()
         types = {interface.package for interface in node.interfaces} | reports
         own = [definition.removeprefix("include/")] if configuration.publish_state_information else []
+        declared = (layer_parameters if layer else controller_parameters)(graph, configuration, "")
         text = f"The {'supervisory controller' if kind == 'controller' else 'supervisory layer'} of {graph.name}."
         values = {
             "kind": kind,
@@ -128,12 +130,11 @@ class RosTarget:
             "description": configuration.package.description or text,
             "included": sorted([*own, *(f"{header}.hpp" for header in included)]),
             "settings": configuration,
-            "period_ms": configuration.control_loop.period_ms,
+            "parameters": {parameter.name: parameter for parameter in declared},
             "publishes_state": configuration.publish_state_information,
             "writes_log": configuration.write_events_to_log,
             "definition": definition_text(graph),
             "no_stop": _no_stop(node, configuration),
-            "watchdog_ms": lambda topic: configuration.watchdog_ms.get(topic.removeprefix("/"), 0),
             "has_defaults": has_defaults,
             "frame": lambda topic: configuration.frame_id.get(topic.removeprefix("/"), ""),
             "controller": configuration.supervisor.controller,

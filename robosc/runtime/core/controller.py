@@ -17,8 +17,9 @@ from robosc.runtime.core.event_handler import EventHandler
 from robosc.runtime.core.event_log import nested
 from robosc.runtime.core.monitors import GraphMonitor, Watchdog
 from robosc.runtime.core.node_data import NotFiniteError, bounded, fill
-from robosc.runtime.core.settings import SafeMessages, watchdog
+from robosc.runtime.core.settings import SafeMessages
 from robosc.semantics.messages import parts_with_headers
+from robosc.semantics.parameters import topic_words, watchdog
 from robosc.semantics.roles import event_name, plant_of
 
 if TYPE_CHECKING:
@@ -126,8 +127,9 @@ class Controller(EventHandler):
                 self._port.warn(NO_STOP_ON_SILENCE)
             elif not self._settings.configuration.says_how_to_stop:
                 self._port.warn(NO_STOP)
+        words = topic_words(self._graph)
         for subscription in self._graph.subscriptions:
-            seconds = self._settings.seconds(watchdog(subscription))
+            seconds = self._settings.seconds(watchdog(words, subscription))
             if seconds:
                 self._watchdogs[subscription] = self._watch(subscription.topic, seconds)
         period = self._settings.seconds("period_ms")

@@ -25,7 +25,8 @@ if TYPE_CHECKING:
     from robosc.runtime.core.event_loop import EventLoop
     from robosc.runtime.core.port import Client, Message
     from robosc.runtime.core.proxies import ActionProxy, Answer
-    from robosc.runtime.core.settings import Parameter, Settings, Value
+    from robosc.runtime.core.settings import Settings
+    from robosc.semantics.parameters import Parameter, Value
 
 #: Seconds that a node waits at most before it looks whether it was interrupted, and for what it sent at its end.
 LONGEST_WAIT = 0.1

@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from robosc.runtime.core.layer import Layer
     from robosc.runtime.core.port import Client, Goal, Message
     from robosc.runtime.core.proxies import ActionProxy, Answer
-    from robosc.runtime.core.settings import Parameter
+    from robosc.semantics.parameters import Parameter
 
 #: Nothing tells when a message has left the node.
 _DELIVERY = 0.2

@@ -56,7 +56,7 @@ if TYPE_CHECKING:
     from robosc.runtime.core.layer import Layer
     from robosc.runtime.core.port import Client, Goal, Message
     from robosc.runtime.core.proxies import ActionProxy, Answer
-    from robosc.runtime.core.settings import Parameter
+    from robosc.semantics.parameters import Parameter
 
 
 class Ros2Node(Node):

@@ -13,7 +13,8 @@ from robosc.m2t.models import Models
 from robosc.metamodel import rosgraph, xmi
 from robosc.runtime.core.event_loop import EventLoop
 from robosc.runtime.core.layer import Layer
-from robosc.runtime.core.settings import Settings, layer_parameters
+from robosc.runtime.core.settings import Settings
+from robosc.semantics.parameters import layer_parameters
 from robosc.semantics.roles import event_name
 from robosc.simulation import Simulation
 from robosc.simulation.session import Session

@@ -2,6 +2,7 @@
 #ifndef ROBOSC_ROS1_ACTION_PROXY_HPP_
 #define ROBOSC_ROS1_ACTION_PROXY_HPP_
 
+#include <chrono>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -13,7 +14,7 @@
 #include <boost/make_shared.hpp>
 
 #include "robosc/goal_proxy.hpp"
-#include "robosc_ros1/deadline.hpp"
+#include "robosc_ros1/countdown.hpp"
 
 namespace robosc {
 inline namespace v1 {
@@ -30,9 +31,10 @@ class ActionProxy : public GoalProxy<typename Type::_action_goal_type::_goal_typ
   using Base = GoalProxy<typename ActionGoal::_goal_type, typename ActionFeedback::_feedback_type,
                          typename ActionResult::_result_type>;
 
-  ActionProxy(const std::string& controller_side, const std::string& robot_side, int timeout_ms,
+  ActionProxy(const std::string& controller_side, const std::string& robot_side, std::chrono::milliseconds timeout,
               typename Base::Handlers handlers)
-      : Base(" within " + std::to_string(timeout_ms) + " ms", std::move(handlers)), timeout_(timeout_ms / 1000.0) {
+      : Base(" within " + std::to_string(timeout.count()) + " ms", std::move(handlers)),
+        timeout_(std::chrono::duration<double>(timeout).count()) {
     const auto hints = ros::TransportHints().tcpNoDelay();
     goal_publisher_ = node_.advertise<ActionGoal>(robot_side + "/goal", 10);
     cancel_publisher_ = node_.advertise<actionlib_msgs::GoalID>(robot_side + "/cancel", 10);
@@ -148,8 +150,11 @@ class ActionProxy : public GoalProxy<typename Type::_action_goal_type::_goal_typ
     cancel_publisher_.publish(id);
   }
 
-  void restart() override { deadline_.start(timeout_); }
-  bool is_over() override { return deadline_.over(); }
+  void restart() override {
+    end_ = Timer::now() + timeout_;
+    look_.start();
+  }
+  bool is_over() override { return Timer::now() >= end_; }
 
   void cancel_unanswered() override {
     if (refused_ || status_ != Status::ACTIVE) return;
@@ -167,7 +172,7 @@ class ActionProxy : public GoalProxy<typename Type::_action_goal_type::_goal_typ
   void conclude() {
     ended_ = message_.goal_id.id;
     this->finish();
-    deadline_.stop();
+    look_.stop();
   }
 
   void publish_result(const actionlib_msgs::GoalID& goal, std::uint8_t status, const std::string& why) {
@@ -212,7 +217,8 @@ class ActionProxy : public GoalProxy<typename Type::_action_goal_type::_goal_typ
   ros::Subscriber status_subscription_;
   ros::Subscriber feedback_subscription_;
   ros::Subscriber result_subscription_;
-  Deadline deadline_{[this] { this->look(); }};
+  Timer look_{node_, std::chrono::milliseconds(20), [this] { this->look(); }};
+  double end_ = 0.0;
   ActionGoal message_;
   std::uint8_t status_ = Status::PENDING;
   bool refused_ = false;

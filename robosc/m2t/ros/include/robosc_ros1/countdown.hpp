@@ -1,4 +1,4 @@
-// Something that happens later.
+// What happens later, once or again and again.
 #ifndef ROBOSC_ROS1_COUNTDOWN_HPP_
 #define ROBOSC_ROS1_COUNTDOWN_HPP_
 
@@ -14,50 +14,75 @@
 namespace robosc {
 inline namespace v1 {
 
-/// Calls a function once, some time after its start: counted on the steady clock or, with use_sim_time, in ROS time.
-/// The call comes through the node's callback queue.
-class Countdown {
+/// Calls a function at the end of every period, or `once`, after each start: on the steady clock or, with use_sim_time,
+/// in ROS time. The calls come through the node's callback queue.
+class Timer {
  public:
-  Countdown(ros::NodeHandle& node, std::chrono::milliseconds time, std::function<void()> over)
-      : over_(std::move(over)) {
-    const double seconds = std::chrono::duration<double>(time).count();
+  Timer(ros::NodeHandle& node, std::chrono::milliseconds period, std::function<void()> function, bool once = false)
+      : function_(std::move(function)) {
+    const double seconds = std::chrono::duration<double>(period).count();
     if (ros::Time::isSimTime()) {
-      simulated_ = node.createTimer(ros::Duration(seconds), [this](const ros::TimerEvent&) { end(); }, true, false);
+      simulated_ =
+          node.createTimer(ros::Duration(seconds), [this](const ros::TimerEvent&) { function_(); }, once, false);
     } else {
       steady_ = node.createSteadyTimer(
-          ros::WallDuration(seconds), [this](const ros::SteadyTimerEvent&) { end(); }, true, false);
+          ros::WallDuration(seconds), [this](const ros::SteadyTimerEvent&) { function_(); }, once, false);
     }
   }
 
-  Countdown(const Countdown&) = delete;
-  Countdown& operator=(const Countdown&) = delete;
+  Timer(const Timer&) = delete;
+  Timer& operator=(const Timer&) = delete;
 
-  /// Counts from the full time, also where it was counting.
   void start() {
-    stop();
-    running_ = true;
     simulated_.start();
     steady_.start();
   }
 
   void stop() {
-    running_ = false;
     simulated_.stop();
     steady_.stop();
+  }
+
+  /// The time of the clock that timers count, in seconds.
+  static double now() { return ros::Time::isSimTime() ? ros::Time::now().toSec() : ros::SteadyTime::now().toSec(); }
+
+ private:
+  std::function<void()> function_;
+  ros::Timer simulated_;
+  ros::SteadyTimer steady_;
+};
+
+/// Calls a function once, some time after its start.
+class Countdown {
+ public:
+  Countdown(ros::NodeHandle& node, std::chrono::milliseconds time, std::function<void()> over)
+      : over_(std::move(over)),
+        timer_(
+            node, time,
+            [this] {
+              running_ = false;
+              over_();
+            },
+            true) {}
+
+  /// Counts from the full time, also where it was counting.
+  void start() {
+    stop();
+    running_ = true;
+    timer_.start();
+  }
+
+  void stop() {
+    running_ = false;
+    timer_.stop();
   }
 
   bool running() const { return running_; }
 
  private:
-  void end() {
-    running_ = false;
-    over_();
-  }
-
   std::function<void()> over_;
   bool running_ = false;
-  ros::Timer simulated_;
-  ros::SteadyTimer steady_;
+  Timer timer_;
 };
 
 }  // namespace v1

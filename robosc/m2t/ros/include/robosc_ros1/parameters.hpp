@@ -13,9 +13,10 @@
 namespace robosc {
 inline namespace v1 {
 
-/// A parameter, or a value where it is not set; throws std::invalid_argument where it has another type.
+/// A parameter, or a value where it is not set; throws std::invalid_argument where it has another type. What it means
+/// is said to readers of the code only.
 template <typename Value>
-Value parameter(const ros::NodeHandle& node, const std::string& name, const Value& value) {
+Value parameter(const ros::NodeHandle& node, const std::string& name, const Value& value, const char* = "") {
   Value found = value;
   if (node.getParam(name, found) || !node.hasParam(name)) return found;
   const char* type = std::is_same_v<Value, bool>  ? "true or false"
@@ -25,7 +26,8 @@ Value parameter(const ros::NodeHandle& node, const std::string& name, const Valu
 }
 
 /// The same for a whole number between two bounds.
-inline int parameter(const ros::NodeHandle& node, const std::string& name, int value, int low, int high) {
+inline int parameter(const ros::NodeHandle& node, const std::string& name, int value, int low, int high,
+                     const char* = "") {
   const int found = parameter(node, name, value);
   if (found >= low && found <= high) return found;
   throw std::invalid_argument("the parameter " + node.resolveName(name) + " is " + std::to_string(found) +

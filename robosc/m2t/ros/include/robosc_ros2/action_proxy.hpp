@@ -19,7 +19,7 @@
 
 #include "robosc/callback_guard.hpp"
 #include "robosc/goal_proxy.hpp"
-#include "robosc_ros2/clock.hpp"
+#include "robosc_ros2/countdown.hpp"
 
 namespace robosc {
 inline namespace v1 {

@@ -1,9 +1,10 @@
-// A timer that runs once.
+// Clocks that waiting is measured with, and a timer that runs once.
 #ifndef ROBOSC_ROS2_COUNTDOWN_HPP_
 #define ROBOSC_ROS2_COUNTDOWN_HPP_
 
 #include <chrono>
 #include <functional>
+#include <memory>
 #include <utility>
 
 #include <rclcpp/rclcpp.hpp>
@@ -12,6 +13,15 @@
 
 namespace robosc {
 inline namespace v1 {
+
+/// How often something that is waited for is looked at.
+inline constexpr std::chrono::milliseconds kLook(20);
+
+/// The steady clock; the time of ROS where `use_sim_time` is set.
+inline rclcpp::Clock::SharedPtr waiting_clock(rclcpp::Node& node) {
+  if (node.get_parameter("use_sim_time").as_bool()) return node.get_clock();
+  return std::make_shared<rclcpp::Clock>(RCL_STEADY_TIME);
+}
 
 /// Calls a function once, some time after each start: on the steady clock, or in ROS time with `use_sim_time`.
 class Countdown {

@@ -66,13 +66,19 @@ model::Distance to_Distance([[maybe_unused]] const Data& value) {
 
 class Layer {
  public:
-  // Parameters: period_ms (shortest time from one report on ~/state to the next), service_timeout_ms (after this time without an answer a call has failed), action_timeout_ms (after this time without acceptance a goal has failed), event_log (a file that gets a line of JSON for each event; empty: none), log_level.
-  Layer() : log_(parameter<std::string>(private_, "event_log", "")) {
+  Layer() :
+      log_(parameter<std::string>(private_, "event_log", "",
+      "A file that gets a line of JSON for each event; empty: none.")) {
     set_log_level(private_);
-    const std::chrono::milliseconds service_timeout(
-        parameter(private_, "service_timeout_ms", 2000, 1, 24 * 3600 * 1000));
-    const int action_timeout = parameter(private_, "action_timeout_ms", 2000, 1, 24 * 3600 * 1000);
-    const double period = parameter(private_, "period_ms", 100, 1, 24 * 3600 * 1000) / 1000.0;
+    const auto service_timeout =
+        std::chrono::milliseconds(parameter(private_, "service_timeout_ms", 2000, 1, 86400000,
+        "After this time without an answer a call has failed."));
+    const auto action_timeout =
+        std::chrono::milliseconds(parameter(private_, "action_timeout_ms", 2000, 1, 86400000,
+        "After this time without acceptance a goal has failed."));
+    const auto period =
+        std::chrono::milliseconds(parameter(private_, "period_ms", 100, 1, 86400000,
+        "Time from one report of the state to the next."));
 
     blocked_report_ = private_.advertise<std_msgs::String>("blocked", 10);
     state_report_ = private_.advertise<std_msgs::String>("state", 10);
@@ -128,7 +134,8 @@ class Layer {
     go_to_proxy_ = std::make_unique<ActionProxy<nav2_msgs::NavigateToPoseAction>>(
         self + "/controller/go_to", "/go_to", action_timeout, go_to_handlers);
     timer_ =
-        node_.createSteadyTimer(ros::WallDuration(period), [this](const ros::SteadyTimerEvent&) { publish_state(); });
+        node_.createSteadyTimer(ros::WallDuration(std::chrono::duration<double>(period).count()),
+        [this](const ros::SteadyTimerEvent&) { publish_state(); });
     spinner_.start();
   }
 

@@ -72,15 +72,15 @@ class Layer : public rclcpp::Node {
       : rclcpp::Node("usher_layer", options),
         log_(parameter<std::string>(*this, "event_log", "",
             "A file that gets a line of JSON for each event; empty: none.")) {
-    const std::chrono::milliseconds service_timeout(
-        parameter(*this, "service_timeout_ms", 2000, 1, 24 * 3600 * 1000,
-            "After this time without an answer a call has failed."));
-    const std::chrono::milliseconds action_timeout(
-        parameter(*this, "action_timeout_ms", 2000, 1, 24 * 3600 * 1000,
-            "After this time without acceptance a goal has failed."));
-    const std::chrono::milliseconds period(
-        parameter(*this, "period_ms", 100, 1, 24 * 3600 * 1000,
-            "Shortest time from one report on ~/state to the next."));
+    const auto service_timeout =
+        std::chrono::milliseconds(parameter(*this, "service_timeout_ms", 2000, 1, 86400000,
+        "After this time without an answer a call has failed."));
+    const auto action_timeout =
+        std::chrono::milliseconds(parameter(*this, "action_timeout_ms", 2000, 1, 86400000,
+        "After this time without acceptance a goal has failed."));
+    const auto period =
+        std::chrono::milliseconds(parameter(*this, "period_ms", 100, 1, 86400000,
+        "Time from one report of the state to the next."));
 
     blocked_report_ = create_publisher<std_msgs::msg::String>("~/blocked", 10);
     state_report_ = create_publisher<std_msgs::msg::String>("~/state", 10);

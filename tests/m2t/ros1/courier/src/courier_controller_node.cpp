@@ -91,19 +91,25 @@ model::Size to_Size([[maybe_unused]] const Data& value) {
 
 class Controller {
  public:
-  // All that happens comes through the queue of `node`, which one thread serves. The parameters are described in
-  // config/courier_controller.yaml.
+  // All that happens comes through the queue of `node`, which one thread serves.
   explicit Controller(const ros::NodeHandle& node)
       : node_(node),
           log_(parameter<std::string>(private_, "event_log",
-          default_log(ros::this_node::getName(), "courier_controller"))) {
+          default_log(ros::this_node::getName(), "courier_controller"),
+          "A file that gets a line of JSON for each event; empty: none.")) {
     courier_settings settings = courier_default_settings;
     settings.events_per_tick =
-        static_cast<std::uint16_t>(parameter(private_, "events_per_tick", settings.events_per_tick, 0, 65535));
+        static_cast<std::uint16_t>(parameter(private_, "events_per_tick", settings.events_per_tick, 0, 65535,
+        "Most events sent in a tick; 0: no limit."));
     settings.reactions_per_tick =
-        static_cast<std::uint16_t>(parameter(private_, "reactions_per_tick", settings.reactions_per_tick, 0, 65535));
-    settings.react_immediately = parameter<bool>(private_, "react_immediately", settings.react_immediately);
-    const double period = std::chrono::duration<double>(milliseconds("period_ms", 100)).count();
+        static_cast<std::uint16_t>(parameter(private_, "reactions_per_tick", settings.reactions_per_tick, 0, 65535,
+        "Most events started by the data of one topic between two ticks."));
+    settings.react_immediately =
+        parameter<bool>(private_, "react_immediately", settings.react_immediately,
+        "Whether incoming data may start events at once.");
+    const auto period =
+        std::chrono::milliseconds(parameter(private_, "period_ms", 100, 1, 86400000,
+        "Time from one tick to the next."));
 
     target_publisher_ = node_.advertise<geometry_msgs::PoseStamped>("target", 10);
     monitor_.commands<geometry_msgs::PoseStamped>("target");
@@ -130,29 +136,29 @@ class Controller {
     };
     courier_init(&supervisor_, &settings, &hooks);
 
-    watchdog_stops_ = parameter<bool>(private_, "watchdog_stops", false);
+
+    watchdog_stops_ =
+        parameter<bool>(private_, "watchdog_stops", false,
+        "Whether a silent topic holds commands back and cancels actions. It sends nothing: what the robot was told last stands.");
     const auto hints = ros::TransportHints().tcpNoDelay();
-    scan_watchdog_.emplace(parameter(private_, "watchdog_ms/scan", 0, 0, kDay),
+    scan_watchdog_.emplace(parameter(private_, "watchdog_ms/scan", 0, 0, 86400000, "Longest silence of /scan; 0: any."),
         [this](const auto& watchdog) { on_silence("/scan", watchdog); }, node_);
     scan_subscription_ = node_.subscribe("/scan", 10, &Controller::on_scan, this, hints);
     scan_watchdog_->start();
     monitor_.listens_to<sensor_msgs::LaserScan>("/scan");
-    count_watchdog_.emplace(parameter(private_, "watchdog_ms/count", 0, 0, kDay),
+    count_watchdog_.emplace(parameter(private_, "watchdog_ms/count", 0, 0, 86400000,
+        "Longest silence of count; 0: any."),
         [this](const auto& watchdog) { on_silence("count", watchdog); }, node_);
     count_subscription_ = node_.subscribe("count", 10, &Controller::on_count, this, hints);
     count_watchdog_->start();
     monitor_.listens_to<std_msgs::Int16>("count");
-    word_watchdog_.emplace(parameter(private_, "watchdog_ms/word", 0, 0, kDay),
+    word_watchdog_.emplace(parameter(private_, "watchdog_ms/word", 0, 0, 86400000, "Longest silence of word; 0: any."),
         [this](const auto& watchdog) { on_silence("word", watchdog); }, node_);
     word_subscription_ = node_.subscribe("word", 10, &Controller::on_word, this, hints);
     word_watchdog_->start();
     monitor_.listens_to<std_msgs::String>("word");
-    if (ros::Time::isSimTime()) {
-      timer_ = node_.createTimer(ros::Duration(period), [this](const ros::TimerEvent&) { tick(); });
-    } else {
-      steady_timer_ =
-          node_.createSteadyTimer(ros::WallDuration(period), [this](const ros::SteadyTimerEvent&) { tick(); });
-    }
+    timer_.emplace(node_, period, [this] { tick(); });
+    timer_->start();
     monitor_.start();
     warn_of_no_stop();
   }
@@ -434,13 +440,7 @@ class Controller {
     return components;
   }
 
-  std::chrono::milliseconds milliseconds(const std::string& name, int value) const {
-    return std::chrono::milliseconds(parameter(private_, name, value, 1, kDay));
-  }
-
   double seconds() const { return ros::Time::now().toSec(); }
-
-  static constexpr int kDay = 24 * 3600 * 1000;
 
   ros::NodeHandle node_;
   ros::NodeHandle private_{"~"};
@@ -487,8 +487,7 @@ class Controller {
   ros::Subscriber count_subscription_;
   std::optional<Watchdog<Countdown>> word_watchdog_;
   ros::Subscriber word_subscription_;
-  ros::Timer timer_;
-  ros::SteadyTimer steady_timer_;
+  std::optional<Timer> timer_;
   GraphMonitor monitor_{node_};
 };
 

@@ -56,17 +56,33 @@ std::uint8_t to_Distance([[maybe_unused]] const Data& value) {
 
 class Controller {
  public:
-  // All that happens comes through the queue of `node`, which one thread serves. The parameters are described in
-  // config/porter_controller.yaml.
+  // All that happens comes through the queue of `node`, which one thread serves.
   explicit Controller(const ros::NodeHandle& node)
-      : node_(node), log_(parameter<std::string>(private_, "event_log", "")) {
+      : node_(node),
+          log_(parameter<std::string>(private_, "event_log", "",
+          "A file that gets a line of JSON for each event; empty: none.")) {
     porter_settings settings = porter_default_settings;
     settings.events_per_tick =
-        static_cast<std::uint16_t>(parameter(private_, "events_per_tick", settings.events_per_tick, 0, 65535));
+        static_cast<std::uint16_t>(parameter(private_, "events_per_tick", settings.events_per_tick, 0, 65535,
+        "Most events sent in a tick; 0: no limit."));
     settings.reactions_per_tick =
-        static_cast<std::uint16_t>(parameter(private_, "reactions_per_tick", settings.reactions_per_tick, 0, 65535));
-    settings.react_immediately = parameter<bool>(private_, "react_immediately", settings.react_immediately);
-    const double period = std::chrono::duration<double>(milliseconds("period_ms", 100)).count();
+        static_cast<std::uint16_t>(parameter(private_, "reactions_per_tick", settings.reactions_per_tick, 0, 65535,
+        "Most events started by the data of one topic between two ticks."));
+    settings.react_immediately =
+        parameter<bool>(private_, "react_immediately", settings.react_immediately,
+        "Whether incoming data may start events at once.");
+    const auto period =
+        std::chrono::milliseconds(parameter(private_, "period_ms", 100, 1, 86400000,
+        "Time from one tick to the next."));
+    const auto service_timeout =
+        std::chrono::milliseconds(parameter(private_, "service_timeout_ms", 3000, 1, 86400000,
+        "After this time without an answer a call has failed."));
+    const auto action_timeout =
+        std::chrono::milliseconds(parameter(private_, "action_timeout_ms", 2000, 1, 86400000,
+        "After this time without acceptance a goal has failed."));
+    const auto retry =
+        std::chrono::milliseconds(parameter(private_, "retry_ms", 500, 1, 86400000,
+        "From the failure of a service or action to its reset."));
 
     cmd_vel_publisher_ = node_.advertise<geometry_msgs::Twist>("cmd_vel", 10);
     monitor_.commands<geometry_msgs::Twist>("cmd_vel");
@@ -85,9 +101,6 @@ class Controller {
     };
     porter_init(&supervisor_, &settings, &hooks);
 
-    const auto retry = milliseconds("retry_ms", 500);
-    const auto service_timeout = milliseconds("service_timeout_ms", 3000);
-    const auto action_timeout = milliseconds("action_timeout_ms", 2000);
     grip_retry_.emplace(node_, retry, [this] { wake(); });
     grip_client_.emplace(node_, "/gripper/grip", service_timeout, ServiceClient<std_srvs::SetBool>::Handlers{
         [this](const auto& response) { on_grip_response(response); },
@@ -103,24 +116,24 @@ class Controller {
         [this](const std::string& why) { on_travel_error(why); },
         [this] { wake(); }});
 
-    watchdog_stops_ = parameter<bool>(private_, "watchdog_stops", true);
+    watchdog_stops_ =
+        parameter<bool>(private_, "watchdog_stops", true,
+        "Whether a silent topic holds commands back, cancels actions and sends halt.");
     const auto hints = ros::TransportHints().tcpNoDelay();
-    order_watchdog_.emplace(parameter(private_, "watchdog_ms/order", 0, 0, kDay),
+    order_watchdog_.emplace(parameter(private_, "watchdog_ms/order", 0, 0, 86400000,
+        "Longest silence of order; 0: any."),
         [this](const auto& watchdog) { on_silence("order", watchdog); }, node_);
     order_subscription_ = node_.subscribe("order", 10, &Controller::on_order, this, hints);
     order_watchdog_->start();
     monitor_.listens_to<std_msgs::Float32>("order");
-    stop_watchdog_.emplace(parameter(private_, "watchdog_ms/stop", 400, 0, kDay),
+    stop_watchdog_.emplace(parameter(private_, "watchdog_ms/stop", 400, 0, 86400000,
+        "Longest silence of /stop; 0: any."),
         [this](const auto& watchdog) { on_silence("/stop", watchdog); }, node_);
     stop_subscription_ = node_.subscribe("/stop", 10, &Controller::on_stop, this, hints);
     stop_watchdog_->start();
     monitor_.listens_to<std_msgs::Empty>("/stop");
-    if (ros::Time::isSimTime()) {
-      timer_ = node_.createTimer(ros::Duration(period), [this](const ros::TimerEvent&) { tick(); });
-    } else {
-      steady_timer_ =
-          node_.createSteadyTimer(ros::WallDuration(period), [this](const ros::SteadyTimerEvent&) { tick(); });
-    }
+    timer_.emplace(node_, period, [this] { tick(); });
+    timer_->start();
     monitor_.start();
   }
 
@@ -445,13 +458,7 @@ class Controller {
     return components;
   }
 
-  std::chrono::milliseconds milliseconds(const std::string& name, int value) const {
-    return std::chrono::milliseconds(parameter(private_, name, value, 1, kDay));
-  }
-
   double seconds() const { return ros::Time::now().toSec(); }
-
-  static constexpr int kDay = 24 * 3600 * 1000;
 
   ros::NodeHandle node_;
   ros::NodeHandle private_{"~"};
@@ -494,8 +501,7 @@ class Controller {
   ros::Subscriber order_subscription_;
   std::optional<Watchdog<Countdown>> stop_watchdog_;
   ros::Subscriber stop_subscription_;
-  ros::Timer timer_;
-  ros::SteadyTimer steady_timer_;
+  std::optional<Timer> timer_;
   GraphMonitor monitor_{node_};
 };
 

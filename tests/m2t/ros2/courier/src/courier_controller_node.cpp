@@ -394,17 +394,17 @@ class Controller : public rclcpp::Node {
         default_log(get_fully_qualified_name(), "courier_controller"),
         "A file that gets a line of JSON for each event; empty: none."));
     courier_settings settings = courier_default_settings;
-    settings.events_per_tick = static_cast<std::uint16_t>(parameter(
-        *this, "events_per_tick", settings.events_per_tick, 0, 65535, "Most events sent in a tick; 0: no limit."));
-    settings.reactions_per_tick = static_cast<std::uint16_t>(
-        parameter(*this, "reactions_per_tick", settings.reactions_per_tick, 0, 65535,
-                  "Most events started by the data of one topic between two ticks."));
-    settings.react_immediately = parameter<bool>(*this, "react_immediately", settings.react_immediately,
-                                                 "Whether incoming data may start events at once.");
-    const auto milliseconds = [this](const std::string& name, int value, const std::string& meaning) {
-      return std::chrono::milliseconds(parameter(*this, name, value, 1, 24 * 3600 * 1000, meaning));
-    };
-    const auto period = milliseconds("period_ms", 100, "Time from one tick to the next.");
+    settings.events_per_tick =
+        static_cast<std::uint16_t>(parameter(*this, "events_per_tick", settings.events_per_tick, 0, 65535,
+        "Most events sent in a tick; 0: no limit."));
+    settings.reactions_per_tick =
+        static_cast<std::uint16_t>(parameter(*this, "reactions_per_tick", settings.reactions_per_tick, 0, 65535,
+        "Most events started by the data of one topic between two ticks."));
+    settings.react_immediately =
+        parameter<bool>(*this, "react_immediately", settings.react_immediately,
+        "Whether incoming data may start events at once.");
+    const auto period =
+        std::chrono::milliseconds(parameter(*this, "period_ms", 100, 1, 86400000, "Time from one tick to the next."));
 
     courier_hooks hooks = {};
     hooks.context = this;
@@ -448,23 +448,20 @@ class Controller : public rclcpp::Node {
     rclcpp::SubscriptionOptions hearing;
     hearing.qos_overriding_options = rclcpp::QosOverridingOptions::with_default_policies();
     hearing.use_default_callbacks = false;
-    scan_watchdog_.emplace(parameter(*this, "watchdog_ms.scan", 0, 0, 24 * 3600 * 1000,
-        "Longest silence of the topic; 0: any."), [this](const auto& watchdog) { on_silence("/scan", watchdog); },
-        *this, guard_);
+    scan_watchdog_.emplace(parameter(*this, "watchdog_ms.scan", 0, 0, 86400000, "Longest silence of /scan; 0: any."),
+        [this](const auto& watchdog) { on_silence("/scan", watchdog); }, *this, guard_);
     scan_subscription_ = create_subscription<sensor_msgs::msg::LaserScan>(
         "/scan", rclcpp::SensorDataQoS().keep_last(20).reliable(),
         guard_([this](const sensor_msgs::msg::LaserScan& message) { on_scan(message); }), hearing);
     monitor_->hear("/scan", "sensor_msgs/msg/LaserScan", scan_subscription_->get_actual_qos());
-    count_watchdog_.emplace(parameter(*this, "watchdog_ms.count", 0, 0, 24 * 3600 * 1000,
-        "Longest silence of the topic; 0: any."), [this](const auto& watchdog) { on_silence("count", watchdog); },
-        *this, guard_);
+    count_watchdog_.emplace(parameter(*this, "watchdog_ms.count", 0, 0, 86400000, "Longest silence of count; 0: any."),
+        [this](const auto& watchdog) { on_silence("count", watchdog); }, *this, guard_);
     count_subscription_ = create_subscription<std_msgs::msg::Int16>(
         "count", rclcpp::QoS(10),
         guard_([this](const std_msgs::msg::Int16& message) { on_count(message); }), hearing);
     monitor_->hear("count", "std_msgs/msg/Int16", count_subscription_->get_actual_qos());
-    word_watchdog_.emplace(parameter(*this, "watchdog_ms.word", 0, 0, 24 * 3600 * 1000,
-        "Longest silence of the topic; 0: any."), [this](const auto& watchdog) { on_silence("word", watchdog); }, *this,
-        guard_);
+    word_watchdog_.emplace(parameter(*this, "watchdog_ms.word", 0, 0, 86400000, "Longest silence of word; 0: any."),
+        [this](const auto& watchdog) { on_silence("word", watchdog); }, *this, guard_);
     word_subscription_ = create_subscription<std_msgs::msg::String>(
         "word", rclcpp::QoS(10),
         guard_([this](const std_msgs::msg::String& message) { on_word(message); }), hearing);

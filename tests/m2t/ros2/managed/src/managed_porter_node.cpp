@@ -459,22 +459,26 @@ class Controller : public rclcpp_lifecycle::LifecycleNode {
         EventLog(parameter<std::string>(*this, "event_log", "",
         "A file that gets a line of JSON for each event; empty: none."));
     porter_settings settings = porter_default_settings;
-    settings.events_per_tick = static_cast<std::uint16_t>(parameter(
-        *this, "events_per_tick", settings.events_per_tick, 0, 65535, "Most events sent in a tick; 0: no limit."));
-    settings.reactions_per_tick = static_cast<std::uint16_t>(
-        parameter(*this, "reactions_per_tick", settings.reactions_per_tick, 0, 65535,
-                  "Most events started by the data of one topic between two ticks."));
-    settings.react_immediately = parameter<bool>(*this, "react_immediately", settings.react_immediately,
-                                                 "Whether incoming data may start events at once.");
-    const auto milliseconds = [this](const std::string& name, int value, const std::string& meaning) {
-      return std::chrono::milliseconds(parameter(*this, name, value, 1, 24 * 3600 * 1000, meaning));
-    };
-    const auto period = milliseconds("period_ms", 100, "Time from one tick to the next.");
+    settings.events_per_tick =
+        static_cast<std::uint16_t>(parameter(*this, "events_per_tick", settings.events_per_tick, 0, 65535,
+        "Most events sent in a tick; 0: no limit."));
+    settings.reactions_per_tick =
+        static_cast<std::uint16_t>(parameter(*this, "reactions_per_tick", settings.reactions_per_tick, 0, 65535,
+        "Most events started by the data of one topic between two ticks."));
+    settings.react_immediately =
+        parameter<bool>(*this, "react_immediately", settings.react_immediately,
+        "Whether incoming data may start events at once.");
+    const auto period =
+        std::chrono::milliseconds(parameter(*this, "period_ms", 100, 1, 86400000, "Time from one tick to the next."));
     const auto service_timeout =
-        milliseconds("service_timeout_ms", 5000, "After this time without an answer a call has failed.");
+        std::chrono::milliseconds(parameter(*this, "service_timeout_ms", 5000, 1, 86400000,
+        "After this time without an answer a call has failed."));
     const auto action_timeout =
-        milliseconds("action_timeout_ms", 5000, "After this time without acceptance a goal has failed.");
-    const auto retry = milliseconds("retry_ms", 1000, "From the failure of a service or action to its reset.");
+        std::chrono::milliseconds(parameter(*this, "action_timeout_ms", 5000, 1, 86400000,
+        "After this time without acceptance a goal has failed."));
+    const auto retry =
+        std::chrono::milliseconds(parameter(*this, "retry_ms", 1000, 1, 86400000,
+        "From the failure of a service or action to its reset."));
 
     porter_hooks hooks = {};
     hooks.context = this;
@@ -529,16 +533,14 @@ class Controller : public rclcpp_lifecycle::LifecycleNode {
     rclcpp::SubscriptionOptions hearing;
     hearing.qos_overriding_options = rclcpp::QosOverridingOptions::with_default_policies();
     hearing.use_default_callbacks = false;
-    order_watchdog_.emplace(parameter(*this, "watchdog_ms.order", 0, 0, 24 * 3600 * 1000,
-        "Longest silence of the topic; 0: any."), [this](const auto& watchdog) { on_silence("order", watchdog); },
-        *this, guard_);
+    order_watchdog_.emplace(parameter(*this, "watchdog_ms.order", 0, 0, 86400000, "Longest silence of order; 0: any."),
+        [this](const auto& watchdog) { on_silence("order", watchdog); }, *this, guard_);
     order_subscription_ = create_subscription<std_msgs::msg::Float32>(
         "order", rclcpp::QoS(10),
         guard_([this](const std_msgs::msg::Float32& message) { on_order(message); }), hearing);
     monitor_->hear("order", "std_msgs/msg/Float32", order_subscription_->get_actual_qos());
-    stop_watchdog_.emplace(parameter(*this, "watchdog_ms.stop", 0, 0, 24 * 3600 * 1000,
-        "Longest silence of the topic; 0: any."), [this](const auto& watchdog) { on_silence("/stop", watchdog); },
-        *this, guard_);
+    stop_watchdog_.emplace(parameter(*this, "watchdog_ms.stop", 0, 0, 86400000, "Longest silence of /stop; 0: any."),
+        [this](const auto& watchdog) { on_silence("/stop", watchdog); }, *this, guard_);
     stop_subscription_ = create_subscription<std_msgs::msg::Empty>(
         "/stop", rclcpp::QoS(10),
         guard_([this](const std_msgs::msg::Empty& message) { on_stop(message); }), hearing);

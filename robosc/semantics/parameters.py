@@ -1,0 +1,108 @@
+"""The parameters of a node, run or generated, with their ranges and the defaults that the configuration gives them."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from itertools import chain, count
+from typing import TYPE_CHECKING, TypeAlias
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from robosc.configuration import Configuration
+    from robosc.metamodel import rosgraph
+
+Value: TypeAlias = bool | int | str
+Topic: TypeAlias = "rosgraph.Subscription | rosgraph.Publisher"
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A parameter of a node; a number lies between its bounds."""
+
+    name: str
+    default: Value
+    meaning: str
+    bounds: tuple[int, int] | None = None
+
+
+_DAY = 24 * 3600 * 1000
+_COUNT = 0xFFFF
+
+
+def controller_parameters(graph: rosgraph.RosGraph, configuration: Configuration, log: str) -> list[Parameter]:
+    """The parameters of a controller; `log` is where its event log goes by default."""
+    clients = [
+        *_timeouts(graph, configuration),
+        Parameter(
+            "retry_ms", configuration.retry_ms, "From the failure of a service or action to its reset.", (1, _DAY)
+        ),
+    ]
+    watchdogs, words = configuration.watchdog_ms, topic_words(graph)
+    loop = configuration.control_loop
+    return [
+        Parameter("period_ms", loop.period_ms, "Time from one tick to the next.", (1, _DAY)),
+        Parameter("events_per_tick", loop.events_per_tick, "Most events sent in a tick; 0: no limit.", (0, _COUNT)),
+        Parameter(
+            "reactions_per_tick",
+            loop.reactions_per_tick,
+            "Most events started by the data of one topic between two ticks.",
+            (0, _COUNT),
+        ),
+        Parameter("react_immediately", loop.react_immediately, "Whether incoming data may start events at once."),
+        *(clients if len(clients) > 1 else ()),
+        Parameter("watchdog_stops", configuration.watchdog_stops, configuration.watchdog_meaning),
+        *(
+            Parameter(
+                watchdog(words, subscription),
+                watchdogs.get(subscription.topic.removeprefix("/"), 0),
+                f"Longest silence of {subscription.topic}; 0: any.",
+                (0, _DAY),
+            )
+            for subscription in graph.subscriptions
+        ),
+        _event_log(log),
+    ]
+
+
+def watchdog(words: Mapping[Topic, str], topic: rosgraph.Subscription) -> str:
+    """The parameter that bounds the silence of a topic; `words` are those of `topic_words`."""
+    return f"watchdog_ms.{words[topic]}"
+
+
+def topic_words(graph: rosgraph.RosGraph) -> dict[Topic, str]:
+    """A word for each subscription and publisher, no two alike: its topic's name in letters, digits and underscores."""
+    words: dict[Topic, str] = {}
+    topics: list[Topic] = [*graph.subscriptions, *graph.publishers]
+    for topic in topics:
+        word = re.sub(r"[^A-Za-z0-9]+", "_", topic.topic).strip("_") or "topic"
+        numbered = (f"{word}_{number}" for number in count(2))
+        words[topic] = next(name for name in chain([word], numbered) if name not in words.values())
+    return words
+
+
+def layer_parameters(graph: rosgraph.RosGraph, configuration: Configuration, log: str) -> list[Parameter]:
+    """The parameters of a supervisory layer."""
+    period = configuration.control_loop.period_ms
+    return [
+        Parameter("period_ms", period, "Time from one report of the state to the next.", (1, _DAY)),
+        *_timeouts(graph, configuration),
+        _event_log(log),
+    ]
+
+
+def _timeouts(graph: rosgraph.RosGraph, configuration: Configuration) -> list[Parameter]:
+    services, actions = configuration.services.timeout_ms, configuration.actions.timeout_ms
+    found = []
+    if graph.serviceClients:
+        meaning = "After this time without an answer a call has failed."
+        found.append(Parameter("service_timeout_ms", services, meaning, (1, _DAY)))
+    if graph.actionClients:
+        meaning = "After this time without acceptance a goal has failed."
+        found.append(Parameter("action_timeout_ms", actions, meaning, (1, _DAY)))
+    return found
+
+
+def _event_log(log: str) -> Parameter:
+    return Parameter("event_log", log, "A file that gets a line of JSON for each event; empty: none.")
