@@ -6,8 +6,8 @@ from collections.abc import Callable, Sequence
 
 from robosc.metamodel import engine
 from robosc.metamodel import expression as ex
-from robosc.semantics.operators import BY_CLASS, FUNCTIONS
-from robosc.semantics.walks import operands
+from robosc.semantics.operators import BY_CLASS
+from robosc.semantics.walks import fold, operands
 
 #: The value of an expression, given the cells of a state and the inputs: an integer; false and true are 0 and 1.
 Function = Callable[[Sequence[int], Sequence[int]], int]
@@ -28,25 +28,18 @@ class Compiler:
 
     def __call__(self, expression: ex.Expression) -> Function:
         """The function of an expression."""
-        made: list[tuple[Function, int]] = []
         beforehand: list[Function] = []
-        pending: list[tuple[ex.Expression, int]] = [(expression, -1)]
-        while pending:
-            node, count = pending.pop()
-            if count < 0:
-                inside = operands_of(node)
-                pending.append((node, len(inside)))
-                pending += [(part, -1) for part in reversed(inside)]
-                continue
-            parts = made[len(made) - count :]
-            del made[len(made) - count :]
+
+        def made(node: ex.Expression, parts: list[tuple[Function, int]]) -> tuple[Function, int]:
             function = self._function(node, [part for part, _ in parts])
             depth = 1 + max((inner for _, inner in parts), default=0)
-            if depth > _DEEPEST:
-                beforehand.append(function)
-                function, depth = _input(len(self._inputs) + len(beforehand) - 1), 1
-            made.append((function, depth))
-        return _with_values(made[0][0], beforehand) if beforehand else made[0][0]
+            if depth <= _DEEPEST:
+                return function, depth
+            beforehand.append(function)
+            return _input(len(self._inputs) + len(beforehand) - 1), 1
+
+        function, _ = fold(made, expression, _inside)
+        return _with_values(function, beforehand) if beforehand else function
 
     def _function(self, node: ex.Expression, parts: Sequence[Function]) -> Function:
         match node:
@@ -58,9 +51,6 @@ class Compiler:
                 return _first(parts, 0)
             case engine.Or():
                 return _first(parts, 1)
-            case ex.FunctionCall():
-                call = FUNCTIONS[node.function].compute
-                return lambda cells, inputs: call(*[part(cells, inputs) for part in parts])
             case ex.Negation():
                 return lambda cells, inputs: not parts[0](cells, inputs)
             case ex.UnaryMinus():
@@ -91,14 +81,9 @@ class Compiler:
         raise ValueError(f"an engine model holds no {type(node).__name__}")
 
 
-def operands_of(node: ex.Expression) -> Sequence[ex.Expression]:
-    """What an expression of an engine model is made of, from left to right; of a shared condition its value."""
-    match node:
-        case engine.And() | engine.Or():
-            return list(node.operands)
-        case engine.ConditionReference():
-            return (node.condition.value,)
-    return operands(node)
+def _inside(node: ex.Expression) -> Sequence[ex.Expression]:
+    """What the value of an expression is made of: of a shared condition its value."""
+    return [node.condition.value] if isinstance(node, engine.ConditionReference) else operands(node)
 
 
 def _first(parts: Sequence[Function], deciding: int) -> Function:

@@ -226,6 +226,10 @@ class Or(expression.Expression):
     operands: MutableSequence[expression.Expression]
     def __init__(self, *, operands: Iterable[expression.Expression] = ..., source: Place | None = ...) -> None: ...
 
+class Remainder(expression.BinaryExpression):
+    """What is left when the left operand is divided by the right one, a positive constant: with the sign of the left operand, as `%` in C. A call of `mod` is one remainder, or where its value may be negative the remainder of one to which the divisor is added."""
+    def __init__(self, *, left: expression.Expression | None = ..., right: expression.Expression | None = ..., source: Place | None = ...) -> None: ...
+
 class Saturation(expression.UnaryExpression):
     """The nearest value within bounds."""
     minimum: int

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from enum import Enum, auto
 from typing import TYPE_CHECKING, Any, TypeAlias, cast
 
+from robosc.metamodel import engine
 from robosc.metamodel import expression as ex
 from robosc.semantics.domains import Interval, truth
 
@@ -102,6 +103,15 @@ def modulo(value: int, divisor: int) -> int:
 
 def _modulo_in(value: Interval, divisor: Interval) -> Interval:
     return value if Interval(0, divisor.low - 1).holds(value) else Interval(0, max(divisor.high - 1, 0))
+
+
+def _remainder(value: int, divisor: int) -> int:
+    return abs(value) % divisor * (-1 if value < 0 else 1)
+
+
+def _remainder_in(value: Interval, divisor: Interval) -> Interval:
+    last = divisor.high - 1
+    return Interval(max(min(value.low, 0), -last), min(max(value.high, 0), last))
 
 
 def _arithmetic(compute: Callable[[Any, Any], Any]) -> Callable[[Any, Any], Any]:
@@ -213,8 +223,9 @@ FUNCTIONS = {
 }
 
 BY_CLASS = {row.metaclass: row for row in OPERATORS} | {
-    # Only transformations make it; no text has it.
-    ex.DoubleConversion: Operator(ex.DoubleConversion, "", 9, Rule.DOUBLE, as_double, None)
+    # Only transformations make these; no text has them.
+    ex.DoubleConversion: Operator(ex.DoubleConversion, "", 9, Rule.DOUBLE, as_double, None),
+    engine.Remainder: Operator(engine.Remainder, "%", 7, Rule.INTEGER, _remainder, _remainder_in),
 }
 PRECEDENCE = {row.metaclass: row.precedence for row in OPERATORS}
 SYMBOLS = {row.metaclass: row.symbol for row in OPERATORS}

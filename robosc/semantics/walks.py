@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from robosc.metamodel import engine, robosc, rosgraph
 from robosc.metamodel import expression as ex
-from robosc.metamodel import robosc, rosgraph
 from robosc.metamodel.reflection import contents, features, is_attribute
 
 if TYPE_CHECKING:
@@ -27,6 +27,8 @@ def operands(expression: ex.Expression | None) -> list[ex.Expression]:
             return [expression.condition, expression.then, expression.otherwise]
         case ex.FunctionCall():
             return list(expression.arguments)
+        case engine.And() | engine.Or():
+            return list(expression.operands)
         case robosc.ObjectValue():
             return [given.value for given in expression.properties]
         case rosgraph.ConversionCall():

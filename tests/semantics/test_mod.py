@@ -68,8 +68,16 @@ def test_supervisor_and_engine_agree(models: robosc.Models) -> None:
 
 def test_each_target_says_it(models: robosc.Models) -> None:
     texts = {target: str(robosc.generate(target, models)) for target in ("supervisor", "ros2")}
-    assert "% 5) + 5) % 5 == 2" in texts["supervisor"]
+    assert "- 1) % 5 + 5) % 5 == 2" in texts["supervisor"]
     assert re.search(r"mod\(Integer\(.*\), Integer\(9\)\)", texts["ros2"])
+
+
+def test_what_is_never_negative_is_divided_once() -> None:
+    model = robosc.to_sct(robosc.load(text=MODEL.replace("-20..20", "3..20")))
+    robosc.synthesize(model)
+    text = str(robosc.generate("supervisor", robosc.Models(model)))
+    assert "(inputs->message_tick_i_response - 3) % 4)" in text or "(inputs->message_tick_i_response - 3) % 4;" in text
+    assert "% 4 + 4" not in text
 
 
 def test_format_and_print_keep_it(models: robosc.Models) -> None:

@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from typing import TYPE_CHECKING
 
-from robosc.m2m.sct_to_engine.build_expressions import build_expression, build_value
+from robosc.m2m.sct_to_engine.build_expressions import as_denial, build_expression, build_value
 from robosc.m2m.sct_to_engine.collect_events import collect_edges, collect_events, collect_groups, collect_sources
 from robosc.m2m.sct_to_engine.combine_guards import combine_guards
 from robosc.m2m.sct_to_engine.find_readers import find_readers
@@ -22,7 +22,7 @@ from robosc.metamodel import engine, sct
 from robosc.semantics.roles import Roles, event_name, plant_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator, Mapping, Sequence
 
     from robosc.m2m.sct_to_engine.collect_events import EdgeTable
     from robosc.m2m.sct_to_engine.combine_guards import GuardTerms
@@ -148,12 +148,15 @@ def _expression(condition: Term) -> ex.Expression | None:
 
 
 def _guard(guard: GuardTerms, shared: Shared) -> engine.Guard:
+
+    def build(term: Term, origins: Sequence[engine.Origin]) -> engine.Term:
+        condition = build_expression(term, shared)
+        only_synthesis = origins == [engine.Origin.synthesis]
+        return engine.Term(condition=as_denial(condition) if only_synthesis else condition, origins=origins)
+
     plants, requirement, synthesis = (None if part.constant == 1 else build_expression(part) for _, part in guard.parts)
     return engine.Guard(
-        terms=[
-            engine.Term(condition=build_expression(term, shared), origins=origins)
-            for term, origins in shared.ask_for(guard).items()
-        ],
+        terms=[build(term, origins) for term, origins in shared.ask_for(guard).items()],
         plants=plants,
         requirement=requirement,
         synthesis=synthesis,

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any
 from robosc.m2m.sct_to_engine.terms import COMPLEMENTS
 from robosc.metamodel import engine, sct
 from robosc.metamodel import expression as ex
-from robosc.semantics.domains import Interval, Width, working_width
-from robosc.semantics.operators import FUNCTIONS
+from robosc.semantics.domains import Width, working_width
 
 if TYPE_CHECKING:
     from collections.abc import Collection
@@ -60,6 +59,23 @@ def build_value(variable: engine.StateVariable, value: Term, before: Collection[
     return expression if computed and _width(value) == stored else _converted(expression, stored, widens=False)
 
 
+def as_denial(condition: ex.Expression) -> ex.Expression:
+    """What synthesis adds, a denial of states: in a disjunction the first of two locations is "not the second".
+
+    Compilers for ARM make shorter code of it.
+    """
+    if not isinstance(condition, engine.Or):
+        return condition
+    for position, operand in enumerate(condition.operands):
+        match operand:
+            case ex.Equation(left=reference, right=engine.LocationLiteral(location=first)):
+                places = first.eContainer().locations
+                if len(places) == 2 and places[0] is first:
+                    second = engine.LocationLiteral(location=places[1])
+                    condition.operands[position] = ex.Inequation(left=reference, right=second)
+    return condition
+
+
 def _leaf(term: Term, before: Collection[engine.StateVariable]) -> ex.Expression:
     leaf = term.leaf
     if isinstance(leaf, engine.StateVariable):
@@ -90,8 +106,6 @@ def _built(term: Term, operands: list[ex.Expression]) -> Any:
     numbers = [position for position, operand in enumerate(term.operands) if operand.sort is int]
     if numbers and not (kind in COMPLEMENTS and any(operand.constant is not None for operand in term.operands)):
         _convert(term, numbers, operands)
-    if kind is ex.FunctionCall:
-        return ex.FunctionCall(function=term.leaf, arguments=operands)
     match operands:
         case [operand]:
             return kind(operand=operand)
@@ -127,10 +141,6 @@ def _working(term: Term) -> Width:
     """What an operator computes in: a signed integer that holds its operands and its result."""
     values = [operand.values for operand in term.operands if operand.sort is int]
     values += [term.values] if term.sort is int else []
-    if term.operator is ex.FunctionCall:
-        # A remainder is made positive by adding the divisor.
-        divisors = [term.operands[position] for position in FUNCTIONS[term.leaf].divisors]
-        values += [Interval(0, 2 * divisor.values.high) for divisor in divisors]
     union = values[0]
     for interval in values[1:]:
         union = union.union(interval)

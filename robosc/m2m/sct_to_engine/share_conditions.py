@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 #: In how many guards a single comparison of a variable is to be for an incremental loop to compute it once for all.
 _MANY = 4
+#: How many operands a junction has at most that is said once more where it is denied: a call would be longer.
+_LONG = 3
 _JUNCTIONS = (engine.And, engine.Or)
 #: How often conditions are looked for that only one other refers to, since it is put together from longer ones.
 _ROUNDS = 5
@@ -142,7 +144,7 @@ def _find(guards: Iterable[GuardTerms], terms: Terms, *, incremental: bool) -> t
     opposites = {
         term: opposite
         for term, opposite in terms.complements(order).items()
-        if term.operator in _JUNCTIONS and number.get(opposite, len(order)) < number[term]
+        if len(term.operands) > _LONG and number.get(opposite, len(order)) < number[term]
     }
     shared = []
     for term in reversed(order):

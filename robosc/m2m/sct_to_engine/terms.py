@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 from robosc.metamodel import engine, sct
 from robosc.metamodel import expression as ex
 from robosc.semantics.domains import BOOLEAN, Interval, domain
-from robosc.semantics.operators import BY_CLASS, FUNCTIONS
+from robosc.semantics.operators import BY_CLASS
 
 if TYPE_CHECKING:
     from collections.abc import Container, Hashable, Iterable, Iterator, Mapping, Sequence
@@ -129,10 +129,8 @@ class Terms:
             self._positions |= {known: position for position, known in enumerate(plant.locations)}
         return self.constant(plant, self._positions[location])
 
-    def operation(self, kind: type[ex.Expression], *operands: Term, function: str | None = None) -> Term:
+    def operation(self, kind: type[ex.Expression], *operands: Term) -> Term:
         """An operator of the expression metamodel on its operands, but for those that `junction` and `negation` make.
-
-        Of a call `function` is the name.
 
         Raises ValueError for what no sct model holds: doubles, strings, division.
         """
@@ -140,7 +138,16 @@ class Terms:
             return self._conditional(*operands)
         if kind in COMPLEMENTS:
             return self._comparison(kind, *operands)
-        return self._make(kind, operands, function, int, _interval(kind, *operands, function=function))
+        return self._make(kind, operands, None, int, _interval(kind, *operands))
+
+    def modulo(self, value: Term, divisor: Term) -> Term:
+        """What `mod` gives: remainders have the sign of the value, so one that may be negative is made positive."""
+        if Interval(0, divisor.values.low - 1).holds(value.values):
+            return value
+        rest = self.operation(engine.Remainder, value, divisor)
+        if value.values.low >= 0:
+            return rest
+        return self.operation(engine.Remainder, self.operation(ex.Addition, rest, divisor), divisor)
 
     def _conditional(self, condition: Term, then: Term, otherwise: Term) -> Term:
         if condition.constant is not None or then is otherwise:
@@ -261,8 +268,8 @@ class Terms:
         return self._made[key]
 
 
-def _interval(kind: type[ex.Expression], *operands: Term, function: str | None = None) -> Interval:
-    row = FUNCTIONS.get(function) if function else BY_CLASS.get(kind)
+def _interval(kind: type[ex.Expression], *operands: Term) -> Interval:
+    row = BY_CLASS.get(kind)
     if row is None or row.interval is None:
         raise ValueError(f"an sct model holds no {kind.__name__}")
     return row.interval(*[operand.values for operand in operands])
@@ -275,5 +282,4 @@ def _value(term: Term, operands: Sequence[int]) -> int:
         return operands[1 if operands[0] else 2]
     if kind in (engine.And, engine.Or):
         return all(operands) if kind is engine.And else any(operands)
-    row = FUNCTIONS[term.leaf] if kind is ex.FunctionCall else BY_CLASS[kind]
-    return int(row.compute(*operands))
+    return int(BY_CLASS[kind].compute(*operands))

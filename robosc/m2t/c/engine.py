@@ -8,10 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 from robosc.m2m.sct_to_engine import transform
 from robosc.m2t.c.comments import comment, comment_text, string_literal
-from robosc.m2t.c.expressions import CPrinter, clamp
+from robosc.m2t.c.expressions import CPrinter, clamp, type_name, unsigned_type
 from robosc.m2t.c.names import CNames
-from robosc.m2t.c.statements import effect_lines, guard_lines
-from robosc.m2t.c.types import type_name, unsigned_type
 from robosc.m2t.templates import environment
 from robosc.metamodel import engine, sct
 from robosc.metamodel import expression as ex
@@ -143,12 +141,12 @@ class _Preparation:
         """The condition of each event, what it changes, and what these have in common."""
         events = self._model.events
         guards = [
-            (event, comment(event.remarks, _INDENT), guard_lines(event.guard, self._printer))
+            (event, comment(event.remarks, _INDENT), self._printer.guard(event.guard))
             for event in events
             # Nothing forbids the others, and there is nothing to tell about them.
             if event.guard.terms or event.remarks
         ]
-        effects = [(event, effect_lines(event.effect, self._printer)) for event in events if event.effect.steps]
+        effects = [(event, self._printer.effect(event.effect)) for event in events if event.effect.steps]
         in_guards = [node for event in events for term in event.guard.terms for _, node in tree(term)]
         in_effects = [node for event in events for _, node in tree(event.effect)]
         return {
@@ -156,7 +154,7 @@ class _Preparation:
                 {
                     "name": condition.name,
                     "comment": comment([_used_in(condition)]),
-                    "text": self._printer(condition.value),
+                    "lines": self._printer.lines(condition.value),
                 }
                 for condition in self._model.conditions
             ],

@@ -1,72 +1,102 @@
-"""Expressions of an engine model as C: a table of spellings, and what C asks for besides."""
+"""Types, constants, expressions, guards and effects of an engine model as C: a table of spellings, and exceptions."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robosc.m2t.c.types import integer_type, number
 from robosc.metamodel import engine
 from robosc.metamodel import expression as ex
-from robosc.semantics.operators import ATOM, PRECEDENCE
+from robosc.semantics.domains import Width, domain, storage
+from robosc.semantics.operators import COMPARISONS, PRECEDENCE, SYMBOLS
+from robosc.semantics.printing import Printed, Printer
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Sequence
 
     from robosc.m2t.c.names import CNames
 
-_SYMBOLS: Mapping[type[ex.Expression], str] = {
-    ex.Equation: "==",
-    ex.Inequation: "!=",
-    ex.LessThan: "<",
-    ex.LessOrEqual: "<=",
-    ex.GreaterThan: ">",
-    ex.GreaterOrEqual: ">=",
-    ex.Addition: "+",
-    ex.Subtraction: "-",
-    ex.Multiplication: "*",
-}
+_INDENT = "    "
 _CONDITIONAL = 0
 _JUNCTION = PRECEDENCE[ex.Conjunction]
 _UNARY = PRECEDENCE[ex.Negation]
-_CHAINS = (ex.Addition, ex.Multiplication)
-#: A text, and how tightly its outermost operator binds.
-Written = tuple[str, int]
 
 
-class CPrinter:
+def integer_type(bits: int, *, signed: bool) -> str:
+    """The type of <stdint.h> of a width."""
+    return f"{'' if signed else 'u'}int{bits}_t"
+
+
+def type_name(kind: ex.Type) -> str:
+    """The C type that stores a value of a type of an sct or engine model."""
+    if isinstance(kind, ex.BooleanType):
+        return "bool"
+    width = storage(domain(kind))
+    return integer_type(width.bits, signed=width.signed)
+
+
+def unsigned_type(most: int) -> str:
+    """The C type that stores a number up to `most` and mixes with `unsigned` ones."""
+    return next(f"uint{bits}_t" for bits in (8, 16, 32) if Width(bits, signed=False).values.high >= most)
+
+
+def number(value: int) -> str:
+    """A constant of any integer type; C's most negative number can't be written as one."""
+    return f"(-{-(value + 1)} - 1)" if value == -(2**63) else str(value)
+
+
+def clamp(saturation: engine.Saturation) -> str:
+    """The function of the engine that gives the nearest value within bounds."""
+    return "clamp" if saturation.bits == 32 else "clampwide"
+
+
+class CPrinter(Printer):
     """Prints expressions over `state->…`, `inputs->…` and, for values before the event, `old.…`."""
+
+    symbols = {**SYMBOLS, ex.Equation: "==", engine.Remainder: "%", engine.And: "&&", engine.Or: "||"}  # noqa: RUF012  # ClassVar in the parent
 
     def __init__(self, names: CNames) -> None:
         self._names = names
 
-    def __call__(self, expression: ex.Expression) -> str:
-        """The text, without parentheses around it."""
-        return self.written(expression)[0]
+    def write(self, expression: ex.Expression, given: Sequence[Printed]) -> Printed:
+        """Junctions of several operands, conversions, saturation and `?:` are C's own."""
+        match expression:
+            case engine.And() | engine.Or():
+                return Printed(f" {self.symbols[type(expression)]} ".join(_operands(given)), _JUNCTION)
+            case ex.UnaryMinus(operand=ex.IntegerLiteral(value=value)):
+                return Printed(number(-value), _UNARY)
+            case engine.Conversion(bits=16, widens=True):
+                return given[0]  # C computes in `int`, which has 16 bits at least.
+            case engine.Conversion(bits=bits, signed=signed):
+                return Printed(f"({integer_type(bits, signed=signed)}){given[0].tight}", _UNARY)
+            case engine.Saturation(minimum=low, maximum=high):
+                return Printed(f"{clamp(expression)}({given[0].text}, {number(low)}, {number(high)})")
+            case ex.Conditional():
+                condition, then, otherwise = (around(part, _CONDITIONAL + 1) for part in given)
+                return Printed(f"{condition} ? {then} : {otherwise}", _CONDITIONAL)
+        return super().write(expression, given)
 
-    def written(self, expression: ex.Expression) -> Written:
-        """The text and how tightly it binds. Expressions may be deep: this function does not call itself."""
-        done: list[Written] = []
-        pending: list[tuple[ex.Expression, int]] = [(expression, -1)]
-        while pending:
-            node, count = pending.pop()
-            if count < 0:
-                operands = _operands(node)
-                pending.append((node, len(operands)))
-                pending += [(operand, -1) for operand in reversed(operands)]
-            else:
-                parts = done[len(done) - count :]
-                del done[len(done) - count :]
-                done.append(self._operator(node, parts) if parts else self._leaf(node))
-        return done[0]
+    def binary(self, expression: ex.BinaryExpression, left: Printed, right: Printed) -> Printed:
+        """A number that is compared with an unsigned one is unsigned, a condition stands in parentheses."""
+        if not isinstance(expression, COMPARISONS):
+            return super().binary(expression, left, right)
+        one, other = expression.left, expression.right
+        sides = _compared(one, other, left), _compared(other, one, right)
+        return Printed(f" {self.symbols[type(expression)]} ".join(sides), PRECEDENCE[type(expression)])
 
-    def joined(self, junction: engine.And | engine.Or) -> tuple[str, list[str]]:
-        """The operator of a conjunction or disjunction, and its operands with the parentheses that they need in it."""
-        symbol = "&&" if isinstance(junction, engine.And) else "||"
-        return symbol, [around(self.written(operand), _JUNCTION + 1) for operand in junction.operands]
-
-    def target(self, variable: engine.StateVariable) -> str:
-        """Where a variable is assigned to."""
-        return f"state->{self._names.of(variable)}"
+    def atom(self, expression: ex.Expression) -> str:
+        """Where the engine keeps a value, the function of a shared condition, an enumerator or a number."""
+        match expression:
+            case engine.VariableReference():
+                return f"{'old.' if expression.before else 'state->'}{self._names.of(expression.variable)}"
+            case engine.InputReference():
+                return f"inputs->{self._names.of(expression.input)}"
+            case engine.ConditionReference():
+                return f"{expression.condition.name}(state)"
+            case engine.LocationLiteral():
+                return self._names.enumerator(expression.location)
+            case ex.EnumerationLiteralReference():
+                return self._names.enumerator(expression.literal)
+        return super().atom(expression)
 
     def constant(self, kind: ex.Type, value: int) -> str:
         """A value of a type."""
@@ -79,76 +109,56 @@ class CPrinter:
                 return self._names.enumerator(plant.locations[value])
         return number(value)
 
-    def _operator(self, node: ex.Expression, parts: Sequence[Written]) -> Written:
-        match node:
-            case engine.And() | engine.Or():
-                symbol = " && " if isinstance(node, engine.And) else " || "
-                return symbol.join(around(part, _JUNCTION + 1) for part in parts), _JUNCTION
-            case ex.Negation():
-                return f"!{around(parts[0], ATOM)}", _UNARY
-            case ex.UnaryMinus(operand=ex.IntegerLiteral(value=value)):
-                return number(-value), _UNARY
-            case ex.UnaryMinus():
-                return f"-{around(parts[0], ATOM)}", _UNARY
-            case engine.Conversion(bits=16, widens=True):
-                return parts[0]  # C computes in `int`, which has 16 bits at least.
-            case engine.Conversion():
-                return f"({integer_type(node.bits, signed=node.signed)}){around(parts[0], ATOM)}", _UNARY
-            case engine.Saturation():
-                return f"{clamp(node)}({parts[0][0]}, {number(node.minimum)}, {number(node.maximum)})", ATOM
-            case ex.Conditional():
-                condition, then, otherwise = (around(part, _CONDITIONAL + 1) for part in parts)
-                return f"{condition} ? {then} : {otherwise}", _CONDITIONAL
-            case ex.FunctionCall(function="mod"):
-                # What C leaves has the sign of the value.
-                dividend, divisor = (around(part, ATOM) for part in parts)
-                return f"(({dividend} % {divisor}) + {divisor}) % {divisor}", PRECEDENCE[ex.Multiplication]
-        assert isinstance(node, ex.BinaryExpression)
-        return self._binary(node, parts)
+    def lines(self, condition: ex.Expression) -> list[str]:
+        """A condition, each operand of a conjunction or disjunction on a line of its own, its operator before it."""
+        if not isinstance(condition, (engine.And, engine.Or)):
+            return [self(condition)]
+        first, *others = _operands(map(self.printed, condition.operands))
+        return [first, *(f"{self.symbols[type(condition)]} {other}" for other in others)]
 
-    def _binary(self, node: ex.BinaryExpression, parts: Sequence[Written]) -> Written:
-        bound = PRECEDENCE[type(node)]
-        sides = [(node.left, node.right, parts[0]), (node.right, node.left, parts[1])]
-        if bound >= PRECEDENCE[ex.Addition]:
-            chain = isinstance(node, _CHAINS) and type(node) is type(node.left)
-            left, right = around(parts[0], bound if chain else bound + 1), around(parts[1], bound + 1)
-        else:
-            left, right = (self._compared(side, other, written) for side, other, written in sides)
-        return f"{left} {_SYMBOLS[type(node)]} {right}", bound
+    def guard(self, guard: engine.Guard) -> list[str]:
+        """A guard, one part a line, with what synthesis added to the rest."""
+        terms = list(guard.terms)
+        if not terms:
+            return ["true"]
+        if len(terms) == 1 and isinstance(terms[0].condition, engine.Or):
+            return self.lines(terms[0].condition)
+        least = _JUNCTION + 1 if len(terms) > 1 else 0
+        lines = [f"{around(self.printed(term.condition), least)}{_mark(term)}" for term in terms]
+        return [lines[0], *(f"&& {line}" for line in lines[1:])]
 
-    def _compared(self, side: ex.Expression, other: ex.Expression, written: Written) -> str:
-        """A side of a comparison: a number, unsigned if the other side is, or a condition in parentheses."""
-        if isinstance(side, ex.IntegerLiteral) and _is_unsigned(other):
-            return f"{written[0]}U"
-        return around(written, ATOM if isinstance(side, ex.Negation) else PRECEDENCE[ex.Addition])
+    def effect(self, effect: engine.Effect) -> list[str]:
+        """The statements of an effect; those with values from before read them from `old`, a copy of the state."""
+        return [line for step in effect.steps for line in self._step(step)]
 
-    def _leaf(self, node: ex.Expression) -> Written:
-        match node:
-            case engine.VariableReference():
-                return f"{'old.' if node.before else 'state->'}{self._names.of(node.variable)}", ATOM
-            case engine.InputReference():
-                return f"inputs->{self._names.of(node.input)}", ATOM
-            case engine.ConditionReference():
-                return f"{node.condition.name}(state)", ATOM
-            case engine.LocationLiteral():
-                return self._names.enumerator(node.location), ATOM
-            case ex.EnumerationLiteralReference():
-                return self._names.enumerator(node.literal), ATOM
-            case ex.BooleanLiteral():
-                return ("true" if node.value else "false"), ATOM
-        assert isinstance(node, ex.IntegerLiteral)
-        return number(node.value), ATOM
+    def _step(self, step: engine.Step) -> Sequence[str]:
+        if isinstance(step, engine.Assignment):
+            return [f"state->{self._names.of(step.variable)} = {self(step.value)};"]
+        assert isinstance(step, engine.Switch)
+        lines: list[str] = []
+        for position, case in enumerate(step.cases):
+            opening = "{" if case.condition is None else f"if ({self(case.condition)}) {{"
+            lines.append(f"}} else {opening}" if position else opening)
+            lines += [f"{_INDENT}{line}" for assignment in case.assignments for line in self._step(assignment)]
+        if len(step.cases) > 1 and step.cases[-1].condition is not None:
+            lines += ["} else {", f"{_INDENT}/* Elsewhere nothing changes. */"]
+        return [*lines, "}"]
 
 
-def clamp(saturation: engine.Saturation) -> str:
-    """The function of the engine that gives the nearest value within bounds."""
-    return "clamp" if saturation.bits == 32 else "clampwide"
-
-
-def around(written: Written, least: int) -> str:
+def around(given: Printed, least: int) -> str:
     """The text, in parentheses where it binds less tightly than `least`."""
-    text, bound = written
-    return text if bound >= least else f"({text})"
+    return given.text if given.precedence >= least else f"({given.text})"
+
+
+def _operands(given: Iterable[Printed]) -> list[str]:
+    """The operands of a conjunction or disjunction."""
+    return [around(part, _JUNCTION + 1) for part in given]
+
+
+def _compared(side: ex.Expression, other: ex.Expression, given: Printed) -> str:
+    if isinstance(side, ex.IntegerLiteral) and _is_unsigned(other):
+        return f"{given.text}U"
+    return given.tight if isinstance(side, ex.Negation) else around(given, PRECEDENCE[ex.Addition])
 
 
 def _is_unsigned(node: ex.Expression) -> bool:
@@ -159,16 +169,8 @@ def _is_unsigned(node: ex.Expression) -> bool:
     return False
 
 
-def _operands(node: ex.Expression) -> Sequence[ex.Expression]:
-    match node:
-        case ex.BinaryExpression():
-            return node.left, node.right
-        case ex.UnaryExpression():
-            return (node.operand,)
-        case ex.FunctionCall():
-            return list(node.arguments)
-        case engine.And() | engine.Or():
-            return list(node.operands)
-        case ex.Conditional():
-            return node.condition, node.then, node.otherwise
-    return ()
+def _mark(term: engine.Term) -> str:
+    if engine.Origin.synthesis not in term.origins:
+        return ""
+    partly = len(term.origins) > 1
+    return f" /* {'partly ' if partly else ''}added by synthesis */"

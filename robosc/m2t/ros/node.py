@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from robosc.m2t.c.types import type_name
+from robosc.m2t.c.expressions import type_name
 from robosc.m2t.ros import reports
 from robosc.m2t.ros.events import Reasons, message_named
 from robosc.m2t.ros.expressions import CppPrinter

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from robosc.m2m.sct_to_engine import lowering
 from robosc.m2m.sct_to_engine.terms import Terms
-from robosc.m2t.c.types import number, type_name
+from robosc.m2t.c.expressions import number, type_name
 from robosc.metamodel import engine, sct
 from robosc.metamodel import expression as ex
 from robosc.metamodel.reflection import tree
