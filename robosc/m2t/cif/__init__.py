@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING
 from robosc.diagnostics import Diagnostic, Severity
 from robosc.m2t.cif.arithmetic import assigned, condition
 from robosc.m2t.cif.linear import LARGEST, Unsupported, bounds, shift
-from robosc.m2t.cif.specification import Writer, folded
-from robosc.m2t.templates import environment
+from robosc.m2t.cif.specification import Writer
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 from robosc.metamodel.places import place
@@ -52,15 +51,11 @@ def generate(models: Models, _configuration: Configuration) -> dict[str, str]:
 
     Raises Unsupported where `preconditions` finds something.
     """
-    templates = environment(__name__)
-    specification = Writer(models.sct).specification()
-    kinds = ["cif"] if models.sct.supervisor is None else ["cif", "supervised.cif"]
-    return {
-        f"{models.sct.name}.{kind}": folded(
-            templates.get_template(f"robot.{kind}.j2").render(specification=specification)
-        )
-        for kind in kinds
-    }
+    writer, name, supervisor = Writer(models.sct), models.sct.name, models.sct.supervisor
+    files = {f"{name}.cif": writer.unsupervised()}
+    if supervisor is not None:
+        files[f"{name}.supervised.cif"] = writer.supervised(supervisor)
+    return files
 
 
 def _finding(culprit: Any, reason: str, hint: str) -> Diagnostic:

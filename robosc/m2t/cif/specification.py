@@ -1,9 +1,8 @@
-"""What the templates of CIF print: an sct model with every name and expression as text."""
+"""The text of CIF for an sct model, plant by plant and line by line."""
 
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from itertools import groupby
 from math import prod
 from textwrap import wrap
@@ -16,14 +15,13 @@ from robosc.m2t.cif.names import CifNames, is_numbered
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 from robosc.metamodel.reflection import tree
+from robosc.semantics.domains import domain
 from robosc.semantics.edges import edges_from, edges_of
 from robosc.semantics.roles import provide_numbers
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
 
-
-_NOTHING_ADDED = "Synthesis added nothing to the requirements."
 #: Characters in a line, unless one word has more.
 _WIDTH = 120
 #: What stands in one line: up to a comma or one of these words, outside of strings.
@@ -32,91 +30,8 @@ _PART = re.compile(
 )
 
 
-@dataclass(frozen=True)
-class Enumeration:
-    """An enumeration and its literals."""
-
-    name: str
-    literals: Sequence[str]
-
-
-@dataclass(frozen=True)
-class Events:
-    """Events that are declared together, being alike."""
-
-    controllable: bool
-    docs: Sequence[str]
-    names: Sequence[str]
-
-
-@dataclass(frozen=True)
-class Variable:
-    """A variable, or an input without `initial`; `docs` where CIF holds another value than the model has."""
-
-    type: str
-    name: str
-    initial: str
-    docs: Sequence[str]
-
-
-@dataclass(frozen=True)
-class Edge:
-    """An edge; `guard`, `updates` and `target` are empty where there is nothing to say."""
-
-    event: str
-    guard: str
-    updates: Sequence[str]
-    target: str
-
-
-@dataclass(frozen=True)
-class Location:
-    """A location; without a name where it is alone and nothing refers to it."""
-
-    name: str
-    initial: bool
-    marked: bool
-    edges: Sequence[Edge]
-
-
-@dataclass(frozen=True)
-class Plant:
-    """A plant."""
-
-    name: str
-    events: Sequence[Events]
-    inputs: Sequence[Variable]
-    variables: Sequence[Variable]
-    locations: Sequence[Location]
-
-
-@dataclass(frozen=True)
-class Restriction:
-    """A requirement, of the model or as the supervisor keeps it; `docs` are its meaning in the robot model's words."""
-
-    event: str
-    kind: str
-    condition: str
-    docs: Sequence[str]
-
-
-@dataclass(frozen=True)
-class Specification:
-    """A specification. The supervisor's parts are empty where there is none."""
-
-    docs: Sequence[str]
-    supervised_docs: Sequence[str]
-    added_docs: Sequence[str]
-    enumerations: Sequence[Enumeration]
-    plants: Sequence[Plant]
-    requirements: Sequence[Restriction]
-    kept: Sequence[Restriction]
-    supervisor: str
-    edges: Sequence[Edge]
-
-
 class Writer:
-    """Makes a specification of an sct model. Raises Unsupported for an expression that can't be said in CIF."""
+    """Writes CIF of one sct model. Raises Unsupported for an expression that can't be said in CIF."""
 
     def __init__(self, model: sct.SupervisoryControlModel) -> None:
         self._model = model
@@ -130,129 +45,110 @@ class Writer:
             reference.location for _, reference in tree(model) if isinstance(reference, sct.LocationReference)
         }
 
-    def specification(self) -> Specification:
-        """All of it."""
-        model, supervisor = self._model, self._model.supervisor
-        guards = [guard for guard in supervisor.guards if guard.event not in self._impossible] if supervisor else []
-        return Specification(
-            docs=[quoted(f"The plants and requirements of {model.name}.")],
-            supervised_docs=self._counted(),
-            added_docs=[
-                quoted("What synthesis added." if any(guard.synthesis for guard in guards) else _NOTHING_ADDED)
-            ],
-            enumerations=[
-                Enumeration(
-                    self._names.declared(enumeration),
-                    [self._names.declared(literal) for literal in enumeration.literals],
-                )
-                for enumeration in model.enumerations
-            ],
-            plants=[self.plant(plant) for plant in model.plants],
-            requirements=self.requirements(),
-            kept=[
-                Restriction(self._names.used(guard.event, None), "needs", self._condition(guard.requirement), ())
-                for guard in guards
-                if guard.requirement is not None
-            ],
-            supervisor=self._names.supervisor,
-            edges=[
-                Edge(self._names.used(guard.event, None), self._condition(guard.synthesis), (), "") for guard in guards
-            ],
-        )
+    def unsupervised(self) -> str:
+        """The plants and the requirements."""
+        lines = _doc([f"The plants and requirements of {self._model.name}."], sign="@@")
+        return folded([*lines, *self._plants(), *self._requirements()])
 
-    def requirements(self) -> list[Restriction]:
-        """The requirements of the model; what several of them ask of an event alike stands there once."""
-        texts: dict[tuple[str, str, str], list[str]] = {}
-        for requirement in self._model.requirements:
-            said = (
-                self._names.used(requirement.event, None),
-                str(requirement.kind),
-                self._condition(requirement.condition),
-            )
-            texts.setdefault(said, []).append(requirement.text or "")
-        return [
-            Restriction(*said, list(map(quoted, dict.fromkeys(filter(None, found))))) for said, found in texts.items()
+    def supervised(self, supervisor: sct.Supervisor) -> str:
+        """The plants under their supervisor: the requirements as it keeps them, and an automaton of what it adds."""
+        guards = [guard for guard in supervisor.guards if guard.event not in self._impossible]
+        events = [self._names.used(guard.event, None) for guard in guards]
+        kept = [
+            f"supervisor invariant {event} needs {self._condition(guard.requirement)};"
+            for event, guard in zip(events, guards, strict=True)
+            if guard.requirement is not None
         ]
-
-    def plant(self, plant: sct.Plant) -> Plant:
-        """A plant with all that is in it."""
-        printer = CifPrinter(self._names, plant)
-        return Plant(
-            name=self._names.declared(plant),
-            events=[
-                Events(controllable, docs, [self._names.declared(event) for event in events])
-                for (controllable, docs), events in groupby(
-                    self._possible(plant), key=lambda event: (event.controllable, self._meanings.get(event, ()))
-                )
-            ],
-            inputs=[self._variable(parameter, "") for parameter in plant.inputs],
-            variables=[
-                *(self._variable(variable, printer(held(variable))) for variable in plant.variables),
-                *self._number(plant),
-            ],
-            locations=[
-                self._location(location, plant, printer)
-                for location in (plant.locations[:1] if is_numbered(plant) else plant.locations)
-            ],
+        added = any(guard.synthesis for guard in guards)
+        return folded(
+            [
+                *_doc(self._counted(supervisor), sign="@@"),
+                *self._plants(),
+                *([""] if kept else []),
+                *kept,
+                "",
+                *_doc(["What synthesis added." if added else "Synthesis added nothing to the requirements."]),
+                f"supervisor automaton {self._names.supervisor}:",
+                f"  alphabet {', '.join(events)};" if events else "  alphabet;",
+                "",
+                "  location:",
+                "    initial; marked;",
+                *(_edge(event, self._condition(guard.synthesis)) for event, guard in zip(events, guards, strict=True)),
+                "end",
+            ]
         )
 
-    def _counted(self) -> list[str]:
-        """What the supervisor leaves of the plants, as it is counted here and in CIF."""
-        supervisor = self._model.supervisor
-        if supervisor is None:
-            return []
-        inputs = prod(_values(parameter) for plant in self._model.plants for parameter in plant.inputs)
-        left, all_of = supervisor.controlledStates, supervisor.uncontrolledStates
-        name = self._model.name
-        if left is None or all_of is None:  # A supervisor of a saved model need not have been counted.
-            return [quoted(f"The plants of {name} under their supervisor.")]
-        told = [f"The plants of {name} under their supervisor, which leaves them {left} of {all_of} states."]
-        if inputs > 1:
-            told.append(
-                f"CIF counts {left * inputs} of {all_of * inputs}: each of them with the {inputs} values of the inputs."
-            )
-        return list(map(quoted, told))
+    def _plants(self) -> Iterator[str]:
+        """The enumerations and the plants, with a blank line before them and between plants."""
+        if self._model.enumerations:
+            yield ""
+        for enumeration in self._model.enumerations:
+            literals = ", ".join(map(self._names.declared, enumeration.literals))
+            yield f"enum {self._names.declared(enumeration)} = {literals};"
+        for plant in self._model.plants:
+            yield from ["", f"plant {self._names.declared(plant)}:", *self._plant(plant), "end"]
 
-    def _possible(self, plant: sct.Plant) -> list[sct.Event]:
-        return [event for event in plant.events if event not in self._impossible]
+    def _requirements(self) -> Iterator[str]:
+        """The requirements of the model; what several of them ask of an event alike stands there once."""
+        texts: dict[str, list[str]] = {}
+        for requirement in self._model.requirements:
+            event, asked = self._names.used(requirement.event, None), self._condition(requirement.condition)
+            needs = requirement.kind == sct.RequirementKind.needs
+            said = f"requirement {event} needs {asked};" if needs else f"requirement {asked} disables {event};"
+            texts.setdefault(said, []).append(requirement.text or "")
+        if texts:
+            yield ""
+        for said, found in texts.items():
+            yield from [*_doc(dict.fromkeys(filter(None, found))), said]
 
-    def _condition(self, expression: ex.Expression | None) -> str:
-        return "" if expression is None else self._outside(condition(expression))
-
-    def _variable(self, variable: sct.DiscreteVariable | sct.Input, initial: str) -> Variable:
-        name = self._names.declared(variable)
-        kind, docs = "bool", []
-        if isinstance(variable.type, ex.EnumerationType):
-            kind = self._names.declared(variable.type.enumeration)
-        elif isinstance(variable.type, ex.IntegerType):
-            (low, high), up = bounds(variable), shift(variable)
-            kind = f"int[{low + up}..{high + up}]"
-            if up:
-                docs = [quoted(f"{name} + {up}, with {name} in {low}..{high}")]
-        return Variable(kind, name, initial, docs)
-
-    def _number(self, plant: sct.Plant) -> Iterator[Variable]:
-        name = self._names.number(plant)
-        if name is not None:
-            initial = next(str(number) for number, location in enumerate(plant.locations) if location.initial)
-            docs = [quoted("The number of the provide statement that is chosen, 0 for none.")]
-            yield Variable(f"int[0..{len(plant.locations) - 1}]", name, initial, docs)
-
-    def _location(self, location: sct.Location, plant: sct.Plant, printer: CifPrinter) -> Location:
-        alone = plant.kind == sct.PlantKind.message and len(plant.locations) == 1
-        nameless = is_numbered(plant) or (alone and location not in self._referred)
-        return Location(
-            name="" if nameless else self._names.declared(location),
-            initial=location.initial or is_numbered(plant),
-            marked=location.marked,
-            edges=[
+    def _plant(self, plant: sct.Plant) -> Iterator[str]:
+        """What is in a plant."""
+        printer = CifPrinter(self._names, plant)
+        declared = [*self._events(plant), *self._variables(plant, printer)]
+        yield from [*declared, *([""] if declared else [])]
+        numbered = is_numbered(plant)
+        for location in plant.locations[:1] if numbered else plant.locations:
+            alone = plant.kind == sct.PlantKind.message and len(plant.locations) == 1
+            nameless = numbered or (alone and location not in self._referred)
+            marks = ["initial;"] * (location.initial or numbered) + ["marked;"] * location.marked
+            inside = [f"    {' '.join(marks)}"] if marks else []
+            inside += [
                 self._edge(edge, location, plant, printer)
                 for edge in edges_from(location)
                 if edge.event not in self._impossible
-            ],
-        )
+            ]
+            yield f"  location{'' if nameless else f' {self._names.declared(location)}'}{':' if inside else ';'}"
+            yield from inside
 
-    def _edge(self, edge: sct.Edge, location: sct.Location, plant: sct.Plant, printer: CifPrinter) -> Edge:
+    def _events(self, plant: sct.Plant) -> Iterator[str]:
+        """The events of a plant that can happen, those together that are alike."""
+        possible = (event for event in plant.events if event not in self._impossible)
+        alike = groupby(possible, key=lambda event: (event.controllable, self._meanings.get(event)))
+        for (controllable, meaning), events in alike:
+            yield from _doc([meaning] if meaning else [], "  ")
+            kind = "controllable" if controllable else "uncontrollable"
+            yield f"  {kind} {', '.join(map(self._names.declared, events))};"
+
+    def _variables(self, plant: sct.Plant, printer: CifPrinter) -> Iterator[str]:
+        """The inputs and variables of a plant, with a note on those that hold another number than in the model."""
+        members: list[sct.Input | sct.DiscreteVariable] = [*plant.inputs, *plant.variables]
+        for member in members:
+            name, kind = self._names.declared(member), "bool"
+            if isinstance(member.type, ex.EnumerationType):
+                kind = self._names.declared(member.type.enumeration)
+            elif isinstance(member.type, ex.IntegerType):
+                (low, high), up = bounds(member), shift(member)
+                kind = f"int[{low + up}..{high + up}]"
+                yield from _doc([f"{name} + {up}, with {name} in {low}..{high}"] if up else [], "  ")
+            initial = printer(held(member)) if isinstance(member, sct.DiscreteVariable) else None
+            yield f"  input {kind} {name};" if initial is None else f"  disc {kind} {name} = {initial};"
+        number = self._names.number(plant)
+        if number is not None:
+            start = next(position for position, location in enumerate(plant.locations) if location.initial)
+            yield from _doc(["The number of the provide statement that is chosen, 0 for none."], "  ")
+            yield f"  disc int[0..{len(plant.locations) - 1}] {number} = {start};"
+
+    def _edge(self, edge: sct.Edge, location: sct.Location, plant: sct.Plant, printer: CifPrinter) -> str:
         number = self._names.number(plant)
         updates = [
             f"{self._names.declared(update.variable)} := {printer(assigned(update.variable, update.value))}"
@@ -260,12 +156,39 @@ class Writer:
         ]
         if number is not None:
             updates.append(f"{number} := {self._numbers[edge.target]}")
-        return Edge(
-            event=self._names.used(edge.event, plant),
-            guard="" if edge.guard is None else printer(condition(edge.guard)),
-            updates=updates,
-            target="" if edge.target is location or number is not None else self._names.declared(edge.target),
+        stays = edge.target is location or number is not None
+        return _edge(
+            self._names.used(edge.event, plant),
+            "" if edge.guard is None else printer(condition(edge.guard)),
+            ", ".join(updates),
+            "" if stays else self._names.declared(edge.target),
         )
+
+    def _counted(self, supervisor: sct.Supervisor) -> list[str]:
+        """What the supervisor leaves of the plants, as it is counted here and in CIF."""
+        inputs = prod(domain(parameter.type).size for plant in self._model.plants for parameter in plant.inputs)
+        left, all_of = supervisor.controlledStates, supervisor.uncontrolledStates
+        told = f"The plants of {self._model.name} under their supervisor"
+        if left is None or all_of is None:  # A supervisor of a saved model need not have been counted.
+            return [f"{told}."]
+        counts = (
+            f"CIF counts {left * inputs} of {all_of * inputs}: each of them with the {inputs} values of the inputs."
+        )
+        return [f"{told}, which leaves them {left} of {all_of} states.", *([counts] if inputs > 1 else [])]
+
+    def _condition(self, expression: ex.Expression | None) -> str:
+        return "" if expression is None else self._outside(condition(expression))
+
+
+def _doc(texts: Iterable[str], indent: str = "", sign: str = "@") -> list[str]:
+    """Annotations with these texts."""
+    return [f"{indent}{sign}doc({quoted(text)})" for text in texts]
+
+
+def _edge(event: str, guard: str, updates: str = "", target: str = "") -> str:
+    """An edge; what is empty is left out."""
+    parts = zip((" when ", " do ", " goto "), (guard, updates, target), strict=True)
+    return f"    edge {event}{''.join(word + text for word, text in parts if text)};"
 
 
 def impossible(model: sct.SupervisoryControlModel) -> set[sct.Event]:
@@ -291,14 +214,14 @@ def quoted(text: str) -> str:
     return " + ".join('"' + part.replace("\\", "\\\\").replace('"', '\\"') + '"' for part in parts)
 
 
-def folded(text: str) -> str:
-    """A specification in lines of a length that can be read; a break takes the place of a space."""
-    return "".join(_folded(line) for line in text.splitlines(keepends=True))
+def folded(lines: Sequence[str]) -> str:
+    """Lines of a specification in such of a length that can be read; a break takes the place of a space."""
+    return "".join(_folded(line) for line in lines)
 
 
 def _folded(line: str) -> str:
-    if len(line) <= _WIDTH + 1:
-        return line
+    if len(line) <= _WIDTH:
+        return f"{line}\n"
     indent = " " * (len(line) - len(line.lstrip()))
     made, length = [indent], len(indent)
     for number, part in enumerate(_PART.findall(line.strip())):
@@ -311,7 +234,7 @@ def _folded(line: str) -> str:
     return "".join(made) + "\n"
 
 
-def _transitions(model: sct.SupervisoryControlModel) -> dict[sct.Event, tuple[str, ...]]:
+def _transitions(model: sct.SupervisoryControlModel) -> dict[sct.Event, str]:
     """What each transition of a component by itself does, whose event has no name but a number."""
     steps: dict[sct.Event, dict[str, None]] = {}
     edges = (edge for plant in model.plants for location in plant.locations for edge in location.edges)
@@ -319,28 +242,19 @@ def _transitions(model: sct.SupervisoryControlModel) -> dict[sct.Event, tuple[st
         if edge.event.kind == sct.EventKind.tau:
             here, there = edge.eContainer().name, edge.target.name
             steps.setdefault(edge.event, {})[f"in {here}" if here == there else f"from {here} to {there}"] = None
-    return {
-        event: (quoted(f"A transition of {event.eContainer().origin or event.eContainer().name} {', '.join(steps)}."),)
-        for event, steps in steps.items()
-    }
+    return {event: f"A transition of {_owner(event)} {', '.join(steps)}." for event, steps in steps.items()}
 
 
-def _choices(model: sct.SupervisoryControlModel) -> dict[sct.Event, tuple[str, ...]]:
+def _choices(model: sct.SupervisoryControlModel) -> dict[sct.Event, str]:
     """Which statement of the model each choice of data stands for."""
     plants = (plant for plant in model.plants if plant.kind == sct.PlantKind.data)
     numbers = {event: number for plant in plants for event, number in provide_numbers(plant).items()}
     return {
-        event: (quoted(f"The choice of provide {number} for {event.eContainer().origin or event.eContainer().name}."),)
-        for event, number in numbers.items()
-        if number
+        event: f"The choice of provide {number} for {_owner(event)}." for event, number in numbers.items() if number
     }
 
 
-def _values(member: sct.Input) -> int:
-    match member.type:
-        case ex.EnumerationType():
-            return len(member.type.enumeration.literals)
-        case ex.IntegerType():
-            low, high = bounds(member)
-            return high - low + 1
-    return 2
+def _owner(event: sct.Event) -> str:
+    """What the robot model calls the plant of an event."""
+    plant: sct.Plant = event.eContainer()
+    return plant.origin or plant.name
