@@ -271,11 +271,8 @@ class Observer:
 
     @cached_property
     def _active(self) -> Diagram:
-        result = self._system.encoding.diagrams.false
-        for event in self._system.roles.silent:
-            if event in self._permissions:
-                result |= self._permissions[event].allowed
-        return result
+        silent = (self._permissions[event] for event in self._system.roles.silent if event in self._permissions)
+        return self._system.diagrams.any_of(permission.allowed for permission in silent)
 
     def _affordable_counterexamples(self) -> Iterator[tuple[sct.Event, BlockingCounterexample]]:
         taken = 0

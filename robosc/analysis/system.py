@@ -10,8 +10,7 @@ from __future__ import annotations
 
 from copy import copy
 from decimal import Decimal
-from functools import cached_property, reduce
-from operator import and_
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from robosc.analysis.paths import Layers, trace
@@ -196,7 +195,7 @@ class SynthesizedSystem(SupervisedSystem):
     def _asked(self, relation: EventRelation, left_out: AbstractSet[sct.Requirement]) -> Diagram:
         """Where the requirements on an event hold but for those left out."""
         kept = [asked for requirement, asked in relation.asked.items() if requirement not in left_out]
-        return reduce(and_, kept, self.diagrams.true)
+        return self.diagrams.all_of(kept)
 
 
 class GuardedSystem(SupervisedSystem):

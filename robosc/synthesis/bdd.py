@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import reduce
+from operator import and_, or_
 from typing import TYPE_CHECKING, TypeAlias
 
 from oxidd.bcdd import BCDDFunction, BCDDManager
@@ -50,6 +52,14 @@ class Diagrams:
     def variable(self, level: int) -> Diagram:
         """True where the variable is."""
         return self._manager.var(level)
+
+    def all_of(self, parts: Iterable[Diagram]) -> Diagram:
+        """The conjunction, from the first part to the last; true of none."""
+        return reduce(and_, parts, self.true)
+
+    def any_of(self, parts: Iterable[Diagram]) -> Diagram:
+        """The disjunction, from the first part to the last; false of none."""
+        return reduce(or_, parts, self.false)
 
     def cube(self, levels: Iterable[int]) -> Diagram:
         """The conjunction of the variables: how quantification is told what to quantify."""

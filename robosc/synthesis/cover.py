@@ -107,16 +107,11 @@ class _Cover:
         return codes(states.exists(others), domain)
 
     def _states(self, product: Product) -> Diagram:
-        result = self._encoding.diagrams.true
-        for domain, ranges in product.items():
-            result &= self._values(domain, ranges)
-        return result
+        return self._encoding.diagrams.all_of(self._values(domain, ranges) for domain, ranges in product.items())
 
     def _values(self, domain: Domain, ranges: Ranges) -> Diagram:
-        result = self._encoding.diagrams.false
-        for first, last in ranges:
-            result |= self._encoding.between(domain.element, first, last)
-        return result
+        encoding = self._encoding
+        return encoding.diagrams.any_of(encoding.between(domain.element, first, last) for first, last in ranges)
 
 
 def _telling(domain: Domain) -> int:

@@ -224,18 +224,13 @@ class Encoding:
 
     def marked(self, plant: sct.Plant) -> Diagram:
         """Where the plant is in a marked location."""
-        result = self.diagrams.false
-        for code, location in enumerate(plant.locations):
-            if location.marked:
-                result |= self.has_code(plant, code)
-        return result
+        marked = (code for code, location in enumerate(plant.locations) if location.marked)
+        return self.diagrams.any_of(self.has_code(plant, code) for code in marked)
 
     def state(self, codes: Mapping[Element, int]) -> Diagram:
         """The one state in which every element has the given code."""
-        result = self.diagrams.true
-        for domain in reversed(self.layout.state):
-            result = self.has_code(domain.element, codes[domain.element]) & result
-        return result
+        elements = [domain.element for domain in reversed(self.layout.state)]
+        return self.diagrams.all_of(self.has_code(element, codes[element]) for element in elements)
 
     def count(self, states: Diagram) -> int:
         """How many states there are in a set of them."""
@@ -249,11 +244,9 @@ class Encoding:
     @cached_property
     def all_marked(self) -> Diagram:
         """The states in which every plant is in a marked location."""
-        result = self.diagrams.true
         # From the bottom: each conjunction makes the diagram above it anew.
-        for plant in sorted(self.layout.plants, key=lambda plant: self.layout.domains[plant].levels, reverse=True):
-            result &= self.marked(plant)
-        return result
+        plants = sorted(self.layout.plants, key=lambda plant: self.layout.domains[plant].levels, reverse=True)
+        return self.diagrams.all_of(map(self.marked, plants))
 
     @cached_property
     def initial_codes(self) -> dict[Element, int]:
@@ -282,6 +275,11 @@ class Encoding:
     def holds(self, expression: ex.Expression | None) -> Diagram:
         """Where a boolean expression is true; an absent one is true everywhere."""
         return self.diagrams.true if expression is None else self.vector(expression)[0]
+
+    def permits(self, requirement: sct.Requirement) -> Diagram:
+        """Where a requirement lets its event happen."""
+        holds = self.holds(requirement.condition)
+        return ~holds if requirement.kind == sct.RequirementKind.disables else holds
 
     def vector(self, expression: ex.Expression) -> Vector:
         """The value of an expression: an integer's own, else its code; a boolean's is 0 or 1.

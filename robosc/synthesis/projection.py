@@ -93,13 +93,7 @@ class Projection:
     @cached_property
     def _below(self) -> list[Diagram]:
         """For each of these levels the states with all levels above it quantified."""
-        below = []
-        for frontier in self._frontiers:
-            rest = frontier[0]
-            for diagram in frontier[1:]:
-                rest |= diagram
-            below.append(rest)
-        return below or [self.states]
+        return list(map(self._encoding.diagrams.any_of, self._frontiers)) or [self.states]
 
     @cached_property
     def _cut_levels(self) -> list[int]:

@@ -69,13 +69,13 @@ class EventRelation:
         changed = [element for edges in self._edges for element in _changed(edges)]
         self.changed = tuple(element for element in changed if encoding.layout.domains[element].size > 1)
         self.enabled_by = {edges[0].target.eContainer(): self._enabled(edges) for edges in self._edges}
-        self.enabled = self._conjunction(self.enabled_by.values())
-        self.asked = {requirement: self._asked(requirement) for requirement in requirements}
-        self.requirement = self._conjunction(self.asked.values())
+        self.enabled = encoding.diagrams.all_of(self.enabled_by.values())
+        self.asked = {requirement: encoding.permits(requirement) for requirement in requirements}
+        self.requirement = encoding.diagrams.all_of(self.asked.values())
 
     def with_inputs(self) -> Diagram:
         """The relation of present, inputs and next values, without the requirements."""
-        return self._conjunction(
+        return self._encoding.diagrams.all_of(
             [
                 *(self._encoding.in_domain(parameter) for parameter in self.event.inputs),
                 *(self._moves(edges) for edges in self._edges),
@@ -144,7 +144,7 @@ class EventRelation:
             relation=relation,
             present=diagrams.cube(present),
             following=diagrams.cube(following),
-            same=self._conjunction(self._encoding.keeps(element) for element in self.changed),
+            same=diagrams.all_of(self._encoding.keeps(element) for element in self.changed),
             encoding=self._encoding,
             changed=self.changed,
             touched=tuple(sorted(self.touched, key=lambda element: domains[element].rank))
@@ -152,21 +152,9 @@ class EventRelation:
             else (),
         )
 
-    def _conjunction(self, parts: Iterable[Diagram]) -> Diagram:
-        result = self._encoding.diagrams.true
-        for part in parts:
-            result &= part
-        return result
-
-    def _asked(self, requirement: sct.Requirement) -> Diagram:
-        holds = self._encoding.holds(requirement.condition)
-        return ~holds if requirement.kind == sct.RequirementKind.disables else holds
-
     def _enabled(self, edges: Sequence[sct.Edge]) -> Diagram:
-        result = self._encoding.diagrams.false
-        for edge in edges:
-            result |= self._encoding.source(edge) & self._encoding.holds(edge.guard)
-        return result
+        encoding = self._encoding
+        return encoding.diagrams.any_of(encoding.source(edge) & encoding.holds(edge.guard) for edge in edges)
 
     def _moves(self, edges: Sequence[sct.Edge]) -> Diagram:
         """One plant's part in the event."""

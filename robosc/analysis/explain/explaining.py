@@ -59,9 +59,7 @@ def explain(system: SynthesizedSystem, event: sct.Event, given: Codes) -> Explan
     to none either, the initial one with these codes.
     """
     encoding = system.encoding
-    goal = encoding.diagrams.true
-    for element, code in given.items():
-        goal &= encoding.has_code(element, code)
+    goal = encoding.diagrams.all_of(encoding.has_code(element, code) for element, code in given.items())
     way = system.layers.path_to(goal & system.controlled)
     if way is not None:
         return explain_after(system, event, way)

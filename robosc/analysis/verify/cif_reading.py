@@ -108,12 +108,14 @@ class _Reading:
     def _fail(self, read: Any, reason: str) -> NoReturn:
         raise CifError(f"{_place(self._text, read._tx_position)}: {reason}")  # noqa: SLF001 - textX's own way to tell it
 
-    def _annotated(self, read: Any) -> None:
+    def _annotated(self, read: Any) -> Any:
+        """What is read, its annotations checked."""
         for annotation in read.annotations:
             if annotation.name.lstrip("@") != "doc":
                 self._fail(annotation, f"there is no annotation {annotation.name}")
             if not annotation.texts:
                 self._fail(annotation, f"{annotation.name} says nothing")
+        return read
 
     # Declarations
 
@@ -134,41 +136,29 @@ class _Reading:
     def _declare(self, read: Any, automaton: sct.Plant) -> None:
         """What is declared in an automaton, without what speaks of other things."""
         self._inner[automaton] = {}
-        made: list[Any]
         for declaration in read.declarations:
             match type(declaration).__name__:
                 case "Events":
-                    made = [
-                        sct.Event(name=_plain(name), controllable=declaration.controllable)
-                        for name in declaration.names
-                    ]
-                    self._members(automaton.events, made, declaration, declaration.names)
+                    for name in self._annotated(declaration).names:
+                        event = sct.Event(name=_plain(name), controllable=declaration.controllable)
+                        automaton.events.append(self._define(event, name, self._inner[automaton]))
                 case "Inputs":
-                    made = [
-                        sct.Input(name=_plain(name), type=self._type(declaration.type, automaton))
-                        for name in declaration.names
-                    ]
-                    self._members(automaton.inputs, made, declaration, declaration.names)
+                    for name in self._annotated(declaration).names:
+                        automaton.inputs.append(self._valued(sct.Input, name, declaration, automaton))
                 case "Variables":
-                    names = [variable.name for variable in declaration.variables]
-                    kind = self._type
-                    made = [
-                        sct.DiscreteVariable(name=_plain(name), type=kind(declaration.type, automaton))
-                        for name in names
-                    ]
-                    self._members(automaton.variables, made, declaration, names)
+                    for variable in self._annotated(declaration).variables:
+                        made = self._valued(sct.DiscreteVariable, variable.name, declaration, automaton)
+                        automaton.variables.append(made)
         for location in read.locations:
             self._location(location, automaton, alone=len(read.locations) == 1)
         if not any(location.initial for location in automaton.locations):
             self._fail(read, f"'{automaton.name}' has no initial location")
 
-    def _members(self, members: Any, made: Sequence[Any], read: Any, names: Sequence[Any]) -> None:
-        self._annotated(read)
-        for element, name in zip(made, names, strict=True):
-            members.append(element)
-            self._define(element, name, self._inner[element.eContainer()])
-            if not isinstance(element, sct.Event):
-                self._types[element] = _values(element.type)
+    def _valued(self, kind: Any, name: Any, read: Any, automaton: sct.Plant) -> Any:
+        """A variable or input of the type of its declaration."""
+        made = kind(name=_plain(name), type=self._type(read.type, automaton))
+        self._types[made] = _values(made.type)
+        return self._define(made, name, self._inner[automaton])
 
     def _location(self, read: Any, automaton: sct.Plant, *, alone: bool) -> None:
         self._annotated(read)

@@ -160,9 +160,7 @@ class _Comparison:
 
     def _differences(self, system: GuardedSystem, theirs: Encoding) -> Iterator[_Difference]:
         encoding = system.encoding
-        valid = encoding.diagrams.true
-        for domain in self._layout.domains:
-            valid &= encoding.in_domain(domain)
+        valid = encoding.diagrams.all_of(map(encoding.in_domain, self._layout.domains))
         for event, transition in of_system(system).items():
             if not self._supervised:
                 ours = _allowed(self._asked.get(event, []), encoding)
@@ -181,9 +179,8 @@ class _Comparison:
                 )
                 compared.append((element, *bits, both))
             for element, our_bits, their_bits, within in compared:
-                differ = encoding.diagrams.false
-                for one, other in zip(our_bits, their_bits, strict=True):
-                    differ |= (one ^ other) & within
+                pairs = zip(our_bits, their_bits, strict=True)
+                differ = encoding.diagrams.any_of((one ^ other) & within for one, other in pairs)
                 # Most are the same even for codes without a value: then the many domains need not be looked at.
                 if differ.satisfiable() and (differ & valid).satisfiable():
                     yield _Difference(event, element, our_bits, their_bits, differ & valid)
@@ -196,10 +193,8 @@ class _Comparison:
         transition = together(self._edges.get(counterpart, {}).values(), theirs, saturates=False)
         enabled = transition.enabled if counterpart in self._edges or counterpart in self._alphabet else diagrams.false
         if counterpart in self._alphabet:
-            allowed = diagrams.false
-            for edge in (edge for edges in self._loops.get(counterpart, {}).values() for edge in edges):
-                allowed |= theirs.holds(edge.guard)
-            enabled &= allowed
+            edges = (edge for edges in self._loops.get(counterpart, {}).values() for edge in edges)
+            enabled &= diagrams.any_of(theirs.holds(edge.guard) for edge in edges)
         if self._supervised:
             enabled &= _allowed(self._invariants.get(counterpart, []), theirs)
         return Transition(enabled, transition.after)
@@ -207,9 +202,7 @@ class _Comparison:
     def _said(self, system: GuardedSystem, difference: _Difference, codes: Mapping[Element, int]) -> str:
         """The difference where state and inputs have these codes."""
         event, element = difference.event, difference.element
-        here = system.diagrams.true
-        for cell, code in codes.items():
-            here &= system.encoding.has_code(cell, code)
+        here = system.diagrams.all_of(system.encoding.has_code(cell, code) for cell, code in codes.items())
         ours, theirs = (
             sum((bit & here).satisfiable() << place for place, bit in enumerate(bits))
             for bits in (difference.ours, difference.theirs)
@@ -225,8 +218,4 @@ class _Comparison:
 
 def _allowed(requirements: Iterable[sct.Requirement], encoding: Encoding) -> Diagram:
     """Where all requirements of an event let it happen."""
-    allowed = encoding.diagrams.true
-    for requirement in requirements:
-        holds = encoding.holds(requirement.condition)
-        allowed &= ~holds if requirement.kind == sct.RequirementKind.disables else holds
-    return allowed
+    return encoding.diagrams.all_of(encoding.permits(requirement) for requirement in requirements)

@@ -128,20 +128,16 @@ class ControlLoop:
     @cached_property
     def quiescent(self) -> Diagram:
         """Those in which no internal event can happen that is not held back."""
-        states = self.states
-        for internal in self.system.internal:
-            states &= ~(internal.allowed & ~self.held(internal.relation.event))
-        return states
+        return self.states & ~self._active
 
     def held(self, event: sct.Event) -> Diagram:
         """The states in which an internal event may be held back: the reset of what has failed."""
         encoding = self.system.encoding
-        found = encoding.diagrams.false
-        if event.kind == sct.EventKind.reset:
-            edges = (edge for location in plant_of(event).locations for edge in location.edges)
-            for failed in dict.fromkeys(edge.target for edge in edges if edge.event.kind == sct.EventKind.error):
-                found |= encoding.location(failed)
-        return found
+        if event.kind != sct.EventKind.reset:
+            return encoding.diagrams.false
+        edges = (edge for location in plant_of(event).locations for edge in location.edges)
+        failed = dict.fromkeys(edge.target for edge in edges if edge.event.kind == sct.EventKind.error)
+        return encoding.diagrams.any_of(map(encoding.location, failed))
 
     def coreachable(self, goal: Diagram) -> Diagram:
         """The states from which it comes to some of these, running to completion every time."""
@@ -160,9 +156,7 @@ class ControlLoop:
         batches = [(batch, system.diagrams.true) for batch in self._alone]
         batches += [(batch, self._waits) for batch, _ in self._waiting]
         while not (layers[-1] & goal).satisfiable():
-            reached = system.diagrams.false
-            for batch, waits in batches:
-                reached |= batch.image(layers[-1] & waits)
+            reached = system.diagrams.any_of(batch.image(layers[-1] & waits) for batch, waits in batches)
             layers.append(reached & ~seen)
             seen |= reached
             assert layers[-1].satisfiable()
@@ -188,10 +182,13 @@ class ControlLoop:
     @cached_property
     def _waits(self) -> Diagram:
         """Where it lets something happen that is not internal."""
-        states = self.system.diagrams.true
-        for internal in () if self._overruns else self.system.internal:
-            states &= ~(internal.allowed & ~self.held(internal.relation.event))
-        return states
+        return self.system.diagrams.true if self._overruns else ~self._active
+
+    @cached_property
+    def _active(self) -> Diagram:
+        """Where an internal event can happen that is not held back."""
+        internal = self.system.internal
+        return self.system.diagrams.any_of(event.allowed & ~self.held(event.relation.event) for event in internal)
 
     @cached_property
     def _overruns(self) -> bool:

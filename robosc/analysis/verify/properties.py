@@ -203,9 +203,7 @@ def _nowhere(  # noqa: PLR0913 - all parts of a verdict
 
     The trace ends in that state, or, with `last`, with that event of the violation.
     """
-    anywhere = system.diagrams.false
-    for states in violations.values():
-        anywhere |= states
+    anywhere = system.diagrams.any_of(violations.values())
     if not anywhere.satisfiable():
         return Verdict(question, Outcome.PROVED, evidence)
     path = system.path_to(anywhere)

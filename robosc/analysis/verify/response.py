@@ -92,9 +92,7 @@ def _lasso(system: GuardedSystem, divergent: Diagram) -> tuple[tuple[TraceStep, 
 def _recurring(system: GuardedSystem, divergent: Diagram) -> Diagram:
     """Of the states from which internal events need not end, those on a way from one cycle of them to another."""
     while True:
-        after = system.diagrams.false
-        for internal in system.internal:
-            after |= divergent & internal.allowed if internal.step is None else internal.step.image(divergent)
+        after = system.diagrams.any_of(_after(internal, divergent) for internal in system.internal)
         if divergent == divergent & after:
             return divergent
         divergent &= after
@@ -118,10 +116,15 @@ def _next(
     """The first internal event that leads from a state to one of these, and the state after it."""
     here = system.encoding.state(codes)
     for internal in system.internal:
-        after = (here & internal.allowed if internal.step is None else internal.step.image(here)) & within
+        after = _after(internal, here) & within
         if after.satisfiable():
             return internal, pick(after, system.encoding.layout.state)
     raise AssertionError("the states were said to go on")
+
+
+def _after(internal: InternalEvent, states: Diagram) -> Diagram:
+    """The states after an internal event in some of these."""
+    return states & internal.allowed if internal.step is None else internal.step.image(states)
 
 
 @asked_of_the_loop(CONFLUENCE)
@@ -168,9 +171,7 @@ class _Ends:
     def __init__(self, loop: ControlLoop, events: Sequence[InternalEvent]) -> None:
         self._loop = loop
         self._moves = [(event.relation, event.step) for event in events if event.step is not None]
-        self._quiescent = loop.states
-        for event in events:
-            self._quiescent &= ~event.allowed
+        self._quiescent = loop.states & ~loop.system.diagrams.any_of(event.allowed for event in events)
 
     @cached_property
     def several(self) -> Diagram:
