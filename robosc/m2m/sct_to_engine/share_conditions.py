@@ -17,8 +17,6 @@ if TYPE_CHECKING:
 
 #: In how many guards a single comparison of a variable is to be for an incremental loop to compute it once for all.
 _MANY = 4
-#: How many operands a junction has at most that is said once more where it is denied: a call would be longer.
-_LONG = 3
 _JUNCTIONS = (engine.And, engine.Or)
 #: How often conditions are looked for that only one other refers to, since it is put together from longer ones.
 _ROUNDS = 5
@@ -100,15 +98,17 @@ def share_conditions(
 ) -> Shared:
     """The terms that are shared; inner ones come before those that they are part of.
 
-    Shared is a junction that several guards or other shared conditions refer to, as it is or denied; where the control
-    loop is incremental also a comparison of a variable that many guards ask for by itself.
+    Shared is a junction that several guards or other shared conditions refer to, as it is or denied, but one as it is
+    and one denied are not enough: calls cost more. Where the control loop is incremental also a comparison of a
+    variable is shared that many guards ask for by itself.
     """
     found, opposites = _find(guards.values(), terms, incremental=incremental)
+    denied = set(opposites.values())
     for _ in range(_ROUNDS):
         shared = Shared(found, opposites)
         called = Counter(term for guard in guards.values() for term in shared.inside(shared.ask_for(guard)))
         called.update(inner for term in found for inner in shared.inside(shared.operands(term)))
-        kept = [term for term in found if called[term] > 1]
+        kept = [term for term in found if called[term] > (2 if term in denied else 1)]
         if len(kept) == len(found):
             break
         found = kept
@@ -144,7 +144,7 @@ def _find(guards: Iterable[GuardTerms], terms: Terms, *, incremental: bool) -> t
     opposites = {
         term: opposite
         for term, opposite in terms.complements(order).items()
-        if len(term.operands) > _LONG and number.get(opposite, len(order)) < number[term]
+        if term.operator in _JUNCTIONS and number.get(opposite, len(order)) < number[term]
     }
     shared = []
     for term in reversed(order):
