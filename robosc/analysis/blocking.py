@@ -6,7 +6,6 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from robosc.analysis.paths import Path, TraceStep, deciding, shortest_path
-from robosc.semantics.roles import event_name
 from robosc.synthesis.decoding import Value, pick, value
 
 if TYPE_CHECKING:
@@ -18,15 +17,12 @@ if TYPE_CHECKING:
     from robosc.synthesis.encoding import Element
     from robosc.synthesis.relation import EventRelation, Move
 
-#: How many plants a sentence names.
-_NAMED = 4
-
 
 @dataclass(frozen=True)
 class Reason:
     """Why a supervisor is empty.
 
-    `message` says it in a sentence. `event` is at fault: an uncontrollable event that no supervisor can prevent, or a
+    `event` is at fault: an uncontrollable event that no supervisor can prevent, or a
     controllable one whose requirement stands between the robot and its marked states; None where the plants alone reach
     no marked state. `unmarked` are the plants that can't be in a marked location any more once the event happened, or
     at all; none if all can be but never at once. `trace` is a shortest one from the initial state, the event last;
@@ -35,7 +31,6 @@ class Reason:
     there, or else something from there on.
     """
 
-    message: str
     event: sct.Event | None
     unmarked: tuple[sct.Plant, ...]
     trace: tuple[TraceStep, ...]
@@ -59,7 +54,6 @@ def _uncontrollable(system: SynthesizedSystem) -> Reason:
     event = last.moves[0][0].event
     reason = _described(
         system,
-        f"{event_name(event)} can't be prevented, and after it no marked state can be reached",
         system.never_marked(last.states[-1]),
         [*system.trace(first), *system.trace(last)],
         last.states[-1],
@@ -73,39 +67,28 @@ def _blocked_from_the_start(system: SynthesizedSystem) -> Reason:
     encoding = system.encoding
     path = shortest_path(encoding, system.plant_moves, encoding.initial, encoding.all_marked, system.diagrams.true)
     unmarked = system.never_marked(encoding.initial_codes)
-    problem = "no marked state can be reached"
     if path is None:
-        return _described(system, f"{problem} at all", unmarked, [], encoding.initial_codes)
+        return _described(system, unmarked, [], encoding.initial_codes)
     steps = system.trace(path)
     for index, ((relation, _), codes) in enumerate(zip(path.moves, path.states, strict=False)):
         if not system.is_in(codes, relation.requirement):
-            problem += f": the shortest way to one needs {event_name(relation.event)} where its requirement forbids it"
-            reason = _described(system, problem, unmarked, steps[: index + 1], codes)
+            reason = _described(system, unmarked, steps[: index + 1], codes)
             at_fault = [one for one, asked in relation.asked.items() if not system.is_in(codes, asked)]
             return replace(reason, event=relation.event, requirements=tuple(at_fault))
     raise AssertionError("the requirements forbid nothing on the way")
 
 
 def _described(
-    system: SynthesizedSystem, problem: str, unmarked: Sequence[sct.Plant], steps: Sequence[TraceStep], codes: Codes
+    system: SynthesizedSystem, unmarked: Sequence[sct.Plant], steps: Sequence[TraceStep], codes: Codes
 ) -> Reason:
-    """A reason without its event, its sentence completed by who is in the way, and the state by name."""
-    named = [
-        f"{plant.name} (in {plant.locations[codes[plant]].name})" if len(plant.locations) > 1 else plant.name
-        for plant in unmarked[:_NAMED]
-    ]
-    if len(unmarked) > _NAMED:
-        named.append(f"and {len(unmarked) - _NAMED} more")
-    who = "each plant can be marked, but never all at once"
-    if named:
-        who = f"never in a marked location: {', '.join(named)}"
+    """A reason without its event, with the state by name."""
     state: dict[str, Value] = {}
     for plant in system.model.plants:
         if len(plant.locations) > 1:
             state[plant.name] = value(plant, codes[plant])
         for variable in plant.variables:
             state[f"{plant.name}.{variable.name}"] = value(variable, codes[variable])
-    return Reason(f"{problem}; {who}", None, tuple(unmarked), tuple(steps), state, codes)
+    return Reason(None, tuple(unmarked), tuple(steps), state, codes)
 
 
 @dataclass(frozen=True)

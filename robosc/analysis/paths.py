@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from robosc.semantics.roles import event_name
 from robosc.synthesis.decoding import Value, pick, text, value
@@ -29,6 +29,11 @@ class TraceStep:
         """The event as a person writes it: `message_level.u_response(i_response = 3)`."""
         values = ", ".join(f"{name} = {text(chosen)}" for name, chosen in self.inputs.items())
         return f"{self.event}({values})" if values else self.event
+
+
+def trace_data(steps: Iterable[TraceStep]) -> list[dict[str, Any]]:
+    """A trace as JSON data: events with their inputs."""
+    return [{"event": step.event, "inputs": dict(step.inputs)} for step in steps]
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ from hypothesis import assume, given
 from robosc.analysis.blocking import Reason
 from robosc.analysis.paths import TraceStep
 from robosc.analysis.supervise import diagnose
+from robosc.analysis.wording import blocking
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 from robosc.semantics.roles import event_name
@@ -156,9 +157,9 @@ def tank(**arguments):
 
 def test_an_uncontrollable_event_is_named_with_the_inputs_that_matter():
     reason = diagnose(model([tank()])).reason
-    assert reason.message == (
-        "Tank.burst can't be prevented, and after it no marked state can be reached; never in a marked location: Tank"
-        " (in burst)"
+    assert blocking(reason) == (
+        "response from `Tank` can't be prevented, and after it no marked state can be reached;"
+        " never in a marked state: `Tank` in `burst`"
     )
     assert [str(step) for step in reason.trace] == ["Tank.measured(x = 3)", "Tank.burst"]
     assert reason.state == {"Tank": "burst", "Tank.level": 3}
@@ -184,23 +185,23 @@ def test_a_requirement_that_keeps_everything_from_being_marked_is_named():
         marked=["done"],
     )
     reason = diagnose(model([action], [disables("c_cancel", "A.busy")])).reason
-    assert reason.message == (
-        "no marked state can be reached: the shortest way to one needs A.c_cancel where its requirement forbids it;"
-        " never in a marked location: A (in busy)"
+    assert blocking(reason) == (
+        "no marked state can be reached: the shortest way to one needs cancel of `A` where a requirement on the"
+        " cancel of `A` forbids it; never in a marked state: `A` in `busy`"
     )
     assert [step.event for step in reason.trace] == ["A.c_trigger", "A.c_cancel"]
 
 
 @pytest.mark.parametrize(
     ("marked", "who"),
-    [([], "never in a marked location: A (in x)"), (["x"], "each plant can be marked, but never all at once")],
+    [([], "never in a marked state: `A` in `x`"), (["x"], "each component can be marked, but never all at once")],
 )
 def test_plants_that_reach_no_marked_state_are_named(marked, who):
     a = plant("A", {"x": [edge("u", to="y")], "y": [edge("v", to="x")]}, uncontrollable=["u", "v"], marked=marked)
     b = plant("B", {"x": [edge("u", to="y")], "y": [edge("v", to="x")]}, marked=["y"])
     synthesis = diagnose(model([a, b]))
     assert (synthesis.uncontrolled_states, synthesis.controlled_states) == (2, 0)
-    assert synthesis.reason.message == f"no marked state can be reached at all; {who}"
+    assert blocking(synthesis.reason) == f"no marked state can be reached at all; {who}"
     assert synthesis.reason.trace == ()
 
 

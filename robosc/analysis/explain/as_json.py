@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from robosc.analysis.explain.answers import Emptiness, Explanation, Possibility
+from robosc.analysis.paths import trace_data
 from robosc.analysis.wording import blocking, name
 from robosc.semantics.roles import event_name
 
@@ -12,7 +13,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
     from robosc.analysis.explain.answers import Answer, Loosening, Note
-    from robosc.analysis.paths import TraceStep
 
     At: TypeAlias = Callable[[Any], dict[str, Any]]
 
@@ -38,19 +38,19 @@ def _explanation(told: Explanation, at: At) -> dict[str, Any]:
         "by": None if told.by is None else str(told.by),
         "reach": str(told.situation.reach),
         "state": dict(told.situation.state),
-        "trace": _steps(told.situation.trace),
+        "trace": trace_data(told.situation.trace),
         "plants": _notes(told.plants, at),
         "requirements": _notes(told.requirements, at),
         "trouble": counterexample
         and {
-            "trace": _steps(counterexample.trace),
-            "onwards": _steps(counterexample.onwards),
+            "trace": trace_data(counterexample.trace),
+            "onwards": trace_data(counterexample.onwards),
             "guards_against": counterexample.onwards[-1].event if counterexample.onwards else None,
             "stuck": [name(plant) for plant in counterexample.unmarked],
             "requirements": _notes(told.blamed, at),
         },
         "changes": _notes(told.changes, at),
-        "way": None if told.way is None else _steps(told.way),
+        "way": None if told.way is None else trace_data(told.way),
         "refusal": told.refusal and _explanation(told.refusal, at),
     }
 
@@ -74,15 +74,11 @@ def _emptiness(told: Emptiness, at: At) -> dict[str, Any]:
         "empty": True,
         "message": blocking(told.reason),
         "event": told.reason.event and event_name(told.reason.event),
-        "trace": _steps(told.reason.trace),
+        "trace": trace_data(told.reason.trace),
         "stuck": _notes(told.stuck, at),
         "requirements": _notes(told.blamed, at),
         "loosenings": _loosenings(told.loosenings, at),
     }
-
-
-def _steps(steps: Iterable[TraceStep]) -> list[dict[str, Any]]:
-    return [{"event": step.event, "inputs": dict(step.inputs)} for step in steps]
 
 
 def _notes(notes: Iterable[Note], at: At) -> list[dict[str, Any]]:

@@ -8,7 +8,7 @@ from enum import StrEnum
 from typing import TYPE_CHECKING, Any
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
-from robosc.analysis.paths import TraceStep
+from robosc.analysis.paths import TraceStep, trace_data
 from robosc.analysis.wording import in_words
 from robosc.diagnostics.visible import visible, visible_lines
 from robosc.semantics.roles import event_name
@@ -76,15 +76,11 @@ def _verdict(verdict: Verdict) -> dict[str, Any]:
         "outcome": verdict.outcome.value,
         "evidence": verdict.evidence,
         "explanation": verdict.explanation or None,
-        "trace": _steps(verdict.trace),
-        "onwards": _steps(verdict.onwards),
-        "other": _steps(verdict.other),
+        "trace": trace_data(verdict.trace),
+        "onwards": trace_data(verdict.onwards),
+        "other": trace_data(verdict.other),
         "seconds": round(verdict.seconds, 3),
     }
-
-
-def _steps(trace: Sequence[TraceStep]) -> list[dict[str, Any]]:
-    return [{"event": step.event, "inputs": dict(step.inputs)} for step in trace]
 
 
 def as_junit(model: sct.SupervisoryControlModel, verdicts: Sequence[Verdict], file: str) -> str:

@@ -12,22 +12,15 @@ from typing import TYPE_CHECKING, Any
 from robosc.m2t.cif.linear import LARGEST, Linear, Unsupported, bounds, shift
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
+from robosc.semantics.operators import BY_CLASS, COMPARISONS
 from robosc.semantics.walks import copied, operands, walk, with_operands
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Generator, Iterable
+    from collections.abc import Generator, Iterable
 
 #: Cases that one expression may be split into.
 MOST_CASES = 1024
 
-_COMPARISONS = (
-    ex.Equation,
-    ex.Inequation,
-    ex.LessThan,
-    ex.LessOrEqual,
-    ex.GreaterThan,
-    ex.GreaterOrEqual,
-)
 _ATOMS = (
     ex.BooleanLiteral,
     ex.EnumerationLiteralReference,
@@ -56,7 +49,7 @@ def _lowered(part: _Part) -> Generator[_Part, Any, Any]:
 
 
 def _condition_lowered(expression: ex.Expression) -> Generator[_Part, Any, ex.Expression]:
-    if isinstance(expression, _COMPARISONS) and _is_number(expression.left):
+    if isinstance(expression, COMPARISONS) and _is_number(expression.left):
         if _is_plain(expression.left) and _is_plain(expression.right):
             return copied(expression)
         left, right = (yield expression.left, True), (yield expression.right, True)
@@ -136,7 +129,7 @@ def _is_plain(expression: ex.Expression) -> bool:
 
 def _against_zero(operator: _Comparison, value: Linear, origin: ex.Expression) -> ex.Expression:
     if not value.factors:
-        return ex.BooleanLiteral(value=_HOLDS[operator](value.constant))
+        return ex.BooleanLiteral(value=BY_CLASS[operator].compute(value.constant, 0))
     left, right = (_written(side, origin) for side in value.sides())
     return operator(left=left, right=right)
 
@@ -145,16 +138,6 @@ def _written(value: Linear, origin: ex.Expression) -> ex.Expression:
     if value.range()[1] > LARGEST:
         raise Unsupported(origin, "its numbers do not fit 32 bits")
     return value.tree()
-
-
-_HOLDS: dict[_Comparison, Callable[[int], bool]] = {
-    ex.Equation: lambda value: value == 0,
-    ex.Inequation: lambda value: value != 0,
-    ex.LessThan: lambda value: value < 0,
-    ex.LessOrEqual: lambda value: value <= 0,
-    ex.GreaterThan: lambda value: value > 0,
-    ex.GreaterOrEqual: lambda value: value >= 0,
-}
 
 
 def _saturated(value: Linear, low: int, high: int, origin: ex.Expression) -> tuple[ex.Expression, Linear]:
