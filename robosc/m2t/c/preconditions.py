@@ -2,23 +2,24 @@
 
 from __future__ import annotations
 
-from functools import reduce
 from typing import TYPE_CHECKING
 
 from robosc.diagnostics import Diagnostic, Severity
 from robosc.m2m.sct_to_engine import lowering
+from robosc.metamodel import expression as ex
 from robosc.metamodel.places import place
-from robosc.semantics.domains import Interval, Width
+from robosc.metamodel.reflection import contents
+from robosc.semantics.domains import Width
 from robosc.semantics.edges import edges_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from robosc.m2m.sct_to_engine.lower_expressions import Lowering
-    from robosc.metamodel import expression as ex
     from robosc.metamodel import sct
 
 RULE = "c-overflow"
+_LOGICAL = (ex.Conjunction, ex.Disjunction, ex.Implication, ex.Negation)
 _WIDEST = Width(64, signed=True).values
 
 
@@ -55,10 +56,23 @@ def _expressions(model: sct.SupervisoryControlModel) -> Iterator[tuple[ex.Locate
 
 
 def _overflows(expression: ex.Expression, lower: Lowering) -> Iterator[str]:
-    """What is wrong with each operator, operands before those on them, from left to right."""
-    for term in lower(expression).below():
-        values = [number.values for number in (term, *term.operands) if number.sort is int]
-        if term.operands and values:
-            union = reduce(Interval.union, values)
+    lower(expression)
+    parts = [expression]
+    for part in parts:
+        parts += [child for _, child in contents(part)]
+    # Operands before the operators on them, from left to right.
+    for part in reversed(parts):
+        if isinstance(part, _LOGICAL) or (
+            isinstance(part, ex.UnaryMinus) and isinstance(part.operand, ex.IntegerLiteral)
+        ):
+            continue  # There is nothing to compute, or it is a number, the least one too.
+        numbers = [lower(number) for _, number in [("", part), *contents(part)] if isinstance(number, ex.Expression)]
+        if isinstance(part, ex.FunctionCall):
+            numbers += lower(part).operands  # what a remainder is computed from
+        values = [term.values for term in numbers if term.sort is int]
+        if len(numbers) > 1 and values:
+            union = values[0]
+            for interval in values[1:]:
+                union = union.union(interval)
             if not _WIDEST.holds(union):
                 yield f"a value between {union.low} and {union.high} does not fit into 64 bits"
