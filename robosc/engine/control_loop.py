@@ -78,7 +78,7 @@ class ControlLoop:
         numbers = {source: number for number, source in enumerate(executed.sources, 1)}
         self._sources = {event.name: numbers[event.source] for event in executed.events if event.source is not None}
         self._next_silent = 0
-        self._rested = False
+        self._quiescent = False
         self._livelocked = False
         self._ticked = False
         self._reactions = [0] * (len(executed.sources) + 1)
@@ -178,7 +178,7 @@ class ControlLoop:
         if self.hooks.before is not None and not self.hooks.before(event) and event in self._own:
             return False
         self.engine.perform(event)
-        self._rested = False
+        self._quiescent = False
         self._owed.discard(event)
         for queue in (self._cancels, self._triggers):
             if event in queue:
@@ -192,7 +192,7 @@ class ControlLoop:
 
     def _settle(self) -> None:
         left = self._bound
-        while not self._rested:
+        while not self._quiescent:
             self._provide()
             silent = list(self._silent)
             ahead = silent[self._next_silent :] + silent[: self._next_silent]
@@ -214,7 +214,7 @@ class ControlLoop:
                 self._livelocked = False
                 if withheld:
                     return
-                self._rested = True
+                self._quiescent = True
 
     def _provide(self) -> None:
         """Chooses the data to send: for each choice the first alternative whose event is enabled."""

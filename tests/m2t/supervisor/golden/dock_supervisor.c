@@ -215,7 +215,7 @@ static bool run(dock_supervisor *self, dock_event event)
     }
     execute(&self->state, &self->inputs, event);
     self->last = (uint8_t)event;
-    self->rested = false;
+    self->quiescent = false;
     if ((unsigned)event < QUEUED) {
         self->due[event] = false;
         /* It moves behind the others of its kind. */
@@ -260,7 +260,7 @@ static void provide(dock_supervisor *self)
 static void settle(dock_supervisor *self)
 {
     uint32_t left = BOUND;
-    while (!self->rested) {
+    while (!self->quiescent) {
         bool ran = false;
         bool withheld = false;
         unsigned next = self->silent;
@@ -289,7 +289,7 @@ static void settle(dock_supervisor *self)
             if (withheld) {
                 return; /* They are asked again the next time. */
             }
-            self->rested = true;
+            self->quiescent = true;
         }
     }
 }
@@ -383,7 +383,7 @@ static void start(dock_supervisor *self)
     self->started = false;
     self->silent = 0U;
     self->livelocked = false;
-    self->rested = false;
+    self->quiescent = false;
 }
 
 void dock_init(

@@ -196,7 +196,7 @@ typedef struct dock_supervisor {
     bool started; /* Whether there was a tick. */
     uint8_t silent; /* The silent event to ask next. */
     bool livelocked; /* Whether a livelock was reported. */
-    bool rested; /* Whether nothing happened since silent events and data came to rest. */
+    bool quiescent; /* Whether nothing happened since silent events and data came to rest. */
 } dock_supervisor;
 
 /* Puts the robot into its initial state. NULL for settings means the default, NULL for hooks none. */
