@@ -123,7 +123,7 @@ def bare(path: str, text: str) -> str:
         return re.sub(r'"(?:\\.|[^"\\])*"|#[^\n]*', "", text, flags=re.DOTALL)
     if kind == ".yaml":
         # A parameter of a topic has its name.
-        return re.sub(r'"(?:\\.|[^"\\\n])*"|#[^\n]*|^ +\w+(?=: \d+$)', "", text, flags=re.MULTILINE)
+        return re.sub(r'"(?:\\.|[^"\\\n])*"|#[^\n]*|^ +\w+(?=: \d+(?:  #|$))', "", text, flags=re.MULTILINE)
     if kind == ".py":
         tree_of_it = ast.parse(text)
         return " ".join(node.id for node in ast.walk(tree_of_it) if isinstance(node, ast.Name))
