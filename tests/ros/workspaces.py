@@ -83,8 +83,8 @@ ROS1_PACKAGES = [
         with_tests=True,
         fault=(
             "src/line_follower_supervisor.c",
-            "_free && state->component_EmergencyStop == line_follower_component_EmergencyStop_in_service;",
-            "_free;",
+            "state->component_EmergencyStop == line_follower_component_EmergencyStop_in_service",
+            "1",
         ),
     ),
 ]
