@@ -6,7 +6,9 @@
 #include <csignal>
 #include <ctime>
 #include <mutex>
+#include <string>
 
+#include <ros/console.h>
 #include <ros/xmlrpc_manager.h>
 #include <xmlrpcpp/XmlRpcValue.h>
 
@@ -36,11 +38,12 @@ class Interruption {
     });
   }
 
-  /// Waits until a condition holds; false: the node shall end before.
+  /// Waits until a condition holds, and says after a second what is missing; false: the node shall end before.
   template <typename Condition>
-  bool wait_until(Condition condition) {
+  bool wait_until(Condition condition, const std::string& missing) {
     const timespec pause = {0, 20'000'000};
-    while (!condition()) {
+    for (int rounds = 0; !condition(); ++rounds) {
+      if (rounds == 50) ROS_WARN_STREAM("waiting for " << missing);
       if (sigtimedwait(&signals_, nullptr, &pause) > 0) return false;
     }
     return true;

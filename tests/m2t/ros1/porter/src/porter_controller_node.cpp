@@ -511,11 +511,12 @@ int main(int argc, char** argv) {
   robosc::Interruption interruption;
   ros::init(argc, argv, "porter_controller", ros::init_options::NoSigintHandler);
   robosc::Interruption::take_requests();
-  if (!interruption.wait_until([] { return ros::master::check(); })) return 0;
+  const std::string master = "a master at " + ros::master::getURI();
+  if (!interruption.wait_until([] { return ros::master::check(); }, master)) return 0;
   ros::CallbackQueue queue;
   ros::NodeHandle node;
   node.setCallbackQueue(&queue);
-  if (!interruption.wait_until([] { return ros::Time::isValid(); })) return 0;
+  if (!interruption.wait_until([] { return ros::Time::isValid(); }, "/clock")) return 0;
   try {
     robosc::set_log_level(ros::NodeHandle("~"));
     std::optional<porter_controller::Controller> controller(std::in_place, node);
