@@ -181,6 +181,8 @@ def test_waits_for_simulated_time_and_can_be_ended(ros1_workspace: Workspace, tm
         executable = ros1_workspace.folder / f"devel/lib/{PACKAGE}/{PACKAGE}"
         node = processes.start("timeless", [executable])
         log = tmp_path / "run" / "timeless.log"
-        processes.wait_until(lambda: "waiting for /clock" in log.read_text(errors="replace"), "it says that time stands")
+        processes.wait_until(
+            lambda: "waiting for /clock" in log.read_text(errors="replace"), "it says that time stands"
+        )
         assert node.poll() is None
         assert processes.stop(node) == 0
