@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 _Element = TypeVar("_Element", bound="ex.Located")
 
 
-def of_kind(kind: type[_Element], elements: Iterable[Any]) -> list[_Element]:
+def of_kind(kind: type[_Element] | tuple[type[_Element], ...], elements: Iterable[Any]) -> list[_Element]:
     """Those elements that are of a kind."""
     return [element for element in elements if isinstance(element, kind)]
 
@@ -25,6 +25,13 @@ def components(base: rsc.Base) -> Iterator[tuple[rsc.Component, rsc.LocalCompone
     for component in of_kind(rsc.Component, base.definitions):
         if isinstance(component.type, rsc.LocalComponent):
             yield component, component.type
+
+
+def statements(kind: type[_Element], base: rsc.Base) -> Iterator[_Element]:
+    """The definitions of a kind outside of components, then those in these components."""
+    yield from of_kind(kind, base.definitions)
+    for _, local in components(base):
+        yield from of_kind(kind, local.definitions)
 
 
 def behaviours(base: rsc.Base) -> Iterator[tuple[rsc.Component, rsc.ComponentBehaviour]]:
@@ -55,6 +62,14 @@ def communications(base: rsc.Base) -> Iterator[rsc.CommunicationType]:
     """The messages, services and actions of these components."""
     for _, local in components(base):
         yield from of_kind(rsc.CommunicationType, local.definitions)
+
+
+def identified_elements(base: rsc.Base) -> Iterator[rsc.CommunicationType | rsc.TopicRemapping]:
+    """What gives a topic, a service or an action its name."""
+    yield from communications(base)
+    for component in of_kind(rsc.Component, base.definitions):
+        if isinstance(component.type, rsc.ImportedComponent):
+            yield from component.type.remappings
 
 
 def states(automaton: rsc.Automaton) -> list[rsc.State]:
@@ -121,3 +136,5 @@ def _outermost(base: rsc.Base) -> Iterator[rsc.DataType | None]:
     for communication in communications(base):
         yield from (declared for _, declared in carried(communication))
     yield from (variable.type for variable in variables(base))
+    for component in of_kind(rsc.Component, base.definitions):
+        yield from (parameter.type for parameter in component.parameters)

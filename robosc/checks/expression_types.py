@@ -39,6 +39,7 @@ class Restriction(Enum):
     FREE = "any"
     CONSTANT = "enum values"
     ENUM_RULE = "`value` and enum values"
+    FUNCTION = "parameters and constants"
 
 
 @dataclass(frozen=True)
@@ -48,8 +49,11 @@ class Place:
     value: Type | None
     why_no_value: str = ""
     restriction: Restriction = Restriction.FREE
+    what: str = "an initial value"
 
 
+#: What constant expressions read.
+_CONSTANT_ITEMS = (rsc.EnumValue, rsc.Constant, rsc.FormalParameter)
 CONSTANT = Place(None, restriction=Restriction.CONSTANT)
 ENUM_RULE = Restriction.ENUM_RULE
 
@@ -101,7 +105,31 @@ class ExpressionCheck:
                     "an object value stands in an expression, expected a value of a basic type or an enum",
                     "provide objects as a whole or as the value of a property",
                 )
+            case ex.Conditional():
+                return self._conditional(expression, types)
+            case rsc.Call():
+                return self._call(expression, types)
+            case rsc.InstanceQuantifier():
+                self._operand(expression.body, types[0], BOOLEAN, f"the condition of `{expression.quantifier}`")
         return infer(expression) if row is None else self._operator(expression, row, types)
+
+    def _operand(self, operand: ex.Expression | None, found: Type, wanted: Type, what: str) -> None:
+        if operand is not None and UNKNOWN not in {found, wanted} and found != wanted:
+            self.report(operand, f"{what} must be {wanted}, found {found}", repair(operand, found, wanted))
+
+    def _conditional(self, choice: ex.Conditional, types: list[Type]) -> Type:
+        condition, then, otherwise = types
+        self._operand(choice.condition, condition, BOOLEAN, "the condition behind `if`")
+        self._operand(choice.otherwise, otherwise, then, "what stands behind `else`, as behind `then`,")
+        return then if then != UNKNOWN else otherwise
+
+    def _call(self, call: rsc.Call, types: list[Type]) -> Type:
+        if call.function is None:
+            return UNKNOWN
+        for parameter, argument, found in zip(call.function.parameters, call.arguments, types, strict=False):
+            wanted = declared_type(parameter.type)
+            self._operand(argument, found, wanted, f"argument `{parameter.name}` of `{call.function.name}`")
+        return declared_type(call.function.type)
 
     def report(self, element: ex.Located, message: str, hint: str) -> None:
         """Notes a finding."""
@@ -110,6 +138,10 @@ class ExpressionCheck:
     def _operator(self, operator: ex.Expression, row: Operator, types: list[Type]) -> Type:
         if row.rule is Rule.EQUALITY:
             self._equality(operator, types)
+        elif isinstance(operator, ex.Addition) and {*types} == {STRING}:
+            if self.place.restriction is not Restriction.CONSTANT:
+                hint = "declare a `constant` for the whole text"
+                self.report(operator, "strings are joined where this is not constant, expected a constant", hint)
         else:
             wanted = {Rule.LOGICAL: BOOLEAN, Rule.INTEGER: INTEGER}.get(row.rule)
             what = "argument" if row.parameters else "operand"
@@ -161,15 +193,20 @@ class ExpressionCheck:
     def _refusal(self, access: rsc.Access) -> tuple[str, str] | None:
         """Why this can't be read here, and the repair; None where it can."""
         item, restriction = access.item, self.place.restriction
-        if restriction is Restriction.CONSTANT and (access.value or (item and not isinstance(item, rsc.EnumValue))):
+        if restriction is Restriction.CONSTANT and (access.value or (item and not isinstance(item, _CONSTANT_ITEMS))):
             return (
-                f"an initial value must be a constant, found {_describe(access)}",
-                "use literals, operators and enum values; a transition can assign the rest",
+                f"{self.place.what} must be a constant, found {_describe(access)}",
+                "use literals, constants, operators and enum values; a transition can assign the rest",
             )
-        if restriction is Restriction.ENUM_RULE and item and not isinstance(item, rsc.EnumValue):
+        if restriction is Restriction.ENUM_RULE and item and not isinstance(item, _CONSTANT_ITEMS):
             return (
-                f"an enum rule reads `value`, literals and enum values only, found {_describe(access)}",
+                f"an enum rule reads `value`, literals, constants and enum values only, found {_describe(access)}",
                 "compare `value` with literals; requirements and guards can combine the enum with the rest",
+            )
+        if restriction is Restriction.FUNCTION and item and not isinstance(item, _CONSTANT_ITEMS):
+            return (
+                f"a function reads its parameters, constants and enum values only, found {_describe(access)}",
+                "give it a parameter for what it shall read, or declare a `condition`",
             )
         if access.value and self.place.value is None:
             return (

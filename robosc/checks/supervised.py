@@ -89,14 +89,14 @@ def data_reads(result: ConeOfInfluence) -> Iterator[tuple[Assigned, rsc.Access]]
     """
     for assigned in result.computations:
         if assigned.variable is not None and can_be_needed(assigned.variable.variable) and _fits(assigned):
-            for access in accesses(assigned.assignment.value):
+            for access in accesses(assigned.value):
                 if access.value and isinstance(assigned.transition, rsc.ResultTransition):
                     yield assigned, access
 
 
 def _fits(assigned: Assigned) -> bool:
     assert assigned.variable is not None
-    wanted = declared_type(assigned.variable.variable.type)
+    wanted = declared_type(assigned.variable.type)
     value = assigned.assignment.value
     found = UNKNOWN if value is None else type_of(value)
     return UNKNOWN in {wanted, found} or found == wanted
@@ -139,7 +139,7 @@ def table_faults(instances: Instances, result: ConeOfInfluence) -> Iterator[Faul
         yield from _in_expression(instances, condition, within, None)
     for assigned in result.computations:
         if assigned.variable is not None and can_be_needed(assigned.variable.variable):
-            yield from _in_expression(instances, assigned.assignment.value, assigned.instance, assigned)
+            yield from _in_expression(instances, assigned.value, assigned.instance, assigned)
 
 
 def _in_expression(
@@ -171,7 +171,7 @@ def _too_many(
     for access in reads:
         variable = instances.variable(access, within)
         if variable is not None:
-            ranges[variable] = _size(variable.variable.type)
+            ranges[variable] = _size(variable.type)
         elif access.value and assigned is not None:
             path = tuple(segment.property for segment in access.segments if isinstance(segment, rsc.PropertySegment))
             ranges[path] = _size(read_type(assigned, access))

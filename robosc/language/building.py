@@ -42,13 +42,14 @@ class Builder:
     """Makes the model of one text, or of parts of it.
 
     References are not linked: `references` holds, in the order of the text, their names by element and feature;
-    `declared` holds where the name of each named element stands.
+    `declared` holds where the name of each named element stands, `bounded` the types whose bounds are expressions.
     `findings` are words that the grammar admits and that still mean nothing, such as a number too large.
     """
 
     def __init__(self, text: Text) -> None:
         self.references: dict[Any, dict[str, Name]] = {}
         self.declared: dict[Any, Name] = {}
+        self.bounded: list[rsc.IntegerDataType] = []
         self.findings: list[Diagnostic] = []
         self._text = text
         #: Literals of 2^63, which is no integer, but the least one behind a minus.
@@ -85,6 +86,8 @@ class Builder:
             start, end = node.position + self._offset, node.position_end + self._offset
             name = f"{element.package}/{element.rosType}"
             self.references[element] = {"type": Name(name, start, end)}
+        elif isinstance(element, rsc.IntegerDataType) and element.lower is not None:
+            self.bounded.append(element)
         elif isinstance(element, ex.IntegerLiteral) and element.value > _LARGEST:
             self._unsigned[element] = node
         elif isinstance(element, ex.UnaryMinus):
@@ -136,17 +139,17 @@ class Builder:
         match node.rule_name:
             case "Name" | "UnreservedName":
                 return node.value.lstrip("^")
-            case "Function":
+            case "BuiltIn":
                 return node.value
             case "Integer" | "SignedInteger":
                 return self._integer(node, literal=False)
             case "Double":
                 return self._double(node)
-            case "String":
+            case "String" | "LoneString":
                 return self._string(node)
             case "Boolean":
                 return node.value == "true"
-            case "MessageDirection" | "ResultType":
+            case "MessageDirection" | "ResultType" | "Quantifier":
                 return getattr(rsc, node.rule_name).getEEnumLiteral(node.value)
         return True
 

@@ -36,16 +36,18 @@ _FOREIGN = {
     ";": "",
 }
 #: What other languages have words for: what RoboSC has instead.
-_NO_CONSTANTS = "there are no constants: write the number, or a variable with an initial value that nothing assigns to"
+_CONSTANT = "write `constant name: type = value`"
+_PARAMETER = "nothing is set on the robot itself; write `constant name: type = value`"
 _NO_TIME = (
     "a model has no time: let a node send a message when the time is up, or let `watchdogMs` in the configuration"
     " watch a topic"
 )
-_NO_FUNCTIONS = "there are no functions: an enum's rules give names to conditions on data, and expressions compute it"
+_FUNCTION = "write `function name(parameter: type): type = expression`"
 _FOREIGN_WORDS = {
-    **dict.fromkeys(("const", "constant", "let", "val", "define", "param", "parameter"), _NO_CONSTANTS),
+    **dict.fromkeys(("const", "let", "val", "define"), _CONSTANT),
+    **dict.fromkeys(("param", "parameter"), _PARAMETER),
     **dict.fromkeys(("after", "timeout", "timer", "wait", "delay", "sleep", "every"), _NO_TIME),
-    **dict.fromkeys(("function", "def", "fn", "func", "fun"), _NO_FUNCTIONS),
+    **dict.fromkeys(("def", "fn", "func", "fun"), _FUNCTION),
     "when": "write `if`",
     "unless": "write `if` and `!` before the condition",
     "var": "write `variable`",
@@ -62,6 +64,7 @@ _RULES = {
     "Name": "a name",
     "UnreservedName": "a name",
     "String": "a string",
+    "LoneString": "a string",
     "Integer": "a whole number",
     "SignedInteger": "a whole number",
     "Double": "a number",
@@ -91,7 +94,7 @@ def expected(wanted: Iterable[str], level: Level | None) -> str:
             words = [name if word in core else word for word in words if word in core or word not in _alike(rule)]
     if len(words) > 1:
         # That a name may go on is true nearly everywhere and never what is missing.
-        words = [word for word in words if word not in {".", "["}]
+        words = [word for word in words if word not in {".", "[", "("}]
     named = [_RULES.get(word, word if " " in word else f"`{word}`") for word in words if word != "end"]
     if "end" in words:
         named.append(f"the next {level.noun}" if level else "the end of the file")
@@ -122,8 +125,6 @@ def hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) -> Rep
         return "the properties of an object stand in braces"
     if before.is_name and before.text in wanted and is_reserved(before.text):
         return f"is a name missing before `{before.text}`?"
-    if token.text == "(" and before.kind is Kind.WORD and not is_reserved(before.text):
-        return _NO_FUNCTIONS
     if before.is_keyword(",") and token.kind is Kind.SYMBOL:
         return "leave out the comma before it"
     if "->" in wanted and block.level is RULES and (token.is_first or before.text == "default"):

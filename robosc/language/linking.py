@@ -10,7 +10,9 @@ from robosc.language.scopes import Declared, File, Names, Scope, by_name
 from robosc.language.text import Repair
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
+from robosc.semantics.expansion import constant_value
 from robosc.semantics.naming import enumeration, written
+from robosc.semantics.operators import FUNCTIONS
 from robosc.semantics.typing import (
     UNKNOWN,
     ArrayType,
@@ -66,12 +68,16 @@ class _Linker:
         self._types: dict[rsc.Access, list[Type]] = {}
         self._properties: dict[rsc.ObjectDataType, Names] = {}
         self._is_library = isinstance(file.base, rsc.Library)
+        self._present = {type(element) for element in (*file.references, *file.declared_names)}
+        self._nearests: dict[type, dict[ex.Located, Any]] = {}
 
     def imports(self) -> None:
         """The components that are imported: all other names may look into them."""
         for element, names in self._file.references.items():
             if isinstance(element, rsc.ImportedComponent):
                 self._import(element, names)
+            elif isinstance(element, rsc.InstantiatedComponent):
+                self._instantiation(element, names["definition"])
 
     def link(self, scope: Scope) -> None:
         """What declarations name, then what uses them, in the order of the text: each looks at what stands before."""
@@ -86,6 +92,10 @@ class _Linker:
                         link_interface(definition)
         for element, names in list(self._file.references.items()):
             self._use(element, names)
+        for declared in self._file.bounded:
+            low, high = constant_value(declared.lower), constant_value(declared.upper)
+            if type(low) is int and type(high) is int:
+                declared.minimum, declared.maximum = low, high
 
     def _declaration(self, element: ex.Located, names: Mapping[str, Name]) -> None:
         match element:
@@ -112,6 +122,12 @@ class _Linker:
                 self._target(element, names["target"])
             case rsc.Access():
                 self._access(element, names)
+            case rsc.Argument():
+                self._argument(element, names["parameter"])
+            case rsc.Call():
+                self._call(element, names["function"])
+            case rsc.InstanceQuantifier():
+                self._quantified_template(element, names["template"])
             case rsc.PropertySegment():
                 self._segment(element, names["property"])
             case rsc.ObjectPropertyValue():
@@ -129,6 +145,59 @@ class _Linker:
             element.definition = components[name.text]
         elif not library.may_declare(name.text, Declared.COMPONENT, imported=False):
             self._missing(name, f"library `{library.base.name}` has no component", components)
+
+    def _instantiation(self, element: rsc.InstantiatedComponent, name: Name) -> None:
+        components = self._file.declared[rsc.Component]
+        found = components.get(name.text)
+        if found is not None and found.parameters:
+            element.definition = found
+        elif found is not None:
+            message = f"component `{name.text}` is no template: it has no parameters"
+            self._report(name, message, "write what it has where it is needed", rule="argument")
+        elif not self._file.may_declare(name.text, Declared.COMPONENT, imported=False):
+            templates = [component.name for component in components.values() if component.parameters]
+            self._missing(name, "there is no template", templates)
+
+    def _argument(self, argument: rsc.Argument, name: Name) -> None:
+        user = argument.eContainer()
+        made_of = user.type if isinstance(user, rsc.ComplexDataTypeReference) else user.definition
+        if not isinstance(made_of, rsc.Component | rsc.EnumDataType):
+            return
+        parameters = by_name(made_of.parameters)
+        if name.text in parameters:
+            argument.parameter = parameters[name.text]
+        else:
+            self._missing(name, f"`{made_of.name}` has no parameter", parameters)
+
+    def _call(self, call: rsc.Call, name: Name) -> None:
+        own = self._around(call, rsc.Component)
+        functions = self._scope.functions(own) if own is not None else {}
+        if name.text in functions:
+            call.function = functions[name.text]
+            return
+        found = self._scope.find(rsc.Function, name.text)
+        if len(found) > 1:
+            self._ambiguous("function", name, [file for file, _ in found])
+        elif found:
+            call.function = found[0][1]
+        elif not self._file.may_declare(name.text, Declared.NAMED):
+            self._missing(name, "there is no function", [*functions, *self._scope.usable(rsc.Function), *FUNCTIONS])
+
+    def _quantified_template(self, quantifier: rsc.InstanceQuantifier, name: Name) -> None:
+        own = self._file.declared[rsc.Component]
+        found = (
+            [own[name.text]] if name.text in own else [other for _, other in self._scope.find(rsc.Component, name.text)]
+        )
+        templates = [component for component in found if component.parameters or name.text not in own]
+        if len(templates) == 1:
+            quantifier.template = templates[0]
+        elif found and not templates:
+            hint = f"write the condition with `{written(name.text)}` itself"
+            self._report(
+                name, f"component `{name.text}` is one component, expected a template or one of a library", hint
+            )
+        elif not found and not self._file.may_declare(name.text, Declared.COMPONENT):
+            self._missing(name, "there is no template", [found.name for found in own.values() if found.parameters])
 
     def _definition(self, kind: type[_Element], what: str, declared: Declared, name: Name) -> _Element | None:
         found = self._scope.find(kind, name.text)
@@ -208,8 +277,8 @@ class _Linker:
         found = members.get(name.text)
         if found is None and not self._file.may_declare_within(self._scope.origin(component), name.text, declared):
             what = "communication" if declared is Declared.COMMUNICATION else "variable or state"
-            values = [] if declared is Declared.COMMUNICATION else self._scope.find(rsc.EnumValue, name.text)
-            hint = self._value_of_enum(name, values[0][1]) if values else None
+            values = [] if declared is Declared.COMMUNICATION else self._scope.values(name.text)
+            hint = self._value_of_enum(name, values[0]) if values else None
             self._missing(name, f"component `{component.name}` has no {what}", members, hint)
         return found
 
@@ -230,18 +299,67 @@ class _Linker:
 
     def _access(self, access: rsc.Access, names: Mapping[str, Name]) -> None:
         first = names.get("component", names["item"])
+        qualifies = "component" in names
+        parameter = self._parameters(access).get(first.text)
+        templates = self._templates(access)
         components = self._components(access)
-        if self._around(access, rsc.EnumDataType) is not None:
-            if not self._enum_value(access, first) and not self._file.may_declare(first.text, Declared.ENUM_VALUE):
-                hint = "an enum's rules see only `value`, literals and enum values"
-                self._missing(first, "there is no enum value", self._scope.usable(rsc.EnumValue), hint)
-        elif "component" in names and first.text in components:
+        if parameter is not None:
+            access.item = parameter
+        elif qualifies and first.text in templates:
+            self._qualified(access, templates[first.text], names["item"])
+            return
+        elif qualifies and first.text in components and self._around(access, rsc.EnumDataType) is None:
             self._qualified(access, components[first.text], names["item"])
             return
+        elif qualifies and self._value_of(access, first, names["item"]):
+            return
+        elif self._around(access, rsc.EnumDataType) is not None:
+            self._in_enum(access, first)
         else:
-            self._bare(access, first, qualifies="component" in names)
-        if "component" in names:
+            self._bare(access, first, qualifies=qualifies)
+        if qualifies:
             self._read_as_property(access, names["item"])
+
+    def _in_enum(self, access: rsc.Access, name: Name) -> None:
+        if self._named_value(access, name) or self._enum_value(access, name):
+            return
+        if not self._file.may_declare(name.text, Declared.ENUM_VALUE, Declared.NAMED):
+            hint = "an enum's rules see only `value`, literals, constants, functions, its parameters and enum values"
+            known = [*self._scope.usable(rsc.EnumValue), *self._scope.usable(rsc.NamedExpression)]
+            self._missing(name, "there is no enum value", known, hint)
+
+    def _value_of(self, access: rsc.Access, enum: Name, value: Name) -> bool:
+        """Whether `a.b` is a value with its enum before it, which no component is called like."""
+        found = self._scope.find(rsc.ComplexDataType, enum.text)
+        if len(found) != 1 or not isinstance(found[0][1], rsc.EnumDataType):
+            return False
+        definition = found[0][1]
+        access.enumeration = definition
+        values = by_name(rule.value for rule in definition.rules if rule.value)
+        if value.text in values:
+            access.item = values[value.text]
+        elif not self._file.may_declare_within(definition, value.text, Declared.ENUM_VALUE):
+            self._missing(value, f"enum `{definition.name}` has no value", values)
+        return True
+
+    def _parameters(self, element: ex.Located) -> Names:
+        """The parameters that an expression can read: of its function, else of its enum or template."""
+        function = self._nearest(element, rsc.Function)
+        around = self._outermost(element)
+        found: dict[str, Any] = {}
+        if isinstance(around, rsc.Component | rsc.EnumDataType):
+            found |= by_name(around.parameters)
+        return found | by_name(function.parameters) if function is not None else found
+
+    def _templates(self, element: ex.Located) -> Names:
+        """The templates that stand for their instances where an expression stands, by the quantifiers around it."""
+        found: dict[str, rsc.Component] = {}
+        quantifier = self._nearest(element, rsc.InstanceQuantifier)
+        while quantifier is not None:
+            if quantifier.template is not None:
+                found.setdefault(quantifier.template.name, quantifier.template)
+            quantifier = self._nearest(quantifier.eContainer(), rsc.InstanceQuantifier)
+        return found
 
     def _qualified(self, access: rsc.Access, component: rsc.Component, name: Name) -> None:
         access.component = component
@@ -250,7 +368,7 @@ class _Linker:
             access.item = self._member(members, name, component, Declared.MEMBER)
 
     def _bare(self, access: rsc.Access, name: Name, *, qualifies: bool) -> None:
-        """A component, a variable of the own component, a state of the own component, an enum value, in this order."""
+        """A component, then a name of the own component, of the robot or library, an enum value."""
         own = self._around(access, rsc.Component)
         members = (self._scope.members(own) if own is not None else None) or {}
         components = self._components(access)
@@ -260,16 +378,28 @@ class _Linker:
         if name.text in members:
             access.component, access.item = own, members[name.text]
             return
-        own_text = Declared.COMPONENT, Declared.MEMBER
-        if self._enum_value(access, name) or self._file.may_declare(name.text, *own_text, imported=False):
+        own_text = Declared.COMPONENT, Declared.MEMBER, Declared.NAMED
+        if self._named_value(access, name) or self._enum_value(access, name):
+            return
+        if self._file.may_declare(name.text, *own_text, imported=False):
             return
         if qualifies:
             hint = OWN_MEMBERS if name.text in self._scope.components else None
             self._missing(name, "there is no component or variable", [*components, *members], hint)
-        elif not self._file.may_declare(name.text, Declared.ENUM_VALUE):
-            known = [*components, *members, *self._scope.usable(rsc.EnumValue)]
+        elif not self._file.may_declare(name.text, Declared.ENUM_VALUE, Declared.NAMED):
+            named = self._scope.usable(rsc.NamedExpression)
+            known = [*components, *members, *named, *self._scope.usable(rsc.EnumValue)]
             hint = OWN_MEMBERS if self._is_library and self._elsewhere(name) else self._elsewhere(name)
             self._missing(name, "there is no component, variable, state or enum value", known, hint, listed=False)
+
+    def _named_value(self, access: rsc.Access, name: Name) -> bool:
+        """Whether a name is that of a constant or condition of the robot or library, or of several, a finding."""
+        found = self._scope.find(rsc.NamedExpression, name.text)
+        if len(found) > 1:
+            self._ambiguous("name", name, [file for file, _ in found])
+        elif found:
+            access.item = found[0][1]
+        return bool(found)
 
     def _elsewhere(self, name: Name) -> str | None:
         """What to write for a bare name that some component has as a variable or a state."""
@@ -282,11 +412,15 @@ class _Linker:
 
     def _enum_value(self, access: rsc.Access, name: Name) -> bool:
         """Whether a name is that of an enum value, or of several, which is a finding."""
-        values = self._scope.find(rsc.EnumValue, name.text)
-        if len(values) > 1:
-            self._ambiguous("enum value", name, [file for file, _ in values])
+        values = self._scope.values(name.text)
+        if len(values) == 1:
+            access.item = values[0]
         elif values:
-            access.item = values[0][1]
+            enums = [value.eContainer().eContainer().name for value in values]
+            written_out = enumeration(f"`{written(enum)}.{written(name.text)}`" for enum in dict.fromkeys(enums))
+            message = f"`{name.text}` is a value of several enums"
+            hint = f"write {written_out}" if len({*enums}) > 1 else "declare an enum in this file"
+            self._report(name, message, hint, rule="unique-enum-value")
         return bool(values)
 
     def _read_as_property(self, access: rsc.Access, name: Name) -> None:
@@ -353,15 +487,36 @@ class _Linker:
 
     def _around(self, element: ex.Located, kind: type[_Element]) -> _Element | None:
         """The component or enum that contains the element, if it is of that kind."""
+        definition = self._outermost(element)
+        return definition if isinstance(definition, kind) else None
+
+    def _outermost(self, element: ex.Located) -> ex.Located | None:
+        """The definition of the robot or library that contains an element."""
         path: list[ex.Located] = []
         around = element
         # What is between two names of a long expression is climbed once.
-        while around is not None and around not in self._definitions and not isinstance(around, rsc.Definition):
+        while around not in self._definitions and not isinstance(around.eContainer(), rsc.Base):
             path.append(around)
             around = around.eContainer()
+            if around is None:
+                return None
         definition = self._definitions.get(around, around)
         self._definitions.update(dict.fromkeys(path, definition))
-        return definition if isinstance(definition, kind) else None
+        return definition
+
+    def _nearest(self, element: ex.Located, kind: type[_Element]) -> _Element | None:
+        """The innermost element of a kind that an expression stands in, within its definition."""
+        if kind not in self._present:
+            return None
+        known = self._nearests.setdefault(kind, {})
+        path: list[ex.Located] = []
+        around: ex.Located | None = element
+        while around is not None and around not in known and not isinstance(around, kind | rsc.Definition):
+            path.append(around)
+            around = around.eContainer()
+        found = known.get(around, around if isinstance(around, kind) else None) if around is not None else None
+        known.update(dict.fromkeys(path, found))
+        return found
 
     # Findings
 
@@ -380,6 +535,6 @@ class _Linker:
             repair = f"there is {enumeration(f'`{written(other)}`' for other in names)}"
         self._report(name, f"{message} `{name.text}`", repair)
 
-    def _report(self, name: Name, message: str, repair: Repair | str | None = None) -> None:
+    def _report(self, name: Name, message: str, repair: Repair | str | None = None, rule: str = RULE) -> None:
         if not self._file.regions.is_uncertain(name.start):
-            self.findings.append(self._file.text.error(RULE, name.start, name.end, message, repair))
+            self.findings.append(self._file.text.error(rule, name.start, name.end, message, repair))

@@ -66,6 +66,7 @@ DECLARED = {
     **dict.fromkeys(first_words("ComplexDataType"), Declared.DATA_TYPE),
     **dict.fromkeys(first_words("CommunicationType") | _MESSAGE, Declared.COMMUNICATION),
     **dict.fromkeys(first_words("Variable", "State"), Declared.MEMBER),
+    **dict.fromkeys(first_words("NamedExpression"), Declared.NAMED),
 }
 _STARTERS = frozenset().union(*(level.starters for level in (RULES, AUTOMATON, COMPONENT, DEFINITIONS)))
 #: Keywords that begin an item together with one of those before them.
@@ -118,6 +119,9 @@ class Outline:
         self._tokens = tokens
         self._at = first
         self._filled: dict[int, int] = {}
+        braces = [token.text for token in tokens if token.is_keyword("{", "}")]
+        self._unmatched = braces.count("{") != braces.count("}")
+        self._columns = [-1]
         self._limit = len(tokens) if limit is None else limit
 
     @property
@@ -157,9 +161,22 @@ class Outline:
     def items(self, levels: tuple[Level, ...]) -> tuple[Block, ...]:
         """The items of the last of these levels, up to where one of the others goes on."""
         items = []
-        while not self._ended() and not self._is("}") and (self._starts(levels[-1]) or not self._outer(levels)):
+        while not self._ended() and not self._is("}") and not self._leaves(levels):
             items.append(self._item(levels))
         return tuple(items)
+
+    def _leaves(self, levels: tuple[Level, ...]) -> bool:
+        """Whether an item of a level around the last one begins here. Where it may belong to either, its column says.
+
+        That is so with braces that do not match: then a definition that stands no further in than the one around it
+        was meant to stand beside it.
+        """
+        if not self._outer(levels):
+            return False
+        if not self._starts(levels[-1]):
+            return True
+        token = self._tokens[self._at]
+        return self._unmatched and token.is_first and token.column <= self._columns[-1]
 
     def _item(self, levels: tuple[Level, ...]) -> Block:
         level, first, mended = levels[-1], self._at, len(self.braces)
@@ -176,8 +193,10 @@ class Outline:
                 if not unopened:
                     break
                 unopened = False
-            elif body is not None and self._opens(body):
+            elif body is not None and self._opens(levels, body):
+                self._columns.append(self._tokens[first].column)
                 items = self._body((*levels, body))
+                self._columns.pop()
                 break
             elif any(self._starts(around) for around in levels):
                 break
@@ -193,7 +212,7 @@ class Outline:
             del self.braces[mended:]
         return Block(level, first, self._at, self._tokens[first].start, self._end(), items, levels)
 
-    def _opens(self, body: Level) -> bool:
+    def _opens(self, levels: tuple[Level, ...], body: Level) -> bool:
         """Whether the braces of an item open here; passes the brace, or notes that it is missing."""
         if self._is("{") and not self._tokens[self._at - 1].is_keyword("with"):
             self._at += 1
@@ -203,7 +222,7 @@ class Outline:
             return True
         begins = body is RULES and self._tokens[self._at - 1].is_keyword("to")
         begins = begins and not self._tokens[self._at + 1].is_keyword("{")
-        if begins or self._starts(body):
+        if begins or (self._starts(body) and not self._starts(levels[0])):
             self._missing("{")
             return True
         return False
@@ -257,7 +276,10 @@ class Outline:
 
     def _is_starter(self, level: Level, at: int) -> bool:
         """Whether a token is a starter; one that begins a line is, even if a name is missing before it."""
-        token = self._tokens[at]
+        token, after = self._tokens[at], self._tokens[at + 1]
+        if token.text in level.starters and not is_reserved(token.text):
+            # A keyword before a name only, where no name of an expression stands.
+            return after.kind is Kind.WORD and not is_reserved(after.text) and not token.is_name
         return token.is_keyword(*level.starters) or (token.is_name and token.is_first and token.text in level.starters)
 
     def _continues(self, level: Level, starters: tuple[str, ...]) -> bool:

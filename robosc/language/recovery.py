@@ -36,7 +36,7 @@ def parse_file(text: Text) -> File:
         return recovered(text, tokens)
     builder = Builder(text)
     base = builder.build(tree)
-    return File(text, base, builder.references, builder.declared, findings=builder.findings)
+    return File(text, base, builder.references, builder.declared, builder.bounded, findings=builder.findings)
 
 
 def recovered(text: Text, tokens: Tokens) -> File:
@@ -78,7 +78,9 @@ class _Recovery:
         builder = Builder(self._text)
         base = self._base(root, builder)
         findings = sorted([*self._findings, *builder.findings], key=lambda finding: finding.span)
-        return File(self._text, base, builder.references, builder.declared, self._regions, findings=findings)
+        return File(
+            self._text, base, builder.references, builder.declared, builder.bounded, self._regions, findings=findings
+        )
 
     # Braces
 

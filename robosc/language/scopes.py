@@ -9,7 +9,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 from robosc.metamodel import robosc as rsc
-from robosc.semantics.instances import Instance, Instances
+from robosc.semantics.instances import Instances, definition_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -41,6 +41,11 @@ class Declared(Enum):
     ENUM_VALUE = auto()
     COMMUNICATION = auto()
     MEMBER = auto()  # a variable or a state
+    NAMED = auto()  # a constant, a condition or a function
+
+
+#: Definitions that an expression reads by their names.
+NAMED_VALUES = (rsc.Constant, rsc.Condition)
 
 
 @dataclass
@@ -101,6 +106,8 @@ class File:
     base: rsc.Base | None
     references: dict[Any, dict[str, Name]] = field(default_factory=dict)
     declared_names: Mapping[Any, Name] = field(default_factory=dict)
+    #: The types whose bounds are expressions.
+    bounded: list[rsc.IntegerDataType] = field(default_factory=list)
     regions: SkippedRegions = field(default_factory=SkippedRegions)
     #: The files of the libraries that it imports from, by the libraries' names; None: none that can be used.
     libraries: dict[str, File | None] = field(default_factory=dict)
@@ -136,12 +143,23 @@ class File:
     def declared(self) -> Mapping[type[Any], Names]:
         """What other places can name, by its kind."""
         definitions = self.base.definitions if self.base is not None else ()
-        kinds = (rsc.Component, rsc.ComplexDataType, rsc.Interface)
+        kinds = (rsc.Component, rsc.ComplexDataType, rsc.Interface, rsc.Function)
         enums = [found for found in definitions if isinstance(found, rsc.EnumDataType)]
         return {
             **{kind: by_name(found for found in definitions if isinstance(found, kind)) for kind in kinds},
+            rsc.NamedExpression: by_name(found for found in definitions if isinstance(found, NAMED_VALUES)),
             rsc.EnumValue: by_name(rule.value for enum in enums for rule in enum.rules if rule.value),
         }
+
+    @cached_property
+    def enum_values(self) -> Mapping[str, list[rsc.EnumValue]]:
+        """The enum values by name, of each enum the first with it."""
+        found: dict[str, list[rsc.EnumValue]] = {}
+        for definition in self.base.definitions if self.base is not None else ():
+            if isinstance(definition, rsc.EnumDataType):
+                for name, value in by_name(rule.value for rule in definition.rules if rule.value).items():
+                    found.setdefault(name, []).append(value)
+        return found
 
     def may_declare(self, name: str, *kinds: Declared, imported: bool = True) -> bool:
         """Whether a name that is not found may be declared by text that could not be read.
@@ -179,9 +197,10 @@ class _Content(NamedTuple):
     communications: Names
     members: Names
     states: Names
+    functions: Names
 
 
-_NOTHING = _Content({}, {}, {})
+_NOTHING = _Content({}, {}, {}, {})
 
 
 class Scope:
@@ -203,6 +222,11 @@ class Scope:
             return [(self._file, own)]
         return [(library, library.declared[kind][name]) for library in self._imports if name in library.declared[kind]]
 
+    def values(self, name: str) -> list[rsc.EnumValue]:
+        """The enum values with a name, of each enum the first: those of the own file, else of imported libraries."""
+        own = self._file.enum_values.get(name)
+        return own or [value for library in self._imports for value in library.enum_values.get(name, ())]
+
     def usable(self, kind: type[Any]) -> list[str]:
         """The names of all definitions of a kind that can be used, imported ones included."""
         return [name for file in (self._file, *self._imports) for name in file.declared[kind]]
@@ -211,6 +235,10 @@ class Scope:
         """The variables and states of a component; None where its import is broken."""
         content = self._content(component)
         return None if content is None else content.members
+
+    def functions(self, component: rsc.Component) -> Names:
+        """The functions of a component; empty where its import is broken."""
+        return (self._content(component) or _NOTHING).functions
 
     def states(self, component: rsc.Component) -> Names:
         """The states of a component; empty where its import is broken."""
@@ -223,15 +251,14 @@ class Scope:
 
     def _content(self, component: rsc.Component) -> _Content | None:
         if component not in self._contents:
-            instance = self._instances.instance(component, None)
-            self._contents[component] = None if instance is None else _content(instance)
+            definition = definition_of(component)
+            local = None if definition is None else definition.type
+            self._contents[component] = _content(local) if isinstance(local, rsc.LocalComponent) else None
         return self._contents[component]
 
     def origin(self, component: rsc.Component) -> rsc.Component:
         """The component whose text declares the members of a component that is not broken."""
-        while isinstance(component.type, rsc.ImportedComponent):
-            component = component.type.definition
-        return component
+        return definition_of(component) or component
 
     def communicating(self, name: str) -> list[tuple[rsc.Component, rsc.CommunicationType]]:
         """Each component that has a communication of a name, and the communication."""
@@ -250,10 +277,16 @@ class Scope:
         return [name for instance in self._instances for name in self.communications(instance.component) or ()]
 
 
-def _content(instance: Instance) -> _Content:
+def _content(local: rsc.LocalComponent) -> _Content:
     # A component with two behaviours is an error of another rule; its names are still names.
-    behaviours = [part for part in instance.local.definitions if isinstance(part, rsc.ComponentBehaviour)]
+    behaviours = [part for part in local.definitions if isinstance(part, rsc.ComponentBehaviour)]
     definitions = [definition for behaviour in behaviours for definition in behaviour.automaton.definitions]
     states = [definition for definition in definitions if isinstance(definition, rsc.State)]
     variables = [definition for definition in definitions if isinstance(definition, rsc.Variable)]
-    return _Content(by_name(instance.communications), by_name([*variables, *states]), by_name(states))
+    named = [definition for definition in local.definitions if isinstance(definition, NAMED_VALUES)]
+    return _Content(
+        by_name(part for part in local.definitions if isinstance(part, rsc.CommunicationType)),
+        by_name([*variables, *states, *named]),
+        by_name(states),
+        by_name(part for part in local.definitions if isinstance(part, rsc.Function)),
+    )

@@ -11,7 +11,7 @@ from enum import Enum, auto
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
-from robosc.language.grammar import first, first_words, following, pattern, words_of
+from robosc.language.grammar import first, first_words, following, is_reserved, pattern, words_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -51,7 +51,7 @@ _KINDS = Kind.__members__
 class Token(NamedTuple):
     """A word, number, string or symbol, with its offsets.
 
-    `is_name`: it is no keyword, whatever it looks like; `is_first`: it is the first in its line.
+    `is_name`: it is no keyword, whatever it looks like; `is_first`: it is the first in its line; `column`: from 0.
     """
 
     kind: Kind
@@ -60,6 +60,7 @@ class Token(NamedTuple):
     end: int
     is_name: bool = False
     is_first: bool = False
+    column: int = 0
 
     def is_keyword(self, *words: str) -> bool:
         """Whether it is one of these words or symbols, and not a name of the same letters."""
@@ -93,14 +94,16 @@ class Tokens:
 
 
 def _tokens(text: str) -> Iterator[Token]:
-    previous = Token(Kind.END, "", 0, 0)
+    previous, start_of_line = Token(Kind.END, "", 0, 0), 0
     for found in _TOKEN.finditer(text):
         if found.lastgroup is None:
             continue
         kind, word = _KINDS[found.lastgroup], found.group()
         is_name = kind is Kind.WORD and (word.startswith("^") or previous.is_keyword(*_BEFORE_NAMES))
-        is_first = "\n" in text[previous.end : found.start()]
-        previous = Token(kind, word, found.start(), found.end(), is_name, is_first)
+        line = text.rfind("\n", previous.end, found.start())
+        if line >= 0:
+            start_of_line = line + 1
+        previous = Token(kind, word, found.start(), found.end(), is_name, line >= 0, found.start() - start_of_line)
         yield previous
     # The end stands right after the last token, where a reader looks for what is missing.
     yield Token(Kind.END, "", previous.end, previous.end)
@@ -110,7 +113,7 @@ def _tokens(text: str) -> Iterator[Token]:
 #: follows it by calls inside each other, which Python bounds.
 DEEPEST = 50
 LONGEST = 5000
-_STARTERS = first_words("Definition", "ComponentDefinition", "AutomatonDefinition")
+_STARTERS = frozenset(filter(is_reserved, first_words("Definition", "ComponentDefinition", "AutomatonDefinition")))
 _OPERATORS = frozenset(word.partition("(")[0] for word in first("BinaryExpression"))
 #: No expression goes on behind these.
 _BETWEEN_EXPRESSIONS = frozenset(following()) - words_of("Expression") - _OPERATORS

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc
-from robosc.semantics.evaluation import Value, evaluate, saturate
+from robosc.semantics.evaluation import Value, literal, saturate
+from robosc.semantics.expansion import constant_value
 from robosc.semantics.naming import Names
 
 if TYPE_CHECKING:
     from robosc.metamodel import rosgraph, sct
+    from robosc.semantics.instances import InstanceVariable
 
 #: The type that becomes of a basic type without bounds, and the value of a variable without initial one.
 _BASIC: dict[type[robosc.DataType], tuple[type[ex.Type], Value]] = {
@@ -51,10 +52,14 @@ class Declarations:
         """The enumeration of an enum."""
         if enum not in self.enumerations:
             enumeration = ex.Enumeration(name=self._names.fresh(enum.name), source=enum.source)
+            # Several rules may give one value.
+            literals: dict[str, ex.EnumerationLiteral] = {}
             for rule in enum.rules:
-                literal = ex.EnumerationLiteral(name=rule.value.name, source=rule.value.source)
-                enumeration.literals.append(literal)
-                self.literals[rule.value] = literal
+                name = rule.value.name
+                if name not in literals:
+                    literals[name] = ex.EnumerationLiteral(name=name, source=rule.value.source)
+                    enumeration.literals.append(literals[name])
+                self.literals[rule.value] = literals[name]
             self._owner.enumerations.append(enumeration)
             self.enumerations[enum] = enumeration
         return self.enumerations[enum]
@@ -64,38 +69,14 @@ class Declarations:
         self.enumeration(value.eContainer().eContainer())
         return self.literals[value]
 
-    def initial(self, variable: robosc.Variable) -> ex.Expression:
+    def initial(self, owned: InstanceVariable) -> ex.Expression:
         """The first value of a variable as one literal: its initial expression is constant (rule `type`)."""
-        kind = variable.type
-        if variable.initial is not None:
-            value = evaluate(variable.initial, _enum_value)
-        elif type(kind) in _BASIC:
-            value = _BASIC[type(kind)][1]
-        else:
-            value = default_value(_enum(kind))
+        kind, value = owned.type, constant_value(owned.variable.initial, owned.instance)
+        if value is None:
+            value = _BASIC[type(kind)][1] if type(kind) in _BASIC else default_value(_enum(kind))
         if isinstance(kind, robosc.IntegerDataType) and isinstance(value, int):
             value = saturate(value, kind.minimum, kind.maximum)
         return literal(self.literal(value) if isinstance(value, robosc.EnumValue) else value)
-
-
-def literal(value: Value) -> ex.Expression:
-    """The expression that stands for a value, with a minus sign where it is negative.
-
-    What no literal stands for is a division by zero, as it was in the text.
-    """
-    if isinstance(value, bool):
-        return ex.BooleanLiteral(value=value)
-    if isinstance(value, float) and not math.isfinite(value):
-        dividend = 0.0 if math.isnan(value) else math.copysign(1.0, value)
-        return ex.Division(left=literal(dividend), right=ex.DoubleLiteral(value=0.0))
-    if isinstance(value, (int, float)):
-        kind = ex.IntegerLiteral if isinstance(value, int) else ex.DoubleLiteral
-        magnitude: ex.Expression = kind(value=abs(value))  # type: ignore[arg-type]
-        return ex.UnaryMinus(operand=magnitude) if value < 0 else magnitude
-    if isinstance(value, str):
-        return ex.StringLiteral(value=value)
-    assert isinstance(value, ex.EnumerationLiteral)
-    return ex.EnumerationLiteralReference(literal=value)
 
 
 def default_value(enum: robosc.EnumDataType) -> robosc.EnumValue:
@@ -107,8 +88,3 @@ def _enum(declared: robosc.DataType) -> robosc.EnumDataType:
     assert isinstance(declared, robosc.ComplexDataTypeReference)
     assert isinstance(declared.type, robosc.EnumDataType)
     return declared.type
-
-
-def _enum_value(access: ex.Expression) -> Value:
-    assert isinstance(access, robosc.Access)
-    return access.item

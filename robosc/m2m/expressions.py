@@ -82,12 +82,14 @@ class SctExpressions(_Expressions):
                 case ex.Equation() | ex.Inequation() if isinstance(original.left, ex.StringLiteral):
                     # The supervisor needs no string, so that both sides are constants.
                     return ex.BooleanLiteral(value=bool(evaluate(original, lambda reference: reference)))
+            if isinstance(original, ex.Conditional):
+                return with_operands(original, operands)
             if operator_of(original) is None:
                 return type(original)(value=original.value)  # type: ignore[attr-defined,call-arg]
             made = with_operands(original, operands)
             return _table(made, original) if isinstance(made, COMPARISONS) and self._some_double(operands) else made
 
-        return fold(translated, expression)
+        return fold(translated, self._trace.instances.expanded(expression, within))
 
     def _input(
         self, access: robosc.Access, within: Instance | None, transition: robosc.Transition | None
@@ -117,6 +119,8 @@ class NodeExpressions(_Expressions):
                     return self._reference(original, within)
                 assert data is not None
                 return data(original)
+            if isinstance(original, ex.Conditional):
+                return with_operands(original, operands)
             row = operator_of(original)
             if row is None:
                 return type(original)(value=original.value)  # type: ignore[attr-defined,call-arg]
@@ -125,7 +129,7 @@ class NodeExpressions(_Expressions):
                 operands = [self.as_double(operand) for operand in operands]
             return with_operands(original, operands)
 
-        return fold(translated, expression)
+        return fold(translated, self._trace.instances.expanded(expression, within))
 
     def as_double(self, expression: ex.Expression) -> ex.Expression:
         """The expression itself where it is a double, else its conversion."""

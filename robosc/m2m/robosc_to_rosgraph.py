@@ -11,10 +11,12 @@ from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc, rosgraph, sct
 from robosc.ros_types import RosTypes
 from robosc.semantics.communication import data_type, event_of, events
+from robosc.semantics.instances import bound_arguments
 from robosc.semantics.naming import Names
+from robosc.semantics.printing import RoboscPrinter
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from robosc.m2m.trace import Trace
     from robosc.semantics.communication import PortEvent
@@ -62,7 +64,7 @@ class _Transformation:
         self.graph = rosgraph.RosGraph(name=robot.name, model=trace.model, source=robot.source)
         self.interfaces: dict[tuple[str, str, str], rosgraph.Interface] = {}
         self.variables: dict[InstanceVariable, rosgraph.NodeVariable] = {}
-        self.conversions: dict[robosc.EnumDataType, rosgraph.Conversion] = {}
+        self.conversions: dict[tuple[robosc.EnumDataType, tuple[str, ...]], rosgraph.Conversion] = {}
         self.declarations = Declarations(self.graph, trace.declarations)
         self.conversion_names = Names()
         self.subscriptions: dict[tuple[str, rosgraph.Interface], rosgraph.Subscription] = {}
@@ -89,8 +91,8 @@ class _Transformation:
         variable = rosgraph.NodeVariable(
             name=owned.variable.name,
             component=owned.instance.name,
-            type=self.declarations.type(owned.variable.type),
-            initial=self.declarations.initial(owned.variable),
+            type=self.declarations.type(owned.type),
+            initial=self.declarations.initial(owned),
             source=owned.variable.source,
         )
         self.variables[owned] = variable
@@ -157,23 +159,24 @@ class _Transformation:
         sent = data_type(port.communication, event)
         assert sent is not None
         for statement in self.instances.provided(port):
-            alternative = rosgraph.ProvidedData(location=self.trace.provided[statement], source=statement.source)
-            lone = () if isinstance(statement.data, robosc.ObjectValue) else (self.field(port, event),)
-            for field in self.fields(statement.data, lone, sent):
+            given = statement.element
+            alternative = rosgraph.ProvidedData(location=self.trace.provided[statement], source=given.source)
+            lone = () if isinstance(given.data, robosc.ObjectValue) else (self.field(port, event),)
+            for field in self.fields(given.data, statement.within, lone, port.instance.data_type(sent)):
                 alternative.fields.append(field)
             sending.alternatives.append(alternative)
         return sending
 
     def fields(
-        self, data: ex.Expression, path: tuple[str, ...], declared: robosc.DataType
+        self, data: ex.Expression, within: Instance | None, path: tuple[str, ...], declared: robosc.DataType
     ) -> list[rosgraph.FieldAssignment]:
         if isinstance(data, robosc.ObjectValue):
             return [
                 field
                 for given in data.properties
-                for field in self.fields(given.value, (*path, given.property.name), given.property.type)
+                for field in self.fields(given.value, within, (*path, given.property.name), given.property.type)
             ]
-        value = self.expressions(data, None)
+        value = self.expressions(data, within)
         return [
             rosgraph.FieldAssignment(
                 path=list(path),
@@ -209,43 +212,52 @@ class _Transformation:
         carried = data_type(port.communication, event)
         assert carried is not None
         is_object = isinstance(_wire_type(carried), robosc.ComplexDataTypeReference)
-        return partial(self.wire, carried, () if is_object else (self.field(port, event),))
+        return partial(self.wire, carried, port.instance, () if is_object else (self.field(port, event),))
 
-    def wire(self, whole: robosc.DataType, fields: Sequence[str], access: robosc.Access) -> ex.Expression:
+    def wire(
+        self, whole: robosc.DataType, within: Instance | None, fields: Sequence[str], access: robosc.Access
+    ) -> ex.Expression:
         """What an access to data of a type reads, below some fields; an enum is converted."""
         steps, reached = _steps(access.segments, whole)
         steps[:0] = [rosgraph.FieldStep(name=name) for name in fields]
         enum = reached.type if isinstance(reached, robosc.ComplexDataTypeReference) else None
         if isinstance(enum, robosc.EnumDataType):
             argument = rosgraph.WireAccess(steps=steps, type=self.basic_type(enum.type))
-            return rosgraph.ConversionCall(conversion=self.conversion(enum), argument=argument)
+            assert isinstance(reached, robosc.ComplexDataTypeReference)
+            given = bound_arguments(enum.parameters, reached.arguments)
+            arguments = {name: self.instances.expanded(value, within) for name, value in given.items()}
+            return rosgraph.ConversionCall(conversion=self.conversion(enum, arguments), argument=argument)
         return rosgraph.WireAccess(steps=steps, type=self.basic_type(reached))
 
     def basic_type(self, kind: robosc.DataType) -> ex.Type | None:
         return self.declarations.type(kind) if isinstance(kind, robosc.BasicDataType) else None
 
-    def conversion(self, enum: robosc.EnumDataType) -> rosgraph.Conversion:
-        """Listing 5.13."""
-        if enum not in self.conversions:
+    def conversion(
+        self, enum: robosc.EnumDataType, arguments: Mapping[robosc.FormalParameter, ex.Expression]
+    ) -> rosgraph.Conversion:
+        """Listing 5.13, for the enum with some arguments."""
+        key = (enum, tuple(map(RoboscPrinter(), arguments.values())))
+        if key not in self.conversions:
             conversion = rosgraph.Conversion(
                 name=self.conversion_names.fresh(enum.name),
                 enumeration=self.declarations.enumeration(enum),
                 default=self.declarations.literal(default_value(enum)),
                 source=enum.source,
             )
-            self.conversions[enum] = conversion
+            self.conversions[key] = conversion
+            value = partial(self.wire, enum.type, None, ())
             for rule in enum.rules:
                 if isinstance(rule, robosc.EnumTransformationRule):
-                    condition = self.expressions(rule.condition, None, partial(self.wire, enum.type, ()))
+                    condition = self.instances.expanded.argued(rule.condition, arguments)
                     conversion.rules.append(
                         rosgraph.ConversionRule(
-                            condition=condition,
+                            condition=self.expressions(condition, None, value),
                             literal=self.declarations.literal(rule.value),
                             source=rule.source,
                         )
                     )
             self.graph.conversions.append(conversion)
-        return self.conversions[enum]
+        return self.conversions[key]
 
     # What events change in the node
 

@@ -11,7 +11,7 @@ from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc, sct
 from robosc.semantics.communication import CONTROLLABLE, data_type, events
 from robosc.semantics.cone_of_influence import cone_of_influence
-from robosc.semantics.instances import Instance, Instances, InstanceVariable, PortInstance
+from robosc.semantics.instances import Instance, Instances, InstanceVariable, PortInstance, Statement
 from robosc.semantics.naming import Names
 from robosc.semantics.printing import RoboscPrinter, conjunction, disjunction
 
@@ -72,7 +72,7 @@ class _Transformation:
                 self.behaviour(instance)
         for instance in self.instances:
             for variable in self.variables(instance):
-                self.trace.variables[variable].initial = self.declarations.initial(variable.variable)
+                self.trace.variables[variable].initial = self.declarations.initial(variable)
             if instance.automaton is not None:
                 self.edges(instance)
         for port in self.instances.ports():
@@ -127,6 +127,7 @@ class _Transformation:
                 whole = data_type(port.communication, data.event)
                 declared = data.path[-1].type if data.path else whole
                 assert declared is not None
+                declared = port.instance.data_type(declared)
                 made = sct.Input(name=names.fresh(name), type=self.declarations.type(declared))
                 plant.inputs.append(made)
                 self.trace.event(port, data.event.kind).inputs.append(made)
@@ -150,7 +151,7 @@ class _Transformation:
         for owned in self.variables(instance):
             variable = sct.DiscreteVariable(
                 name=names.fresh(owned.variable.name),
-                type=self.declarations.type(owned.variable.type),
+                type=self.declarations.type(owned.type),
                 source=owned.variable.source,
             )
             plant.variables.append(variable)
@@ -201,22 +202,23 @@ class _Transformation:
         if not statements:
             return
         name, origin = f"data_{self.communication_name(port)}", self.trace.plants[port].origin
-        plant = self.plant(name, sct.PlantKind.data, origin, statements[0].source)
+        plant = self.plant(name, sct.PlantKind.data, origin, statements[0].element.source)
         nothing = _location(plant, "none", initial=True, marked=True)
         for number, statement in enumerate(statements, start=1):
             location = _location(plant, f"d{number}", marked=True)
-            location.source = statement.source
-            edge = _edge(plant, _event(plant, f"d{number}", sct.EventKind.data, statement.source), location)
-            edge.guard = self.holds(statement)
+            location.source = statement.element.source
+            event = _event(plant, f"d{number}", sct.EventKind.data, location.source)
+            _edge(plant, event, location).guard = self.holds(statement)
             self.trace.provided[statement] = location
-            self.trace.origins[location] = statement
+            self.trace.origins[location] = statement.element
         edge = _edge(plant, _event(plant, "none", sct.EventKind.data, plant.source), nothing)
         edge.guard = self.none_holds(statements)
 
-    def holds(self, statement: robosc.ProvideStatement) -> ex.Expression | None:
-        return None if statement.condition is None else self.expressions(statement.condition, None)
+    def holds(self, statement: Statement[robosc.ProvideStatement]) -> ex.Expression | None:
+        condition = statement.element.condition
+        return None if condition is None else self.expressions(condition, statement.within)
 
-    def none_holds(self, statements: list[robosc.ProvideStatement]) -> ex.Expression | None:
+    def none_holds(self, statements: list[Statement[robosc.ProvideStatement]]) -> ex.Expression | None:
         conditions = [self.holds(statement) for statement in statements]
         if None in conditions:
             return ex.BooleanLiteral(value=False)
@@ -226,13 +228,12 @@ class _Transformation:
 
     def requirements(self) -> None:
         """Section 5.2.2: one for each communication named, on its trigger; and the cancelling of actions."""
-        on_action: dict[PortInstance, list[robosc.Requirement]] = {
+        on_action: dict[PortInstance, list[Statement[robosc.Requirement]]] = {
             port: [] for port in self.instances.ports() if isinstance(port.communication, robosc.Action)
         }
-        for requirement in self.robot.definitions:
-            if not isinstance(requirement, robosc.Requirement):
-                continue
-            named = [self.instances.port(reference, None) for reference in requirement.target.communicationTypes]
+        for requirement in self.instances.statements(robosc.Requirement):
+            references = requirement.element.target.communicationTypes
+            named = [self.instances.port(reference, requirement.within) for reference in references]
             for port in dict.fromkeys(port for port in named if port is not None):
                 self.requirement(requirement, port)
                 if port in on_action:
@@ -240,25 +241,27 @@ class _Transformation:
         for port, requirements in on_action.items():
             self.cancelling(port, requirements)
 
-    def requirement(self, requirement: robosc.Requirement, port: PortInstance) -> None:
+    def requirement(self, statement: Statement[robosc.Requirement], port: PortInstance) -> None:
+        requirement, within = statement.element, statement.within
         disables = isinstance(requirement, robosc.DisablesRequirement)
-        name, condition = self.shown(port), self.print(requirement.condition)
+        readable = self.instances.expanded(requirement.condition, within, readable=True)
+        name, condition = self.shown(port), self.print(readable)
         target = sct.Requirement(
             event=self.trace.event(port, sct.EventKind.trigger),
             kind=sct.RequirementKind.disables if disables else sct.RequirementKind.needs,
-            condition=self.expressions(requirement.condition, None),
+            condition=self.expressions(requirement.condition, within),
             text=f"requirement {condition} disables {name}" if disables else f"requirement {name} needs {condition}",
             source=requirement.source,
         )
         self.model.requirements.append(target)
         self.trace.origins[target] = requirement
 
-    def cancelling(self, port: PortInstance, requirements: list[robosc.Requirement]) -> None:
+    def cancelling(self, port: PortInstance, requirements: list[Statement[robosc.Requirement]]) -> None:
         """Algorithm 2, starting at false: an action is cancelled exactly when it could not be started any more."""
         broken: list[ex.Expression] = []
         for requirement in requirements:
-            condition = self.expressions(requirement.condition, None)
-            disables = isinstance(requirement, robosc.DisablesRequirement)
+            condition = self.expressions(requirement.element.condition, requirement.within)
+            disables = isinstance(requirement.element, robosc.DisablesRequirement)
             broken.append(condition if disables else ex.Negation(operand=condition))
         name = self.shown(port)
         self.model.requirements.append(

@@ -7,11 +7,10 @@ from itertools import groupby, product
 from operator import itemgetter
 from typing import NamedTuple, TypeAlias
 
-from robosc.m2m.declarations import literal
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 from robosc.semantics.cone_of_influence import LARGEST_TABLE
-from robosc.semantics.evaluation import Program, Value
+from robosc.semantics.evaluation import Program, Value, literal
 from robosc.semantics.printing import conjunction, disjunction
 from robosc.semantics.walks import copied, parts
 

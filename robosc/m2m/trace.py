@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from robosc.metamodel import expression as ex
     from robosc.metamodel import sct
     from robosc.semantics.cone_of_influence import ConeOfInfluence, Data
-    from robosc.semantics.instances import Instance, Instances, InstanceVariable, PortInstance
+    from robosc.semantics.instances import Instance, Instances, InstanceVariable, PortInstance, Statement
 
 
 @dataclass
@@ -31,7 +31,7 @@ class Trace:
     locations: dict[tuple[Instance, robosc.State], sct.Location] = field(default_factory=dict)
     taus: dict[tuple[Instance, robosc.TauTransition], sct.Event] = field(default_factory=dict)
     variables: dict[InstanceVariable, sct.DiscreteVariable] = field(default_factory=dict)
-    provided: dict[robosc.ProvideStatement, sct.Location] = field(default_factory=dict)
+    provided: dict[Statement[robosc.ProvideStatement], sct.Location] = field(default_factory=dict)
     origins: dict[ex.Located, ex.Located] = field(default_factory=dict)
 
     def event(self, port: PortInstance, kind: sct.EventKind) -> sct.Event:

@@ -34,10 +34,43 @@ class Interface(Definition, expression.NamedElement):
     package: str
     def __init__(self, *, type: str | None = ..., package: str | None = ..., source: Place | None = ..., name: str | None = ...) -> None: ...
 
+class NamedExpression(Definition, ComponentDefinition, expression.NamedElement):
+    """A name for an expression, in a robot, a library or a component."""
+    value: expression.Expression
+    def __init__(self, *, value: expression.Expression | None = ..., source: Place | None = ..., name: str | None = ...) -> None: ...
+
+class Constant(NamedExpression, AccessibleItem):
+    """A name for a value, usable wherever a literal is; its value is a constant expression."""
+    type: DataType
+    def __init__(self, *, type: DataType | None = ..., value: expression.Expression | None = ..., source: Place | None = ..., name: str | None = ...) -> None: ...
+
+class Condition(NamedExpression, AccessibleItem):
+    """A name for a boolean expression over states and variables."""
+    def __init__(self, *, value: expression.Expression | None = ..., source: Place | None = ..., name: str | None = ...) -> None: ...
+
+class Function(NamedExpression):
+    """A name for an expression with parameters; it is written out where it is called."""
+    parameters: MutableSequence[FormalParameter]
+    type: DataType
+    def __init__(self, *, parameters: Iterable[FormalParameter] = ..., type: DataType | None = ..., value: expression.Expression | None = ..., source: Place | None = ..., name: str | None = ...) -> None: ...
+
+class FormalParameter(AccessibleItem):
+    """What a function, a component or an enum gets from whoever uses it."""
+    type: DataType
+    default: expression.Expression | None
+    def __init__(self, *, type: DataType | None = ..., default: expression.Expression | None = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
+
+class Argument(expression.Located):
+    """The value of a parameter of a component or an enum."""
+    parameter: FormalParameter | None
+    value: expression.Expression
+    def __init__(self, *, parameter: FormalParameter | None = ..., value: expression.Expression | None = ..., source: Place | None = ...) -> None: ...
+
 class Component(Definition, AccessibleItem):
     """A part of the robot (thesis figure 4.4)."""
+    parameters: MutableSequence[FormalParameter]
     type: ComponentType
-    def __init__(self, *, type: ComponentType | None = ..., source: Place | None = ..., name: str | None = ...) -> None: ...
+    def __init__(self, *, parameters: Iterable[FormalParameter] = ..., type: ComponentType | None = ..., source: Place | None = ..., name: str | None = ...) -> None: ...
 
 class ComponentType(expression.Located):
     """How a component is defined."""
@@ -48,18 +81,26 @@ class LocalComponent(ComponentType):
     definitions: MutableSequence[ComponentDefinition]
     def __init__(self, *, definitions: Iterable[ComponentDefinition] = ..., source: Place | None = ...) -> None: ...
 
+class InstantiatedComponent(ComponentType):
+    """A component made from a template of the same text."""
+    definition: Component
+    arguments: MutableSequence[Argument]
+    def __init__(self, *, definition: Component | None = ..., arguments: Iterable[Argument] = ..., source: Place | None = ...) -> None: ...
+
 class ImportedComponent(ComponentType):
     """An instance of a component of a library, with plants, variables and topics of its own."""
     library: Library
     definition: Component
     remappings: MutableSequence[TopicRemapping]
-    def __init__(self, *, library: Library | None = ..., definition: Component | None = ..., remappings: Iterable[TopicRemapping] = ..., source: Place | None = ...) -> None: ...
+    arguments: MutableSequence[Argument]
+    def __init__(self, *, library: Library | None = ..., definition: Component | None = ..., remappings: Iterable[TopicRemapping] = ..., arguments: Iterable[Argument] = ..., source: Place | None = ...) -> None: ...
 
 class TopicRemapping(expression.Located):
     """Gives a communication of an imported component another topic."""
     communicationType: CommunicationType
-    identifier: str
-    def __init__(self, *, communicationType: CommunicationType | None = ..., identifier: str | None = ..., source: Place | None = ...) -> None: ...
+    identifier: str | None
+    computedIdentifier: expression.Expression | None
+    def __init__(self, *, communicationType: CommunicationType | None = ..., identifier: str | None = ..., computedIdentifier: expression.Expression | None = ..., source: Place | None = ...) -> None: ...
 
 class ComponentDefinition(expression.Located):
     """Anything directly inside a local component."""
@@ -74,26 +115,27 @@ class CommunicationType(ComponentDefinition, expression.NamedElement):
     """A message, service or action of a component (thesis figure 4.9)."""
     identifier: str | None
     interface: Interface | None
-    def __init__(self, *, identifier: str | None = ..., interface: Interface | None = ..., source: Place | None = ..., name: str | None = ...) -> None: ...
+    computedIdentifier: expression.Expression | None
+    def __init__(self, *, identifier: str | None = ..., interface: Interface | None = ..., computedIdentifier: expression.Expression | None = ..., source: Place | None = ..., name: str | None = ...) -> None: ...
 
 class Message(CommunicationType):
     """A message on a topic."""
     direction: MessageDirection
     type: DataType
-    def __init__(self, *, direction: MessageDirection | None = ..., type: DataType | None = ..., identifier: str | None = ..., interface: Interface | None = ..., source: Place | None = ..., name: str | None = ...) -> None: ...
+    def __init__(self, *, direction: MessageDirection | None = ..., type: DataType | None = ..., identifier: str | None = ..., interface: Interface | None = ..., computedIdentifier: expression.Expression | None = ..., source: Place | None = ..., name: str | None = ...) -> None: ...
 
 class Service(CommunicationType):
     """A request that is answered once."""
     requestType: DataType
     responseType: DataType
-    def __init__(self, *, requestType: DataType | None = ..., responseType: DataType | None = ..., identifier: str | None = ..., interface: Interface | None = ..., source: Place | None = ..., name: str | None = ...) -> None: ...
+    def __init__(self, *, requestType: DataType | None = ..., responseType: DataType | None = ..., identifier: str | None = ..., interface: Interface | None = ..., computedIdentifier: expression.Expression | None = ..., source: Place | None = ..., name: str | None = ...) -> None: ...
 
 class Action(CommunicationType):
     """A longer task: goal, feedback, result, and it can be cancelled."""
     requestType: DataType
     responseType: DataType
     feedbackType: DataType
-    def __init__(self, *, requestType: DataType | None = ..., responseType: DataType | None = ..., feedbackType: DataType | None = ..., identifier: str | None = ..., interface: Interface | None = ..., source: Place | None = ..., name: str | None = ...) -> None: ...
+    def __init__(self, *, requestType: DataType | None = ..., responseType: DataType | None = ..., feedbackType: DataType | None = ..., identifier: str | None = ..., interface: Interface | None = ..., computedIdentifier: expression.Expression | None = ..., source: Place | None = ..., name: str | None = ...) -> None: ...
 
 class MessageDirection:
     """incoming: the component receives it and the controller sends it; outgoing: the other way."""
@@ -136,15 +178,16 @@ class State(AutomatonDefinition, AccessibleItem):
 
 class Transition(AutomatonDefinition):
     """A change of state, of variables, or of both."""
+    guard: expression.Expression | None
     assignments: MutableSequence[Assignment]
     target: State | None
-    def __init__(self, *, assignments: Iterable[Assignment] = ..., target: State | None = ..., source: Place | None = ...) -> None: ...
+    def __init__(self, *, guard: expression.Expression | None = ..., assignments: Iterable[Assignment] = ..., target: State | None = ..., source: Place | None = ...) -> None: ...
 
 class ResultTransition(Transition):
     """Happens with communication."""
     resultType: ResultType
     communicationType: CommunicationReference
-    def __init__(self, *, resultType: ResultType | None = ..., communicationType: CommunicationReference | None = ..., assignments: Iterable[Assignment] = ..., target: State | None = ..., source: Place | None = ...) -> None: ...
+    def __init__(self, *, resultType: ResultType | None = ..., communicationType: CommunicationReference | None = ..., guard: expression.Expression | None = ..., assignments: Iterable[Assignment] = ..., target: State | None = ..., source: Place | None = ...) -> None: ...
 
 class ResultType:
     """The events of a communication that a component can react to (thesis table 5.1)."""
@@ -157,7 +200,6 @@ class ResultType:
 
 class TauTransition(Transition):
     """Happens silently, as soon as its guard holds."""
-    guard: expression.Expression | None
     def __init__(self, *, guard: expression.Expression | None = ..., assignments: Iterable[Assignment] = ..., target: State | None = ..., source: Place | None = ...) -> None: ...
 
 class Assignment(expression.Located):
@@ -182,7 +224,9 @@ class IntegerDataType(BasicDataType):
     """A whole number."""
     minimum: int | None
     maximum: int | None
-    def __init__(self, *, minimum: int | None = ..., maximum: int | None = ..., source: Place | None = ...) -> None: ...
+    lower: expression.Expression | None
+    upper: expression.Expression | None
+    def __init__(self, *, minimum: int | None = ..., maximum: int | None = ..., lower: expression.Expression | None = ..., upper: expression.Expression | None = ..., source: Place | None = ...) -> None: ...
 
 class BooleanDataType(BasicDataType):
     """true or false."""
@@ -204,7 +248,8 @@ class Array(DataType):
 class ComplexDataTypeReference(DataType):
     """Names an object or an enum."""
     type: ComplexDataType
-    def __init__(self, *, type: ComplexDataType | None = ..., source: Place | None = ...) -> None: ...
+    arguments: MutableSequence[Argument]
+    def __init__(self, *, type: ComplexDataType | None = ..., arguments: Iterable[Argument] = ..., source: Place | None = ...) -> None: ...
 
 class InterfaceTypeReference(ComplexDataTypeReference):
     """Names a ROS type in place of an object that the model would define. Linking makes the object, its `type`."""
@@ -212,7 +257,7 @@ class InterfaceTypeReference(ComplexDataTypeReference):
     rosType: str
     definition: ObjectDataType | None
     interface: Interface | None
-    def __init__(self, *, package: str | None = ..., rosType: str | None = ..., definition: ObjectDataType | None = ..., interface: Interface | None = ..., type: ComplexDataType | None = ..., source: Place | None = ...) -> None: ...
+    def __init__(self, *, package: str | None = ..., rosType: str | None = ..., definition: ObjectDataType | None = ..., interface: Interface | None = ..., type: ComplexDataType | None = ..., arguments: Iterable[Argument] = ..., source: Place | None = ...) -> None: ...
 
 class ComplexDataType(Definition, expression.NamedElement):
     """A data type with a name."""
@@ -230,9 +275,10 @@ class ObjectProperty(expression.NamedElement):
 
 class EnumDataType(ComplexDataType):
     """Turns data into one of finitely many values."""
+    parameters: MutableSequence[FormalParameter]
     type: DataType
     rules: MutableSequence[EnumRule]
-    def __init__(self, *, type: DataType | None = ..., rules: Iterable[EnumRule] = ..., source: Place | None = ..., name: str | None = ...) -> None: ...
+    def __init__(self, *, parameters: Iterable[FormalParameter] = ..., type: DataType | None = ..., rules: Iterable[EnumRule] = ..., source: Place | None = ..., name: str | None = ...) -> None: ...
 
 class EnumRule(expression.Located):
     """A rule of an enum."""
@@ -258,7 +304,28 @@ class Access(expression.Expression):
     component: Component | None
     item: AccessibleItem | None
     segments: MutableSequence[AccessSegment]
-    def __init__(self, *, value: bool | None = ..., component: Component | None = ..., item: AccessibleItem | None = ..., segments: Iterable[AccessSegment] = ..., source: Place | None = ...) -> None: ...
+    enumeration: EnumDataType | None
+    def __init__(self, *, value: bool | None = ..., component: Component | None = ..., item: AccessibleItem | None = ..., segments: Iterable[AccessSegment] = ..., enumeration: EnumDataType | None = ..., source: Place | None = ...) -> None: ...
+
+class Call(expression.Expression):
+    """The value of a function for some arguments."""
+    function: Function
+    arguments: MutableSequence[expression.Expression]
+    def __init__(self, *, function: Function | None = ..., arguments: Iterable[expression.Expression] = ..., source: Place | None = ...) -> None: ...
+
+class InstanceQuantifier(expression.Expression):
+    """A condition on the instances of a template or of a library's component, or how many of them it holds of."""
+    quantifier: Quantifier
+    template: Component
+    body: expression.Expression
+    def __init__(self, *, quantifier: Quantifier | None = ..., template: Component | None = ..., body: expression.Expression | None = ..., source: Place | None = ...) -> None: ...
+
+class Quantifier:
+    """How a condition on several things is put together."""
+    name: str
+    all: ClassVar[Quantifier]
+    any: ClassVar[Quantifier]
+    count: ClassVar[Quantifier]
 
 class AccessSegment(expression.Located):
     """One step into data."""
@@ -274,7 +341,7 @@ class IndexSegment(AccessSegment):
     index: int
     def __init__(self, *, index: int | None = ..., source: Place | None = ...) -> None: ...
 
-class Requirement(Definition):
+class Requirement(Definition, ComponentDefinition):
     """Restricts when communication may start (thesis figure 4.13)."""
     target: CommunicationTypeSet
     condition: expression.Expression
@@ -288,7 +355,7 @@ class DisablesRequirement(Requirement):
     """The communication may not start where the condition holds."""
     def __init__(self, *, target: CommunicationTypeSet | None = ..., condition: expression.Expression | None = ..., source: Place | None = ...) -> None: ...
 
-class ProvideStatement(Definition):
+class ProvideStatement(Definition, ComponentDefinition):
     """The data that is sent along (thesis figure 4.12)."""
     communicationType: CommunicationReference
     data: expression.Expression

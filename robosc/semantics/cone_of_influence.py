@@ -13,7 +13,7 @@ from robosc.semantics.walks import parts
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from robosc.semantics.instances import Instance, Instances, InstanceVariable, PortInstance
+    from robosc.semantics.instances import Instance, Instances, InstanceVariable, PortInstance, Statement
 
 #: A comparison of doubles is tabulated over the integers that it is computed from, up to so many valuations: a larger
 #: table would be larger than any model that it is part of.
@@ -31,12 +31,16 @@ class Data:
 
 @dataclass(frozen=True)
 class Assigned:
-    """An assignment where it stands: in which instance, in which transition, to which variable (None: to none)."""
+    """An assignment where it stands: in which instance, in which transition, to which variable (None: to none).
+
+    `value` is what it assigns, written out.
+    """
 
     instance: Instance
     transition: robosc.Transition
     assignment: robosc.Assignment
     variable: InstanceVariable | None
+    value: ex.Expression | None
 
 
 @dataclass(frozen=True)
@@ -84,20 +88,24 @@ def cone_of_influence(instances: Instances) -> ConeOfInfluence:
     while queue:
         for assigned in assignments.get(queue.pop(0), ()):
             result.computations.append(assigned)
-            read(assigned.assignment.value, assigned.instance, assigned.variable)
+            read(assigned.value, assigned.instance, assigned.variable)
             _read_data(instances, assigned, result)
     return result
 
 
 def conditions(instances: Instances) -> Iterator[tuple[ex.Expression | None, Instance | None]]:
-    """Every expression that the supervisor itself evaluates, with the instance whose text it is."""
+    """Every expression that the supervisor itself evaluates, written out, with the instance whose text it is."""
     for instance in instances:
         for transition, _ in instance.transitions:
-            if isinstance(transition, robosc.TauTransition):
-                yield transition.guard, instance
-    for definition in instances.base.definitions:
-        if isinstance(definition, (robosc.Requirement, robosc.ProvideStatement)):
-            yield definition.condition, None
+            if isinstance(transition, robosc.TauTransition) and transition.guard is not None:
+                yield instances.expanded(transition.guard, instance), instance
+    found: list[Statement[robosc.Requirement] | Statement[robosc.ProvideStatement]] = [
+        *instances.statements(robosc.Requirement),
+        *(statement for port in instances.ports() for statement in instances.provided(port)),
+    ]
+    for statement in found:
+        if statement.element.condition is not None:
+            yield instances.expanded(statement.element.condition, statement.within), statement.within
 
 
 def all_assignments(instances: Instances) -> Iterator[Assigned]:
@@ -106,7 +114,9 @@ def all_assignments(instances: Instances) -> Iterator[Assigned]:
         for transition, _ in instance.transitions:
             for assignment in transition.assignments:
                 variable = instances.variable(assignment.item, instance) if assignment.item else None
-                yield Assigned(instance, transition, assignment, variable)
+                given = assignment.value
+                value = None if given is None else instances.expanded(given, instance)
+                yield Assigned(instance, transition, assignment, variable, value)
 
 
 def accesses(expression: ex.Expression | None) -> Iterator[robosc.Access]:
@@ -144,7 +154,7 @@ def _read_data(instances: Instances, assigned: Assigned, result: ConeOfInfluence
     event = event_of(transition.communicationType, transition.resultType)
     if port is None or event is None:
         return
-    for access in accesses(assigned.assignment.value):
+    for access in accesses(assigned.value):
         path = property_path(access)
         if access.value and path is not None:
             data = Data(port, event, path)

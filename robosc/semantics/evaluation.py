@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import partial
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
@@ -12,7 +13,7 @@ from robosc.semantics.walks import operands
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-__all__ = ["Program", "Value", "as_double", "divide", "evaluate", "saturate"]
+__all__ = ["Program", "Value", "as_double", "divide", "evaluate", "literal", "saturate"]
 
 _Result = TypeVar("_Result")
 _LITERALS = (ex.BooleanLiteral, ex.IntegerLiteral, ex.DoubleLiteral, ex.StringLiteral)
@@ -128,3 +129,23 @@ def saturate(value: int, minimum: int | None, maximum: int | None) -> int:
     if minimum is not None:
         value = max(value, minimum)
     return value if maximum is None else min(value, maximum)
+
+
+def literal(value: Value) -> ex.Expression:
+    """The expression that stands for a value, with a minus sign where it is negative.
+
+    What no literal stands for is a division by zero, as it was in the text.
+    """
+    if isinstance(value, bool):
+        return ex.BooleanLiteral(value=value)
+    if isinstance(value, float) and not math.isfinite(value):
+        dividend = 0.0 if math.isnan(value) else math.copysign(1.0, value)
+        return ex.Division(left=literal(dividend), right=ex.DoubleLiteral(value=0.0))
+    if isinstance(value, (int, float)):
+        kind = ex.IntegerLiteral if isinstance(value, int) else ex.DoubleLiteral
+        magnitude: ex.Expression = kind(value=abs(value))  # type: ignore[arg-type]
+        return ex.UnaryMinus(operand=magnitude) if value < 0 else magnitude
+    if isinstance(value, str):
+        return ex.StringLiteral(value=value)
+    assert isinstance(value, ex.EnumerationLiteral)
+    return ex.EnumerationLiteralReference(literal=value)

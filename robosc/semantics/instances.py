@@ -5,25 +5,34 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, Generic, TypeAlias, TypeVar
 
 from robosc.metamodel import robosc
+from robosc.semantics.expansion import Expansion, constant, constant_value
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Callable, Iterable, Iterator, Sequence
+
+    from robosc.metamodel import expression as ex
+
+_Element = TypeVar("_Element", bound="ex.Located")
 
 
 @dataclass(frozen=True, eq=False)
 class Instance:
     """One component of a robot, or of a library looked at by itself.
 
-    `unit` is the robot or library whose text defines it; names in that text mean what they mean there.
+    `definition` is the component whose text it is, in the robot or library `unit`; names in that text mean what they
+    mean there. `arguments` are the values of its parameters.
     """
 
     component: robosc.Component
     local: robosc.LocalComponent
     unit: robosc.Base
+    definition: robosc.Component
     topics: dict[robosc.CommunicationType, str] = field(default_factory=dict)
+    arguments: dict[robosc.FormalParameter, ex.Expression] = field(default_factory=dict)
+    _types: dict[robosc.DataType, robosc.DataType] = field(default_factory=dict)
 
     @property
     def name(self) -> str:
@@ -71,7 +80,22 @@ class Instance:
 
     def topic(self, communication: robosc.CommunicationType) -> str:
         """The ROS name of one of its communications: re-mapped, given, or the communication's own name."""
-        return self.topics.get(communication) or communication.identifier or communication.name
+        computed = communication.computedIdentifier
+        if communication in self.topics or computed is None:
+            return self.topics.get(communication) or communication.identifier or communication.name
+        topic = constant_value(computed, self)
+        return topic if isinstance(topic, str) and topic else communication.name
+
+    def data_type(self, declared: robosc.DataType) -> robosc.DataType:
+        """A type in its text; where the bounds of an integer depend on its arguments, with their values."""
+        if not isinstance(declared, robosc.IntegerDataType) or declared.lower is None or declared.minimum is not None:
+            return declared
+        if declared not in self._types:
+            low, high = constant_value(declared.lower, self), constant_value(declared.upper, self)
+            self._types[declared] = made = robosc.IntegerDataType(source=declared.source)
+            if isinstance(low, int) and isinstance(high, int):
+                made.minimum, made.maximum = low, high
+        return self._types[declared]
 
 
 #: The instance of each component that imports one; None where its import is broken.
@@ -93,6 +117,19 @@ class InstanceVariable:
     instance: Instance
     variable: robosc.Variable
 
+    @property
+    def type(self) -> robosc.DataType:
+        """Its type, the bounds of an integer known."""
+        return self.instance.data_type(self.variable.type)
+
+
+@dataclass(frozen=True)
+class Statement(Generic[_Element]):
+    """A definition, such as a requirement, and the instance whose text it is; None: it stands outside of components."""
+
+    element: _Element
+    within: Instance | None
+
 
 class Instances:
     """All instances of a base, in the order of its text, and what references in texts mean among them.
@@ -105,6 +142,7 @@ class Instances:
         self.base = base
         self._of: dict[robosc.Component, Instance] = {}
         resolved = {} if resolved is None else resolved
+        self.expanded = Expansion(self)
         for definition in base.definitions:
             if isinstance(definition, robosc.Component):
                 instance = _instantiate(definition, base, resolved)
@@ -124,15 +162,33 @@ class Instances:
         """Whether another instance has a communication of the same name."""
         return self._names[communication.name] > 1
 
-    def provided(self, port: PortInstance) -> list[robosc.ProvideStatement]:
-        """The statements on the data of a communication, in the order of the text."""
-        return self._provided.get(port, [])
+    def provided(self, port: PortInstance) -> list[Statement[robosc.ProvideStatement]]:
+        """The statements on the data of a communication, in the order of the text.
+
+        Those outside of components take the place of those in them.
+        """
+        found = self._provided.get(port, [])
+        outside = [statement for statement in found if statement.within is None]
+        return outside or found
+
+    def statements(self, kind: type[_Element]) -> list[Statement[_Element]]:
+        """The requirements, or other definitions of a kind: outside of components, then in each instance."""
+        found: list[Statement[_Element]] = []
+        texts: list[tuple[Iterable[Any], Instance | None]] = [(self.base.definitions, None)]
+        texts += ((instance.local.definitions, instance) for instance in self)
+        for definitions, within in texts:
+            found += [Statement(definition, within) for definition in definitions if isinstance(definition, kind)]
+        return found
+
+    def of(self, component: robosc.Component) -> list[Instance]:
+        """The instances that are made of a component's text."""
+        return [instance for instance in self if instance.definition is component]
 
     def instance(self, component: robosc.Component | None, within: Instance | None) -> Instance | None:
         """The instance that a text means by a component; `within` is the instance whose behaviour the text is."""
-        if within is not None and within.unit is not self.base:
-            return within  # A library's text speaks of its own component only.
-        return within if component is None else self._of.get(component)
+        if within is not None and (component is None or component is within.definition):
+            return within
+        return None if component is None else self._of.get(component)
 
     def port(self, reference: robosc.CommunicationReference | None, within: Instance | None) -> PortInstance | None:
         """The communication that a reference means."""
@@ -162,13 +218,12 @@ class Instances:
         return Counter(port.communication.name for port in self.ports())
 
     @cached_property
-    def _provided(self) -> dict[PortInstance, list[robosc.ProvideStatement]]:
-        provided: dict[PortInstance, list[robosc.ProvideStatement]] = {}
-        for definition in self.base.definitions:
-            if isinstance(definition, robosc.ProvideStatement):
-                port = self.port(definition.communicationType, None)
-                if port is not None:
-                    provided.setdefault(port, []).append(definition)
+    def _provided(self) -> dict[PortInstance, list[Statement[robosc.ProvideStatement]]]:
+        provided: dict[PortInstance, list[Statement[robosc.ProvideStatement]]] = {}
+        for statement in self.statements(robosc.ProvideStatement):
+            port = self.port(statement.element.communicationType, statement.within)
+            if port is not None:
+                provided.setdefault(port, []).append(statement)
         return provided
 
 
@@ -200,29 +255,66 @@ def libraries(
     return list(found)
 
 
+def definition_of(component: robosc.Component) -> robosc.Component | None:
+    """The component whose text declares what a component consists of; None where an import on the way is broken."""
+    seen = {component}
+    while isinstance(component.type, robosc.InstantiatedComponent | robosc.ImportedComponent):
+        component = component.type.definition
+        if component is None or component in seen:
+            return None
+        seen.add(component)
+    return component if isinstance(component.type, robosc.LocalComponent) else None
+
+
+def bound_arguments(
+    parameters: Sequence[robosc.FormalParameter], arguments: Sequence[robosc.Argument]
+) -> dict[robosc.FormalParameter, ex.Expression]:
+    """The expression for each parameter: by name, by position, or its default; of two for one the first."""
+    found: dict[robosc.FormalParameter, ex.Expression] = {}
+    for position, argument in enumerate(arguments):
+        parameter = argument.parameter or (parameters[position] if position < len(parameters) else None)
+        if parameter is not None and argument.value is not None:
+            found.setdefault(parameter, argument.value)
+    defaults = ((parameter, parameter.default) for parameter in parameters if parameter.default is not None)
+    return dict(defaults) | found
+
+
 def _instantiate(component: robosc.Component, base: robosc.Base, resolved: Resolved) -> Instance | None:
-    """Follows imports to the component's definition; outer re-mappings win."""
-    chain: list[tuple[robosc.Component, robosc.ImportedComponent]] = []
+    """Follows `is` and imports to the component's definition; outer re-mappings win."""
+    if component.parameters:
+        return None  # a template
+    chain: list[tuple[robosc.Component, robosc.InstantiatedComponent | robosc.ImportedComponent]] = []
     unit, current, seen = base, component, {component}
     found: Instance | None = None
     while current not in resolved:
-        if isinstance(current.type, robosc.LocalComponent):
-            found = Instance(current, current.type, unit)
+        made = current.type
+        if isinstance(made, robosc.LocalComponent):
+            found = Instance(current, made, unit, current)
             break
-        if not isinstance(current.type, robosc.ImportedComponent):
+        if not isinstance(made, robosc.InstantiatedComponent | robosc.ImportedComponent):
             break
-        chain.append((current, current.type))
-        unit, current = current.type.library, current.type.definition
+        chain.append((current, made))
+        unit, current = made.library if isinstance(made, robosc.ImportedComponent) else unit, made.definition
         if unit is None or current is None or current in seen:
             break
         seen.add(current)
     else:
         found = resolved[current]
-    for importing, imported in reversed(chain):
+    for importing, made in reversed(chain):
         if found is not None:
             topics: dict[robosc.CommunicationType, str] = {}
-            for remapping in imported.remappings:
-                topics.setdefault(remapping.communicationType, remapping.identifier)
-            found = Instance(importing, found.local, found.unit, topics | found.topics | topics)
+            for remapping in made.remappings if isinstance(made, robosc.ImportedComponent) else ():
+                topics.setdefault(remapping.communicationType, _identifier(remapping))
+            given = found.arguments
+            if found.component.parameters:
+                bound = bound_arguments(found.component.parameters, made.arguments)
+                given = {parameter: constant(value) for parameter, value in bound.items()}
+            topics |= found.topics | topics
+            found = Instance(importing, found.local, found.unit, found.definition, topics, given)
         resolved[importing] = found
     return found
+
+
+def _identifier(remapping: robosc.TopicRemapping) -> str:
+    computed = constant_value(remapping.computedIdentifier) if remapping.computedIdentifier else remapping.identifier
+    return computed if isinstance(computed, str) else ""

@@ -13,8 +13,9 @@ if TYPE_CHECKING:
 
     from robosc.metamodel import expression as ex
 
+_RESERVED = re.compile(r"^UnreservedName:\s*/\(\?!\(\?:([a-z|]+)\)", re.MULTILINE)
 #: The words of RoboSC that a name in an expression has a `^` before.
-ROBOSC_KEYWORDS = frozenset(re.findall(r"'([a-z]+)'", locate("grammar/robosc.tx").read_text(encoding="utf-8")))
+ROBOSC_KEYWORDS = frozenset(_RESERVED.findall(locate("grammar/robosc.tx").read_text(encoding="utf-8"))[0].split("|"))
 _WORD = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
 
 

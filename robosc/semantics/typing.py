@@ -170,6 +170,8 @@ def operator_type(row: Operator, operands: Sequence[Type]) -> Type:
         return DOUBLE
     if row.rule is Rule.INTEGER:
         return INTEGER if {*operands} == {INTEGER} else UNKNOWN
+    if row.metaclass is ex.Addition and {*operands} == {STRING}:
+        return STRING  # in constant expressions
     if not all(is_number(operand) or operand == UNKNOWN for operand in operands):
         return UNKNOWN
     if DOUBLE in operands:
@@ -182,8 +184,10 @@ def item_type(item: rsc.AccessibleItem | None) -> Type:
     match item:
         case rsc.State():
             return BOOLEAN
-        case rsc.Variable():
+        case rsc.Variable() | rsc.Constant() | rsc.FormalParameter():
             return declared_type(item.type)
+        case rsc.Condition():
+            return BOOLEAN
         case rsc.EnumValue():
             return EnumType(item.eContainer().eContainer())
     return UNKNOWN
@@ -239,19 +243,29 @@ class Types:
                 return operands[1] if operands[1] != UNKNOWN else operands[2]
             case rsc.Access():
                 return access_types(expression, self._value)[-1]
-            case ex.EnumerationLiteralReference():
-                return EnumType(expression.literal.eContainer())
-            case sct.LocationReference():
-                return BOOLEAN
-            case sct.VariableReference() | rosgraph.NodeVariableReference():
-                return declared_type(expression.variable.type)
-            case sct.InputReference():
-                return declared_type(expression.input.type)
-            case rosgraph.WireAccess():
-                return declared_type(expression.type)
-            case rosgraph.ConversionCall():
-                return EnumType(expression.conversion.enumeration)
-        return _LITERAL.get(type(expression), UNKNOWN)
+            case rsc.Call():
+                return declared_type(expression.function.type) if expression.function else UNKNOWN
+            case rsc.InstanceQuantifier():
+                return INTEGER if expression.quantifier == rsc.Quantifier.count else BOOLEAN
+        return _reference_type(expression)
+
+
+def _reference_type(expression: ex.Expression) -> Type:
+    """The type of a literal, and of a reference in an sct or rosgraph model."""
+    match expression:
+        case ex.EnumerationLiteralReference():
+            return EnumType(expression.literal.eContainer())
+        case sct.LocationReference():
+            return BOOLEAN
+        case sct.VariableReference() | rosgraph.NodeVariableReference():
+            return declared_type(expression.variable.type)
+        case sct.InputReference():
+            return declared_type(expression.input.type)
+        case rosgraph.WireAccess():
+            return declared_type(expression.type)
+        case rosgraph.ConversionCall():
+            return EnumType(expression.conversion.enumeration)
+    return _LITERAL.get(type(expression), UNKNOWN)
 
 
 def infer(expression: ex.Expression | None, value: Type | None = None) -> Type:

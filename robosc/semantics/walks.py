@@ -25,8 +25,10 @@ def operands(expression: ex.Expression | None) -> list[ex.Expression]:
             return [expression.operand]
         case ex.Conditional():
             return [expression.condition, expression.then, expression.otherwise]
-        case ex.FunctionCall():
+        case ex.FunctionCall() | robosc.Call():
             return list(expression.arguments)
+        case robosc.InstanceQuantifier():
+            return [expression.body]
         case engine.And() | engine.Or():
             return list(expression.operands)
         case robosc.ObjectValue():
@@ -42,6 +44,8 @@ def with_operands(original: ex.Expression, given: Sequence[ex.Expression]) -> ex
     made: ex.Expression
     if isinstance(original, ex.FunctionCall):
         made = kind(function=original.function, arguments=given)
+    elif isinstance(original, ex.Conditional):
+        made = kind(**dict(zip(("condition", "then", "otherwise"), given, strict=True)))
     else:
         names = ("operand",) if len(given) == 1 else ("left", "right")
         made = kind(**dict(zip(names, given, strict=True)))

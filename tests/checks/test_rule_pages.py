@@ -12,7 +12,7 @@ from robosc.diagnostics.rules import page, rules, summary
 from robosc.language import read
 
 #: Rules whose breaches are found before there is a model that could be checked.
-READING = {"syntax", "unresolved-reference", "import-cycle"}
+READING = {"syntax", "unresolved-reference", "import-cycle", "unique-enum-value"}
 CHECKED = sorted({*RULES, *READING})
 
 

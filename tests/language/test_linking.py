@@ -208,7 +208,7 @@ def test_an_enum_sees_values_literals_and_enum_values(tmp_path: Path) -> None:
     )
     assert underlined(found) == [("unresolved-reference", "C"), ("unresolved-reference", "s")]
     assert {finding.hint for finding in found.findings} == {
-        "an enum's rules see only `value`, literals and enum values"
+        "an enum's rules see only `value`, literals, constants, functions, its parameters and enum values"
     }
 
 
@@ -303,8 +303,11 @@ def test_a_name_that_two_imported_libraries_share_is_ambiguous(tmp_path: Path) -
     found = reading(
         tmp_path, robot, safety=STOP, danger=other.replace("message go", "message went").replace("from go", "from went")
     )
-    assert underlined(found) == [("unresolved-reference", name) for name in ("Info", "flag", "high", "high")]
-    assert all("the libraries `Safety` and `Danger`" in finding.message for finding in found.findings)
+    assert (
+        underlined(found)
+        == [("unresolved-reference", name) for name in ("Info", "flag")] + [("unique-enum-value", "high")] * 2
+    )
+    assert all("the libraries `Safety` and `Danger`" in finding.message for finding in found.findings[:2])
 
 
 def test_names_in_a_library_mean_what_is_in_the_library(tmp_path: Path) -> None:

@@ -330,10 +330,10 @@ def test_a_nameless_declaration_may_be_the_missing_one_of_its_definition(tmp_pat
 
 #: What is written in other languages, and what the hint says of it.
 FOREIGN = [
-    ("robot R { const speed: double = 0.5 }", "there are no constants"),
+    ("robot R { const speed: double = 0.5 }", "write `constant name: type = value`"),
     ("robot R { component C { behaviour { initial marked state s { after 3.0 s goto s } } } }", "a model has no time"),
-    ("robot R { function f(d: double): double = d }", "there are no functions"),
-    ("robot R { component C { incoming message m with type: double } provide m with abs(1.0) }", "no functions"),
+    ("robot R { func f(d: double): double = d }", "write `function name(parameter: type): type = expression`"),
+    ("robot R { component C { incoming message m with type: none } provide m with mode(1) }", "did you mean `mod`?"),
     ("robot R { component C { behaviour { initial marked state s { transition when true } } } }", "write `if`"),
     ("robot R { component C { incoming message m with type: int } }", "write `integer`"),
     ("robot R { component C { incoming message m with type: float64 } }", "write `double`"),

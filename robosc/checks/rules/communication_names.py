@@ -65,6 +65,8 @@ def unique_topic(base: rsc.Base) -> Iterator[Finding]:
         message = second.communication
         if not isinstance(message, rsc.Message) or message.direction != rsc.MessageDirection.outgoing:
             continue
+        if {*second.instance.definition.parameters} - second.instance.arguments.keys():
+            continue  # The matter of `argument`.
         topic = second.instance.topic(message)
         first = firsts.setdefault(topic.removeprefix("/"), second)
         if first.instance is not second.instance:

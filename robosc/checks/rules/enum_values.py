@@ -1,4 +1,4 @@
-"""`enum-default`, `unique-enum-value` and `enum-state-overlap` (thesis 4.5.8, 4.5.12 and 4.5.13)."""
+"""`enum-default` and `enum-state-overlap` (thesis 4.5.8 and 4.5.13)."""
 
 from __future__ import annotations
 
@@ -33,54 +33,6 @@ def enum_default(base: rsc.Base) -> Iterator[Finding]:
                 f"enum `{enum.name}` has a second default rule, expected one",
                 "give this rule a condition in place of `default`, or leave it out",
             )
-
-
-@rule("unique-enum-value")
-def unique_enum_value(base: rsc.Base) -> Iterator[Finding]:
-    """No two enum values of a robot or library and its imports have one name."""
-    firsts: dict[str, rsc.EnumValue] = {}
-    for library in reachable(base, _has_values):
-        for value in _values(library):
-            firsts.setdefault(value.name, value)
-    for value in _values(base):
-        first = firsts.setdefault(value.name, value)
-        if first is not value:
-            yield Finding(
-                value,
-                f"{_describe(value, base)} has the name of {_describe(first, base)}, expected a name of its own",
-                _repair_repeated(value, first),
-            )
-    yield from _between_imports(base)
-
-
-def _between_imports(base: rsc.Base) -> Iterator[Finding]:
-    """Values of two libraries that only this base brings together; of one library's own imports it has the finding."""
-    firsts: dict[str, rsc.EnumValue] = {}
-    importing: dict[rsc.Library, rsc.Component] = {}
-    for component, library in imports(base):
-        importing.setdefault(library, component)
-    for library, component in importing.items():
-        for value in _reachable_values(library):
-            first = firsts.setdefault(value.name, value)
-            pair = {first, value}
-            if first is not value and not any(pair <= fact(_brought, other) for other in reachable(base)):
-                yield Finding(
-                    component,
-                    f"the import of `{library.name}` brings {_describe(value, base)}, which has the name of"
-                    f" {_describe(first, base)}, expected a name of its own",
-                    "import only one of these libraries: names that come from libraries can't be changed here",
-                )
-
-
-def _repair_repeated(value: rsc.EnumValue, first: rsc.EnumValue) -> str:
-    if _enum(value) is not _enum(first):
-        return f"rename it, such as `{value.name}_{_enum(value).name.lower()}`"
-    if all(isinstance(same.eContainer(), rsc.EnumTransformationRule) for same in (value, first)):
-        return f"join the two conditions by `or`, so that `{value.name}` stands once"
-    return (
-        f"the default gives `{value.name}` wherever no rule holds: leave the other rule out, and let rules that"
-        " follow it hold only where it did not"
-    )
 
 
 @rule("enum-state-overlap")
@@ -142,10 +94,6 @@ def _has_values(base: rsc.Base) -> bool:
 def _reachable_values(base: rsc.Base) -> list[rsc.EnumValue]:
     """The enum values of a base, then those of all libraries that its imports reach."""
     return [value for unit in [base, *reachable(base, _has_values)] for value in _values(unit)]
-
-
-def _brought(library: rsc.Library) -> set[rsc.EnumValue]:
-    return set(_reachable_values(library))
 
 
 def _enum(value: rsc.EnumValue) -> rsc.EnumDataType:

@@ -2,35 +2,35 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from robosc.checks.definitions import (
     assigned_variable,
     communication_of,
+    data_types,
+    identified_elements,
     of_kind,
     sends_message,
+    statements,
     transitions,
     variables,
 )
-from robosc.checks.expression_types import CONSTANT, ENUM_RULE, ExpressionCheck, Place
+from robosc.checks.expression_types import CONSTANT, ENUM_RULE, ExpressionCheck, Place, Restriction
 from robosc.checks.rule import Finding, rule
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
-from robosc.metamodel.reflection import tree
-from robosc.semantics.cone_of_influence import accesses
-from robosc.semantics.evaluation import evaluate
-from robosc.semantics.operators import FUNCTIONS
 from robosc.semantics.typing import (
     BOOLEAN,
     INTEGER,
     NONE,
+    STRING,
     UNKNOWN,
     ArrayType,
     ObjectType,
     Type,
     declared_type,
     provided_data_type,
-    type_of,
 )
 from robosc.semantics.typing import value_type as value_type_in
 
@@ -40,26 +40,65 @@ if TYPE_CHECKING:
 _GUARD = Place(None, "a guard reads what the component remembers, and `value` is the data of one event")
 _REQUIREMENT = Place(None, "a requirement reads what components remember, and `value` is the data of one event")
 _PROVIDE = Place(None, "provided data is read from what components remember, and `value` is the data of one event")
+_FUNCTION = Place(None, "a function computes its value from its parameters", Restriction.FUNCTION)
 _SILENT = Place(None, "a silent transition has no event that could carry data")
 
 
 @rule("type")
 def types(base: rsc.Base) -> Iterator[Finding]:
     """Every expression has the type that its place wants, and its operators the operands that they want."""
-    for definition in base.definitions:
-        match definition:
-            case rsc.EnumDataType():
-                yield from _enum(definition)
-            case rsc.Requirement():
-                yield from _boolean(definition.condition, "the condition of a requirement", _REQUIREMENT)
-            case rsc.ProvideStatement():
-                yield from _provide(definition)
+    for enum in of_kind(rsc.EnumDataType, base.definitions):
+        yield from _enum(enum)
+    for requirement in statements(rsc.Requirement, base):
+        yield from _boolean(requirement.condition, "the condition of a requirement", _REQUIREMENT)
+    for statement in statements(rsc.ProvideStatement, base):
+        yield from _provide(statement)
+    for named in statements(rsc.NamedExpression, base):
+        yield from _named(named)
+    for computed in _computed(base):
+        yield from _constant(computed, INTEGER, "the bound of a range")
+    for identified in identified_elements(base):
+        yield from _constant(identified.computedIdentifier, STRING, "an identifier")
     for declared in variables(base):
         check = ExpressionCheck(CONSTANT)
         check.expect(declared.initial, _variable_type(declared), f"the initial value of `{declared.name}`")
         yield from check.findings
     for _, transition in transitions(base):
         yield from _transition(transition)
+
+
+def _named(named: rsc.NamedExpression) -> Iterator[Finding]:
+    name = f"`{named.name}`"
+    match named:
+        case rsc.Condition():
+            yield from _boolean(named.value, f"the condition {name}", _GUARD)
+        case rsc.Constant():
+            yield from _of_one_value(named.type, f"constant {name}")
+            yield from _constant(named.value, declared_type(named.type), f"the value of {name}")
+        case rsc.Function():
+            for parameter in named.parameters:
+                yield from _of_one_value(parameter.type, f"parameter `{parameter.name}` of {name}")
+            check = ExpressionCheck(_FUNCTION)
+            check.expect(named.value, declared_type(named.type), f"the value of {name}")
+            yield from check.findings
+
+
+def _of_one_value(declared: rsc.DataType | None, what: str) -> Iterator[Finding]:
+    found = declared_type(declared)
+    if declared is not None and (found == NONE or isinstance(found, ArrayType | ObjectType)):
+        hint = "write `boolean`, `integer`, `double`, `string` or the name of an enum"
+        yield Finding(declared, f"{what} is of type {found}, expected a type of one value", hint)
+
+
+def _constant(value: ex.Expression | None, wanted: Type, what: str) -> Iterator[Finding]:
+    check = ExpressionCheck(replace(CONSTANT, what=what))
+    check.expect(value, wanted, what)
+    yield from check.findings
+
+
+def _computed(base: rsc.Base) -> Iterator[ex.Expression]:
+    for declared in of_kind(rsc.IntegerDataType, data_types(base)):
+        yield from (bound for bound in (declared.lower, declared.upper) if bound is not None)
 
 
 def _enum(enum: rsc.EnumDataType) -> Iterator[Finding]:
@@ -107,35 +146,3 @@ def _boolean(condition: ex.Expression | None, what: str, place: Place) -> Iterat
     check = ExpressionCheck(place)
     check.expect(condition, BOOLEAN, what)
     yield from check.findings
-
-
-@rule("argument")
-def arguments(base: rsc.Base) -> Iterator[Finding]:
-    """A function gets as many arguments as it has parameters, and a positive constant to divide by."""
-    for _, element in tree(base):
-        if not isinstance(element, ex.FunctionCall):
-            continue
-        row, given = FUNCTIONS[element.function], list(element.arguments)
-        names = [f"`{name}`" for name in "abcdef"[: row.parameters]]
-        if len(given) != row.parameters:
-            wanted = "argument" if row.parameters == 1 else "arguments"
-            yield Finding(
-                element,
-                f"`{row.symbol}` has {row.parameters} {wanted}, found {len(given)}",
-                f"write `{row.symbol}({', '.join(name.strip('`') for name in names)})`",
-            )
-            continue
-        for position in sorted(row.divisors):
-            if _is_no_divisor(given[position]):
-                yield Finding(
-                    given[position],
-                    f"argument {position + 1} of `{row.symbol}` must be a positive constant",
-                    "write an integer from 1 on, such as `10`",
-                )
-
-
-def _is_no_divisor(expression: ex.Expression) -> bool:
-    """Whether an integer is read from somewhere, or below 1; what is no integer the rule `type` reports."""
-    if type_of(expression) != INTEGER:
-        return False
-    return next(accesses(expression), None) is not None or evaluate(expression, lambda access: access) < 1  # type: ignore[operator]

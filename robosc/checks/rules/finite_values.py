@@ -10,6 +10,7 @@ from robosc.checks.definitions import (
     data_types,
     of_kind,
     sends_message,
+    statements,
     transitions,
     variables,
 )
@@ -59,7 +60,7 @@ def variable_type(base: rsc.Base) -> Iterator[Finding]:
 
 def _without_domain(_: Instances, result: ConeOfInfluence) -> Iterator[Fault]:
     for owned, reason in result.variables.items():
-        found = declared_type(owned.variable.type)
+        found = declared_type(owned.type)
         if found in {DOUBLE, STRING}:
             name = f"{owned.instance.name}.{owned.variable.name}"
             yield Fault(
@@ -112,7 +113,7 @@ def integer_range(base: rsc.Base) -> Iterator[Finding]:
 
 def _without_range(_: Instances, result: ConeOfInfluence) -> Iterator[Fault]:
     for owned, reason in result.variables.items():
-        if _is_unbounded(owned.variable.type):
+        if _is_unbounded(owned.type):
             name = f"{owned.instance.name}.{owned.variable.name}"
             yield Fault(
                 owned.variable,
@@ -158,7 +159,7 @@ def _constants(base: rsc.Base) -> Iterator[tuple[ex.Expression | None, rsc.DataT
             assigned = assigned_variable(assignment)
             if assigned is not None:
                 yield assignment.value, assigned.type, assigned.name
-    for statement in of_kind(rsc.ProvideStatement, base.definitions):
+    for statement in statements(rsc.ProvideStatement, base):
         communication = communication_of(statement.communicationType)
         if communication is not None:
             yield from _provided(statement.data, sent_type(communication), communication.name)

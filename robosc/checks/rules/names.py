@@ -6,9 +6,9 @@ Thesis 4.5.7 and 4.5.12.
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from robosc.checks.definitions import behaviours, components, of_kind, states
+from robosc.checks.definitions import behaviours, components, of_kind, statements, states
 from robosc.checks.rule import Finding, on_line, rule
 from robosc.metamodel import robosc as rsc
 
@@ -21,8 +21,12 @@ if TYPE_CHECKING:
     Scopes = Callable[[rsc.Base], Iterable[tuple[str, Iterable[ex.NamedElement]]]]
 
 
-def _in_file(kind: type[rsc.Component | rsc.ComplexDataType]) -> Scopes:
-    return lambda base: [(f"`{base.name}`", of_kind(kind, base.definitions))]
+def _components(base: rsc.Base) -> Iterator[tuple[str, list[ex.NamedElement]]]:
+    yield f"`{base.name}`", of_kind((rsc.Component, rsc.NamedExpression), base.definitions)
+
+
+def _data_types(base: rsc.Base) -> Iterator[tuple[str, list[rsc.ComplexDataType]]]:
+    yield f"`{base.name}`", of_kind(rsc.ComplexDataType, base.definitions)
 
 
 def _states(base: rsc.Base) -> Iterator[tuple[str, list[rsc.State]]]:
@@ -30,10 +34,18 @@ def _states(base: rsc.Base) -> Iterator[tuple[str, list[rsc.State]]]:
         yield f"component `{component.name}`", states(behaviour.automaton)
 
 
+#: What a finding calls what is declared in a component.
+_KINDS = {
+    rsc.State: "state",
+    rsc.Constant: "constant",
+    rsc.Condition: "condition",
+    rsc.Function: "function",
+    rsc.Variable: "variable",
+}
 #: What has a name of its own: the rule, what it is in words, and among whom.
 _UNIQUE: tuple[tuple[str, str, Scopes], ...] = (
-    ("unique-component", "component", _in_file(rsc.Component)),
-    ("unique-datatype", "data type", _in_file(rsc.ComplexDataType)),
+    ("unique-component", "component", _components),
+    ("unique-datatype", "data type", _data_types),
     ("unique-state", "state", _states),
 )
 
@@ -51,29 +63,40 @@ for _identifier, _kind, _scopes in _UNIQUE:
 @rule("unique-variable")
 def unique_variable(base: rsc.Base) -> Iterator[Finding]:
     """No variable of a component has the name of another one, or of a state: `Component.name` reaches both."""
-    for component, behaviour in behaviours(base):
+    yield from _parameters(base)
+    for component, local in components(base):
         where = f"component `{component.name}`"
-        first: dict[str, rsc.AccessibleItem] = {}
+        first: dict[str, Any] = {}
         known = set()
-        for definition in of_kind(rsc.AccessibleItem, behaviour.automaton.definitions):
+        members: list[Any] = of_kind(rsc.NamedExpression, local.definitions)
+        for behaviour in of_kind(rsc.ComponentBehaviour, local.definitions):
+            members += of_kind(rsc.AccessibleItem, behaviour.automaton.definitions if behaviour.automaton else ())
+        for definition in members:
             is_state = isinstance(definition, rsc.State)
             # That a state has the name of another state is the matter of `unique-state`.
             if definition.name in first and not (is_state and definition.name in known):
-                yield _declared_again("state" if is_state else "variable", definition, first[definition.name], where)
+                kind = _KINDS.get(type(definition), "variable")
+                yield _declared_again(kind, definition, first[definition.name], where)
             if is_state:
                 known.add(definition.name)
             first.setdefault(definition.name, definition)
 
 
+def _parameters(base: rsc.Base) -> Iterator[Finding]:
+    owners: list[Any] = of_kind((rsc.Component, rsc.EnumDataType), base.definitions)
+    for owner in (*statements(rsc.Function, base), *owners):
+        for second, first in _repeated(owner.parameters):
+            yield _declared_again("parameter", second, first, f"`{owner.name}`")
+
+
 @rule("unique-property")
 def unique_property(base: rsc.Base) -> Iterator[Finding]:
     """No object has two properties of one name, and a provided object names each property once."""
-    for definition in base.definitions:
-        if isinstance(definition, rsc.ObjectDataType):
-            for second, first in _repeated(definition.properties):
-                yield _declared_again("property", second, first, f"object `{definition.name}`")
-        elif isinstance(definition, rsc.ProvideStatement):
-            yield from _provided_again(definition.data)
+    for definition in of_kind(rsc.ObjectDataType, base.definitions):
+        for second, first in _repeated(definition.properties):
+            yield _declared_again("property", second, first, f"object `{definition.name}`")
+    for statement in statements(rsc.ProvideStatement, base):
+        yield from _provided_again(statement.data)
 
 
 def _provided_again(value: ex.Expression) -> Iterator[Finding]:
@@ -113,8 +136,8 @@ def _repeated(elements: Iterable[ex.NamedElement]) -> Iterator[tuple[ex.NamedEle
 
 
 def _declared_again(kind: str, second: ex.NamedElement, first: ex.NamedElement, where: str) -> Finding:
-    same = not isinstance(first, (rsc.State, rsc.Variable)) or type(first) is type(second)
-    other = f"another {kind}" if same else f"a {type(first).__name__.lower()}"
+    same = type(first) not in _KINDS or type(first) is type(second)
+    other = f"another {kind}" if same else f"a {_KINDS[type(first)]}"
     return Finding(
         second,
         f"{kind} `{second.name}` has the name of {other}{on_line(first)}, expected a name of its own in {where}",

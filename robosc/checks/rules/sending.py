@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robosc.checks.definitions import communication_of, of_kind
+from robosc.checks.definitions import communication_of, statements
 from robosc.checks.rule import Finding, rule
 from robosc.metamodel import robosc as rsc
 from robosc.semantics.communication import sent
@@ -22,7 +22,7 @@ _DIRECTIONS = (
 @rule("data-provisioning")
 def data_provisioning(base: rsc.Base) -> Iterator[Finding]:
     """Data is provided only to what the controller sends, and only where data goes along."""
-    for statement in of_kind(rsc.ProvideStatement, base.definitions):
+    for statement in statements(rsc.ProvideStatement, base):
         communication = communication_of(statement.communicationType)
         if communication is not None and sent(communication) is None:
             yield Finding(
@@ -44,7 +44,7 @@ def data_provisioning(base: rsc.Base) -> Iterator[Finding]:
 @rule("requirement-target")
 def requirement_target(base: rsc.Base) -> Iterator[Finding]:
     """A requirement restricts something, and something that the controller sends."""
-    for requirement in of_kind(rsc.Requirement, base.definitions):
+    for requirement in statements(rsc.Requirement, base):
         if requirement.target is None:
             continue
         if not requirement.target.communicationTypes:

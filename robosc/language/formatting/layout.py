@@ -20,10 +20,11 @@ if TYPE_CHECKING:
 _BLOCKS = {"Robot", "Library", "Component", "ComponentBehaviour", "State", "ObjectDataType", "EnumDataType"}
 _LISTS = {"ObjectValue", "CommunicationTypeSet"}
 #: What belongs to the block around it.
-_INLINED = {"", "ComponentType", "LocalComponent", "ImportedComponent", "Automaton"}
+_INLINED = {"", "ComponentType", "LocalComponent", "InstantiatedComponent", "ImportedComponent", "Automaton"}
 #: Rules without a space between their words.
 _TIGHT = {"Access", "CommunicationReference", "PropertySegment", "IndexSegment", "IntegerDataType", "Array"}
 _TIGHT |= {"InterfaceTypeReference", "Negation", "UnaryMinus"}
+_CALLS = {"FunctionCall", "Call", "ComplexDataTypeReference"}
 #: By rule the words that a line may break before, and those that it may break behind.
 _COMMUNICATION: tuple[set[str], set[str]] = (set(), {"with", ","})
 CLAUSES: dict[str, tuple[set[str], set[str]]] = {
@@ -38,6 +39,10 @@ CLAUSES: dict[str, tuple[set[str], set[str]]] = {
     "NeedsRequirement": (set(), {"needs"}),
     "DisablesRequirement": ({"disables"}, set()),
     "ProvideStatement": ({"if"}, set()),
+    "Conditional": ({"then", "else"}, set()),
+    "Constant": (set(), {"="}),
+    "Condition": (set(), {"="}),
+    "Function": (set(), {"=", ","}),
 }
 #: Rules whose clauses each find room for themselves: what they begin with may be a list that breaks.
 _LOOSE = {"NeedsRequirement", "ProvideStatement"}
@@ -71,7 +76,7 @@ class _Layout:
             return self._clauses(parts, rule)
         if rule == "Expression":
             return self._chain(parts[0], [(link[0], *_parts(link[0])) for link in parts[1:]])
-        if rule == "FunctionCall":
+        if rule in _CALLS:
             return Group(self._row(parts, Gap.NONE, after={","}))
         if rule == "Operand" and len(parts) > 1:
             return self._brackets(*parts)
@@ -86,7 +91,7 @@ class _Layout:
         row = [self._document(parts[0])]
         for left, right in pairwise(parts):
             breaks = _is_word(left, after) or _is_word(right, before)
-            between = Gap.NONE if _is_word(right, {",", ":"}) else Gap.BREAK if breaks else gap
+            between = Gap.NONE if _is_word(right, {",", ":", "("}) else Gap.BREAK if breaks else gap
             row.append(Indent(self._gap(right, between)))
             # What has brackets closes them where it began.
             document = self._document(right)
@@ -146,10 +151,12 @@ class _Layout:
     def _block(self, parts: Sequence[Node]) -> Document:
         """What stands before braces, and items between them, each in a line of its own."""
         at = next((index for index, part in enumerate(parts) if _is_word(part, {"{"})), len(parts))
-        header = self._row(parts[:at])
+        header: Document = Group(self._row(parts[:at], after={","}))
         if any(_is_word(part, {"import"}) for part in parts):
             header = self._clauses(parts[:at], "Component")
             return (header, self._gap(parts[at], Gap.SPACE), self._list(parts[at:])) if at < len(parts) else header
+        if at == len(parts):
+            return header
         opening, *items, closing = parts[at:]
         start = header, self._gap(opening, Gap.SPACE)
         if not items:

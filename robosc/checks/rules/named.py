@@ -1,0 +1,202 @@
+"""`cyclic-definition`, `argument` and `unused-template`: names for expressions, and what is made with arguments."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from robosc.checks.definitions import of_kind, statements
+from robosc.checks.expression_types import CONSTANT, ExpressionCheck
+from robosc.checks.libraries import instances
+from robosc.checks.rule import Finding, on_line, rule
+from robosc.diagnostics import Severity
+from robosc.metamodel import expression as ex
+from robosc.metamodel import robosc as rsc
+from robosc.metamodel.reflection import tree
+from robosc.semantics.cone_of_influence import accesses, conditions
+from robosc.semantics.expansion import LARGEST, constant_value
+from robosc.semantics.operators import FUNCTIONS
+from robosc.semantics.typing import INTEGER, declared_type, type_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+
+@rule("cyclic-definition")
+def cyclic_definition(base: rsc.Base) -> Iterator[Finding]:
+    """No constant, condition or function is defined by itself, and none becomes too large when it is written out."""
+    named = list(statements(rsc.NamedExpression, base))
+    uses = {definition: _used(definition) for definition in named}
+    done: set[Any] = set()
+    for start in named:
+        path: list[tuple[Any, Iterator[Any]]] = [] if start in done else [(start, iter(uses[start]))]
+        opened = {start}
+        while path:
+            definition, others = path[-1]
+            other = next(others, None)
+            if other is None:
+                path.pop()
+                done.add(definition)
+                opened.discard(definition)
+            elif other in opened:
+                around = [step for step, _ in path]
+                names = [step.name for step in around[around.index(other) :]]
+                yield Finding(
+                    definition,
+                    f"`{other.name}` is defined by itself: {' -> '.join([*names, other.name])}",
+                    "leave one of these uses out, or write a value in its place",
+                )
+            elif other in uses and other not in done:
+                opened.add(other)
+                path.append((other, iter(uses[other])))
+    yield from _too_large(base)
+
+
+def _used(definition: rsc.NamedExpression) -> list[Any]:
+    found = (
+        part.item if isinstance(part, rsc.Access) else part.function if isinstance(part, rsc.Call) else None
+        for _, part in tree(definition.value or definition)
+    )
+    return list(dict.fromkeys(part for part in found if isinstance(part, rsc.NamedExpression)))
+
+
+def _too_large(base: rsc.Base) -> Iterator[Finding]:
+    for _ in conditions(instances(base)):
+        pass
+    for expression in instances(base).expanded.too_large:
+        yield Finding(
+            expression,
+            f"this has more than {LARGEST} parts when names are written out",
+            "let a variable remember what the condition says",
+        )
+
+
+@rule("argument")
+def arguments(base: rsc.Base) -> Iterator[Finding]:
+    """Whatever has parameters gets an argument for each, of its type, and a positive constant to divide by."""
+    for _, element in tree(base):
+        match element:
+            case ex.FunctionCall():
+                yield from _built_in(element)
+            case rsc.Call() if element.function is not None:
+                parameters = element.function.parameters
+                if len(element.arguments) != len(parameters):
+                    names = [parameter.name for parameter in parameters]
+                    yield _wrong_number(element, element.function.name, len(element.arguments), names)
+            case rsc.InstantiatedComponent() | rsc.ImportedComponent() if element.definition is not None:
+                yield from _given(element, element.definition, element.arguments)
+            case rsc.ComplexDataTypeReference() if isinstance(element.type, rsc.EnumDataType | rsc.ObjectDataType):
+                yield from _of_type(element)
+    yield from _defaults(base)
+
+
+def _of_type(reference: rsc.ComplexDataTypeReference) -> Iterator[Finding]:
+    named = reference.type
+    keeps = isinstance(reference.eContainer(), rsc.Variable | rsc.NamedExpression | rsc.FormalParameter)
+    if isinstance(named, rsc.EnumDataType) and named.parameters and not keeps:
+        yield from _given(reference, named, reference.arguments)
+    elif reference.arguments:
+        what = f"a {type(reference.eContainer()).__name__.lower()}" if keeps else f"`{named.name}`"
+        yield Finding(
+            reference.arguments[0],
+            f"{what} takes no arguments, expected the type alone",
+            f"write `{named.name}`",
+        )
+
+
+def _given(
+    user: ex.Located, definition: rsc.Component | rsc.EnumDataType, given: Sequence[rsc.Argument]
+) -> Iterator[Finding]:
+    """What is wrong with the arguments of a template or an enum; a parameter with a default needs none."""
+    parameters = list(definition.parameters)
+    found: dict[rsc.FormalParameter, rsc.Argument] = {}
+    named = False
+    for position, argument in enumerate(given):
+        named = named or argument.parameter is not None
+        parameter = argument.parameter or (parameters[position] if position < len(parameters) and not named else None)
+        if parameter is None:
+            if not named:
+                names = [parameter.name for parameter in parameters]
+                yield _wrong_number(argument, definition.name, len(given), names)
+                return
+            yield Finding(argument, "an argument without name stands behind one with a name", "name its parameter")
+        elif parameter in found:
+            message = f"parameter `{parameter.name}` has an argument already{on_line(found[parameter])}"
+            yield Finding(argument, message, "leave one of the two out")
+        else:
+            found[parameter] = argument
+            yield from _typed(argument.value, parameter)
+    missing = [parameter for parameter in parameters if parameter not in found and parameter.default is None]
+    if missing:
+        lacking = ", ".join(f"`{parameter.name}`" for parameter in missing)
+        hint = f"write `{definition.name}({', '.join(f'{parameter.name}: ...' for parameter in missing)})`"
+        yield Finding(user, f"`{definition.name}` gets no argument for {lacking}", hint)
+
+
+def _typed(value: ex.Expression | None, parameter: rsc.FormalParameter) -> Iterator[Finding]:
+    what = f"the argument for `{parameter.name}`"
+    check = ExpressionCheck(CONSTANT)
+    check.expect(value, declared_type(parameter.type), what)
+    yield from check.findings
+    kind, number = parameter.type, constant_value(value)
+    if isinstance(kind, rsc.IntegerDataType) and type(number) is int and value is not None:
+        low, high = kind.minimum, kind.maximum
+        if low is not None and high is not None and not low <= number <= high:
+            yield Finding(value, f"{what} is {number}, expected {low} to {high}", "write a number that is in the range")
+
+
+def _defaults(base: rsc.Base) -> Iterator[Finding]:
+    for owner in base.definitions:
+        if isinstance(owner, rsc.Component | rsc.EnumDataType):
+            for parameter in owner.parameters:
+                yield from _typed(parameter.default, parameter)
+    for function in statements(rsc.Function, base):
+        for parameter in function.parameters:
+            if parameter.default is not None:
+                message = f"parameter `{parameter.name}` of a function has a default value"
+                yield Finding(parameter.default, message, "leave it out: each call gives all arguments")
+
+
+def _wrong_number(where: ex.Located, name: str, count: int, names: Sequence[str]) -> Finding:
+    wanted = "argument" if len(names) == 1 else "arguments"
+    return Finding(where, f"`{name}` has {len(names)} {wanted}, found {count}", f"write `{name}({', '.join(names)})`")
+
+
+@rule("unused-template", Severity.WARNING)
+def unused_template(base: rsc.Base) -> Iterator[Finding]:
+    """A robot makes something of each of its templates."""
+    if isinstance(base, rsc.Robot):
+        made = {instance.definition for instance in instances(base)}
+        for component in of_kind(rsc.Component, base.definitions):
+            if component.parameters and component not in made:
+                yield Finding(
+                    component,
+                    f"nothing is made of the template `{component.name}`, so that it is no part of the robot",
+                    f"write `component ... is {component.name}(...)`, or leave the template out",
+                    relies_on=base,
+                )
+
+
+def _built_in(element: ex.FunctionCall) -> Iterator[Finding]:
+    row, given = FUNCTIONS[element.function], list(element.arguments)
+    if len(given) != row.parameters:
+        yield _wrong_number(element, row.symbol, len(given), "abcdef"[: row.parameters])
+        return
+    for position in sorted(row.divisors):
+        if _is_no_divisor(given[position]):
+            yield Finding(
+                given[position],
+                f"argument {position + 1} of `{row.symbol}` must be a positive constant",
+                "write an integer from 1 on, such as `10`",
+            )
+
+
+def _is_no_divisor(expression: ex.Expression) -> bool:
+    """Whether an integer has no constant value, or one below 1; what is no integer the rule `type` reports."""
+    value = constant_value(expression)
+    return (
+        type_of(expression) == INTEGER and not _reads_parameter(expression) and not (type(value) is int and value > 0)
+    )
+
+
+def _reads_parameter(expression: ex.Expression) -> bool:
+    return any(isinstance(access.item, rsc.FormalParameter) for access in accesses(expression))
