@@ -178,16 +178,15 @@ class State(AutomatonDefinition, AccessibleItem):
 
 class Transition(AutomatonDefinition):
     """A change of state, of variables, or of both."""
-    guard: expression.Expression | None
     assignments: MutableSequence[Assignment]
     target: State | None
-    def __init__(self, *, guard: expression.Expression | None = ..., assignments: Iterable[Assignment] = ..., target: State | None = ..., source: Place | None = ...) -> None: ...
+    def __init__(self, *, assignments: Iterable[Assignment] = ..., target: State | None = ..., source: Place | None = ...) -> None: ...
 
 class ResultTransition(Transition):
     """Happens with communication."""
     resultType: ResultType
     communicationType: CommunicationReference
-    def __init__(self, *, resultType: ResultType | None = ..., communicationType: CommunicationReference | None = ..., guard: expression.Expression | None = ..., assignments: Iterable[Assignment] = ..., target: State | None = ..., source: Place | None = ...) -> None: ...
+    def __init__(self, *, resultType: ResultType | None = ..., communicationType: CommunicationReference | None = ..., assignments: Iterable[Assignment] = ..., target: State | None = ..., source: Place | None = ...) -> None: ...
 
 class ResultType:
     """The events of a communication that a component can react to (thesis table 5.1)."""
@@ -200,6 +199,7 @@ class ResultType:
 
 class TauTransition(Transition):
     """Happens silently, as soon as its guard holds."""
+    guard: expression.Expression | None
     def __init__(self, *, guard: expression.Expression | None = ..., assignments: Iterable[Assignment] = ..., target: State | None = ..., source: Place | None = ...) -> None: ...
 
 class Assignment(expression.Located):

@@ -42,7 +42,7 @@ CLAUSES: dict[str, tuple[set[str], set[str]]] = {
     "Conditional": ({"then", "else"}, set()),
     "Constant": (set(), {"="}),
     "Condition": (set(), {"="}),
-    "Function": (set(), {"=", ","}),
+    "Function": (set(), {"="}),
 }
 #: Rules whose clauses each find room for themselves: what they begin with may be a list that breaks.
 _LOOSE = {"NeedsRequirement", "ProvideStatement"}
