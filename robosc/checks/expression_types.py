@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from robosc.checks.libraries import instances
 from robosc.checks.rule import Finding
@@ -32,6 +32,9 @@ from robosc.semantics.typing import (
 )
 from robosc.semantics.walks import fold, operands
 
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
 
 class Restriction(Enum):
     """Which names an expression may read."""
@@ -52,8 +55,16 @@ class Place:
     what: str = "an initial value"
 
 
+#: What functions want that is no basic type.
+_FITTING: Mapping[Rule, tuple[Callable[[Type], bool], str]] = {
+    Rule.SIZE: (lambda found: isinstance(found, ArrayType) or found == STRING, "an array or a string"),
+    Rule.ELEMENTS: (
+        lambda found: isinstance(found, ArrayType) and (is_number(found.element) or found.element == UNKNOWN),
+        "an array of integers or doubles",
+    ),
+}
 #: What constant expressions read.
-_CONSTANT_ITEMS = (rsc.EnumValue, rsc.Constant, rsc.FormalParameter)
+_CONSTANT_ITEMS = (rsc.EnumValue, rsc.Constant, rsc.FormalParameter, rsc.ArrayElement)
 CONSTANT = Place(None, restriction=Restriction.CONSTANT)
 ENUM_RULE = Restriction.ENUM_RULE
 
@@ -79,6 +90,14 @@ class ExpressionCheck:
         """Demands that provided data has this type; of an object value each property is checked by its own type."""
         if isinstance(wanted, EnumType) or wanted == NONE:
             wanted = UNKNOWN  # That no such data goes out is the matter of `data-type` and of `data-provisioning`.
+        if isinstance(value, rsc.ArrayLiteral):
+            if wanted != UNKNOWN and not isinstance(wanted, ArrayType):
+                self.report(value, f"{what} must be {wanted}, found an array", repair(value, UNKNOWN, wanted))
+            for element in value.elements:
+                self.expect(
+                    element, wanted.element if isinstance(wanted, ArrayType) else UNKNOWN, f"an element of {what}"
+                )
+            return
         if not isinstance(value, rsc.ObjectValue):
             self.expect(value, wanted, what)
             return
@@ -98,7 +117,20 @@ class ExpressionCheck:
             case None:
                 return UNKNOWN
             case rsc.Access():
-                return self._access(expression)
+                return self._access(expression, types)
+            case rsc.ArrayQuantifier():
+                array = expression.array
+                if types[0] != UNKNOWN and not isinstance(types[0], ArrayType):
+                    message = f"what stands behind `in` must be an array, found {types[0]}"
+                    self.report(array, message, "write the name of an array there")
+                self._operand(expression.body, types[1], BOOLEAN, f"the condition of `{expression.quantifier}`")
+            case rsc.ArrayLiteral():
+                self.report(
+                    expression,
+                    "an array stands in an expression, expected a value of a basic type or an enum",
+                    "provide arrays as a whole or as the value of a property",
+                )
+                return UNKNOWN
             case rsc.ObjectValue():
                 self.report(
                     expression,
@@ -121,6 +153,10 @@ class ExpressionCheck:
         condition, then, otherwise = types
         self._operand(choice.condition, condition, BOOLEAN, "the condition behind `if`")
         self._operand(choice.otherwise, otherwise, then, "what stands behind `else`, as behind `then`,")
+        if isinstance(then, ArrayType | ObjectType):
+            message = f"what stands behind `then` must be one value, found {then}"
+            self.report(choice.then, message, repair(choice.then, then, UNKNOWN))
+            return UNKNOWN
         return then if then != UNKNOWN else otherwise
 
     def _call(self, call: rsc.Call, types: list[Type]) -> Type:
@@ -143,15 +179,16 @@ class ExpressionCheck:
                 hint = "declare a `constant` for the whole text"
                 self.report(operator, "strings are joined where this is not constant, expected a constant", hint)
         else:
-            wanted = {Rule.LOGICAL: BOOLEAN, Rule.INTEGER: INTEGER}.get(row.rule)
+            wanted = {Rule.LOGICAL: BOOLEAN, Rule.INTEGER: INTEGER, Rule.ROUNDING: DOUBLE}.get(row.rule)
+            fits, names_wanted = _FITTING.get(row.rule, (is_number, "integer or double"))
             what = "argument" if row.parameters else "operand"
             for operand, found in zip(operands(operator), types, strict=True):
-                fits = is_number(found) if wanted is None else found == wanted
-                if operand is not None and not fits and found != UNKNOWN:
+                if operand is not None and found != UNKNOWN and not (found == wanted if wanted else fits(found)):
+                    is_array = row.rule in _FITTING
                     self.report(
                         operand,
-                        f"an {what} of `{row.symbol}` must be {wanted or 'integer or double'}, found {found}",
-                        repair(operand, found, wanted or DOUBLE),
+                        f"an {what} of `{row.symbol}` must be {wanted or names_wanted}, found {found}",
+                        "write the name of an array there" if is_array else repair(operand, found, wanted or DOUBLE),
                     )
         return operator_type(row, types)
 
@@ -174,19 +211,19 @@ class ExpressionCheck:
             place, hint = equality_repair(operator, left, right)
             self.report(place, f"both sides of `{symbol}` must have one type, found {finds}", hint)
 
-    def _access(self, access: rsc.Access) -> Type:
+    def _access(self, access: rsc.Access, indices: list[Type]) -> Type:
         refusal = self._refusal(access)
         if refusal:
             self.report(access, *refusal)
             return UNKNOWN
+        for index, found in zip(operands(access), indices, strict=True):
+            self._operand(index, found, INTEGER, "an index")
         types = access_types(access, self.place.value)
         for before, segment in zip(types, access.segments, strict=False):
             if isinstance(segment, rsc.IndexSegment) and not isinstance(before, ArrayType) and before != UNKNOWN:
-                self.report(
-                    segment,
-                    f"the index `[{segment.index}]` must follow an array, found {before}",
-                    f"leave `[{segment.index}]` out",
-                )
+                text = f"`[{segment.index}]`" if segment.first is None else "in brackets"
+                message = f"the index {text} must follow an array, found {before}"
+                self.report(segment, message, f"leave {text if segment.first is None else 'it'} out")
                 return UNKNOWN
         return types[-1]
 
@@ -224,7 +261,7 @@ class ExpressionCheck:
 
 def _inside(expression: ex.Expression | None) -> list[ex.Expression]:
     """The operands; an object value is a finding itself."""
-    return [] if isinstance(expression, rsc.ObjectValue) else operands(expression)
+    return [] if isinstance(expression, rsc.ObjectValue | rsc.ArrayLiteral) else operands(expression)
 
 
 def names(first: Type, second: Type) -> tuple[str, str]:

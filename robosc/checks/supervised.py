@@ -32,7 +32,7 @@ from robosc.semantics.typing import (
     type_of,
     value_type,
 )
-from robosc.semantics.walks import fold, operands
+from robosc.semantics.walks import fold, operands, parts
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -51,6 +51,8 @@ class Fault:
     hint: str
 
 
+#: `abs`, `min` and `max` are written out by cases, up to so many parts.
+_LARGEST_CHOICE = 1 << 12
 #: Finds the faults of one kind among what is needed of some instances.
 Search: TypeAlias = "Callable[[Instances, ConeOfInfluence], Iterator[Fault]]"
 
@@ -135,11 +137,52 @@ _PRODUCT = _Limit(
 
 def table_faults(instances: Instances, result: ConeOfInfluence) -> Iterator[Fault]:
     """Each comparison of doubles and each product that the supervisor computes from too many valuations."""
+    for expression, within, assigned in _computed(instances, result):
+        yield from _in_expression(instances, expression, within, assigned)
+
+
+def _computed(
+    instances: Instances, result: ConeOfInfluence
+) -> Iterator[tuple[ex.Expression | None, Instance | None, Assigned | None]]:
+    """What the supervisor computes, with the instance whose text it is and where it is assigned."""
     for condition, within in conditions(instances):
-        yield from _in_expression(instances, condition, within, None)
+        yield condition, within, None
     for assigned in result.computations:
         if assigned.variable is not None and can_be_needed(assigned.variable.variable):
-            yield from _in_expression(instances, assigned.value, assigned.instance, assigned)
+            yield assigned.value, assigned.instance, assigned
+
+
+def function_faults(instances: Instances, result: ConeOfInfluence) -> Iterator[Fault]:
+    """Each function that the supervisor would have to compute of doubles, or in too many cases.
+
+    What reads a double, a string or an array has a finding of its own.
+    """
+    for expression, within, assigned in _computed(instances, result):
+        value = value_type(assigned.assignment) if assigned else None
+        types, cases = Types(value), dict[ex.Expression | None, int]()
+        fold(_cases, expression, memo=cases)
+        for part in parts(expression):
+            read = next(accesses(part), None) if isinstance(part, ex.FunctionCall) else None
+            if read is None or not isinstance(part, ex.FunctionCall) or part.function == "mod":
+                continue
+            reason = Reason(read, within, assigned.variable if assigned else None)
+            kinds = {types(access) for access in accesses(part)}
+            if not kinds <= {BOOLEAN, INTEGER} and not any(isinstance(kind, EnumType) for kind in kinds):
+                continue
+            if DOUBLE in {types(part), *map(types, part.arguments)}:
+                message = f"`{part.function}` of doubles is nothing that the supervisor computes, expected integers"
+                yield Fault(part, reason, message, "compute it of `value` in an enum's rule, and compare the enum")
+            elif cases[part] > _LARGEST_CHOICE >= max(cases[argument] for argument in part.arguments):
+                message = f"this has more than {_LARGEST_CHOICE} cases when `abs`, `min` and `max` are written out"
+                yield Fault(part, reason, message, "let a variable remember a part of it")
+
+
+def _cases(expression: ex.Expression | None, inside: list[int]) -> int:
+    """How large an expression is when functions are written out by cases."""
+    size = 1 + sum(inside)
+    return (
+        3 * size if isinstance(expression, ex.FunctionCall) and expression.function in {"abs", "min", "max"} else size
+    )
 
 
 def _in_expression(

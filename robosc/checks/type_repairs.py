@@ -56,7 +56,7 @@ def repair(expression: ex.Expression, found: Type, wanted: Type) -> str:
             first = next(iter(wanted.definition.properties), None)
             return f"write an object value, such as `{{ {first.name}: … }}`" if first else "write `{}`"
         case ArrayType():
-            return "leave it out: there is no way to write an array"
+            return "write an array, such as `[1.0, 0.0]`"
         case BasicType.NONE:
             return "leave the provide statement out: there is no data to send along"
     return _conversion(expression, found, wanted)
@@ -140,8 +140,10 @@ def _conversion(expression: ex.Expression, found: Type, wanted: Type) -> str:
     if (found, wanted) == (INTEGER, DOUBLE):
         return f"write `{_text(expression)} * 1.0`"
     if (found, wanted) == (DOUBLE, INTEGER):
-        why = "`/` always gives a double" if isinstance(expression, ex.Division) else "a double is never rounded"
-        return f"write a whole number or declare it double: {why}"
+        if isinstance(expression, _LITERAL):
+            return "write a whole number or declare it double: a double is never rounded"
+        why = "`/` always gives a double" if isinstance(expression, ex.Division) else "no double is rounded by itself"
+        return f"write `round({_text(expression).strip('()')})` or declare it double: {why}"
     if isinstance(found, EnumType):
         return "compare an enum's values by `=` only"
     return f"write {_LITERALS[wanted]}" if wanted in _LITERALS else 'write a string such as `"…"`'

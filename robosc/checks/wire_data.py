@@ -103,7 +103,7 @@ class UsedData:
     def _read(self, source: object, expression: ex.Expression | None) -> None:
         touched = self._touched.setdefault(source, [])
         for access in accesses(expression):
-            if access.value:
+            if access.value or isinstance(access.item, rsc.ArrayElement):
                 touched += [segment for segment in access.segments if isinstance(segment, rsc.PropertySegment)]
 
 

@@ -141,7 +141,7 @@ class Builder:
                 return node.value.lstrip("^")
             case "BuiltIn":
                 return node.value
-            case "Integer" | "SignedInteger":
+            case "Integer" | "SignedInteger" | "LoneInteger":
                 return self._integer(node, literal=False)
             case "Double":
                 return self._double(node)

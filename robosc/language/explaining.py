@@ -66,6 +66,7 @@ _RULES = {
     "String": "a string",
     "LoneString": "a string",
     "Integer": "a whole number",
+    "LoneInteger": "a whole number",
     "SignedInteger": "a whole number",
     "Double": "a number",
 }

@@ -70,6 +70,7 @@ class _Linker:
         self._is_library = isinstance(file.base, rsc.Library)
         self._present = {type(element) for element in (*file.references, *file.declared_names)}
         self._nearests: dict[type, dict[ex.Located, Any]] = {}
+        self._quantifiers: dict[ex.Located, rsc.ArrayQuantifier | None] = {}
 
     def imports(self) -> None:
         """The components that are imported: all other names may look into them."""
@@ -303,8 +304,9 @@ class _Linker:
         parameter = self._parameters(access).get(first.text)
         templates = self._templates(access)
         components = self._components(access)
-        if parameter is not None:
-            access.item = parameter
+        bound = self._elements(access).get(first.text)
+        if bound is not None or parameter is not None:
+            access.item = bound or parameter
         elif qualifies and first.text in templates:
             self._qualified(access, templates[first.text], names["item"])
             return
@@ -350,6 +352,33 @@ class _Linker:
         if isinstance(around, rsc.Component | rsc.EnumDataType):
             found |= by_name(around.parameters)
         return found | by_name(function.parameters) if function is not None else found
+
+    def _elements(self, element: ex.Located) -> Names:
+        """The elements of arrays that an expression can read, by the quantifiers in whose condition it stands."""
+        found: dict[str, rsc.ArrayElement] = {}
+        around: ex.Located | None = element if rsc.ArrayElement in self._present else None
+        while around is not None:
+            around = self._quantifier(around)
+            if around is not None:
+                found.setdefault(around.element.name, around.element)
+        return found
+
+    def _quantifier(self, element: ex.Located) -> rsc.ArrayQuantifier | None:
+        """The innermost condition on the elements of an array that an element stands in."""
+        path: list[ex.Located] = []
+        found: rsc.ArrayQuantifier | None = None
+        around: ex.Located | None = element
+        while around is not None and found is None:
+            if around in self._quantifiers:
+                found = self._quantifiers[around]
+                break
+            path.append(around)
+            outer = around.eContainer()
+            if isinstance(outer, rsc.ArrayQuantifier) and outer.body is around:
+                found = outer
+            around = None if isinstance(outer, rsc.Definition) else outer
+        self._quantifiers.update(dict.fromkeys(path, found))
+        return found
 
     def _templates(self, element: ex.Located) -> Names:
         """The templates that stand for their instances where an expression stands, by the quantifiers around it."""

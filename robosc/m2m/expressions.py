@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from robosc.diagnostics import Diagnostic, ModelError, Severity
 from robosc.m2m.tabulation import TooLargeError, tabulate
@@ -10,11 +10,12 @@ from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc, rosgraph, sct
 from robosc.metamodel.places import place
 from robosc.semantics.communication import event_of
-from robosc.semantics.cone_of_influence import Data, property_path
-from robosc.semantics.evaluation import evaluate
-from robosc.semantics.operators import COMPARISONS, Rule, operator_of
+from robosc.semantics.cone_of_influence import Data, accesses, property_path
+from robosc.semantics.evaluation import Value, evaluate, literal
+from robosc.semantics.naming import Names
+from robosc.semantics.operators import COMPARISONS, FUNCTIONS, Rule, operator_of
 from robosc.semantics.typing import DOUBLE, Types
-from robosc.semantics.walks import fold, with_operands
+from robosc.semantics.walks import copied, fold, with_operands
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -23,8 +24,22 @@ if TYPE_CHECKING:
     from robosc.m2m.trace import Trace
     from robosc.semantics.instances import Instance, InstanceVariable
 
-    #: What `value` with its segments means where an expression stands; None: there is no `value`.
-    Read = Callable[[robosc.Access], ex.Expression] | None
+    #: What an access with segments means, whose indices are translated: the expression, and the type of what it reads.
+    Wire = Callable[
+        [robosc.DataType, Instance | None, Sequence[str], robosc.Access, Sequence[ex.Expression]],
+        tuple[ex.Expression, robosc.DataType],
+    ]
+
+
+class Carried(NamedTuple):
+    """What `value` stands for where an expression stands: data of a type, below some fields of what comes in.
+
+    `within` is the instance that declares it.
+    """
+
+    type: robosc.DataType
+    within: Instance | None = None
+    fields: Sequence[str] = ()
 
 
 class _Expressions:
@@ -86,6 +101,9 @@ class SctExpressions(_Expressions):
                 return with_operands(original, operands)
             if operator_of(original) is None:
                 return type(original)(value=original.value)  # type: ignore[attr-defined,call-arg]
+            if isinstance(original, ex.FunctionCall) and original.function != "mod":
+                constant = next(accesses(original), None) is None
+                return literal(evaluate(original, _no_name)) if constant else _by_cases(original.function, operands)
             made = with_operands(original, operands)
             return _table(made, original) if isinstance(made, COMPARISONS) and self._some_double(operands) else made
 
@@ -107,29 +125,75 @@ class SctExpressions(_Expressions):
 class NodeExpressions(_Expressions):
     """Translates expressions and makes every conversion from integer to double explicit.
 
-    `variables` are the node's own, those that the supervisor does not need.
+    `variables` are the node's own, those that the supervisor does not need; `wire` says what reads data of ROS.
     """
 
-    def __call__(self, expression: ex.Expression, within: Instance | None, data: Read = None) -> ex.Expression:
-        """The expression on the node's side; `within` is the instance whose text it is."""
+    def __init__(
+        self,
+        trace: Trace,
+        declarations: Declarations,
+        variables: Mapping[InstanceVariable, rosgraph.NodeVariable],
+        wire: Wire,
+    ) -> None:
+        super().__init__(trace, declarations, variables)
+        self._wire = wire
+
+    def __call__(
+        self, expression: ex.Expression, within: Instance | None, data: Carried | None = None
+    ) -> ex.Expression:
+        """The expression on the node's side; `within` is the instance whose text it is, `data` what `value` means."""
+        names = Names()
+        quantifiers: dict[robosc.ArrayElement, rosgraph.ArrayQuantifier] = {}
+        reached: dict[ex.Expression, tuple[robosc.DataType, Instance | None]] = {}
+
+        def access(original: robosc.Access, indices: list[ex.Expression]) -> ex.Expression:
+            element = original.item
+            if isinstance(element, robosc.ArrayElement):
+                array, declaring = reached[element.eContainer().array]
+                assert isinstance(array, robosc.Array)
+                made, kind = self._wire(array.type, declaring, (), original, indices)
+                start = made.argument if isinstance(made, rosgraph.ConversionCall) else made
+                assert isinstance(start, rosgraph.WireAccess)
+                if element not in quantifiers:
+                    quantifiers[element] = rosgraph.ArrayQuantifier(name=names.fresh(element.name))
+                start.quantifier = quantifiers[element]
+            elif original.value:
+                assert data is not None
+                declaring = data.within
+                made, kind = self._wire(data.type, declaring, data.fields, original, indices)
+            else:
+                return self._reference(original, within)
+            reached[original] = kind, declaring
+            return made
 
         def translated(original: ex.Expression, operands: list[ex.Expression]) -> ex.Expression:
             if isinstance(original, robosc.Access):
-                if not original.value:
-                    return self._reference(original, within)
-                assert data is not None
-                return data(original)
-            if isinstance(original, ex.Conditional):
-                return with_operands(original, operands)
-            row = operator_of(original)
-            if row is None:
-                return type(original)(value=original.value)  # type: ignore[attr-defined,call-arg]
-            mixed = {Rule.ORDERING, Rule.EQUALITY, Rule.ARITHMETIC}
-            if row.rule is Rule.DOUBLE or (row.rule in mixed and self._some_double(operands)):
-                operands = [self.as_double(operand) for operand in operands]
-            return with_operands(original, operands)
+                return access(original, operands)
+            if isinstance(original, robosc.ArrayQuantifier):
+                made = quantifiers.get(original.element) or rosgraph.ArrayQuantifier(
+                    name=names.fresh(original.element.name)
+                )
+                made.quantifier = getattr(rosgraph.Quantifier, str(original.quantifier))
+                array, made.body = operands
+                assert isinstance(array, rosgraph.WireAccess)
+                made.array = array
+                return made
+            return self._operation(original, operands)
 
         return fold(translated, self._trace.instances.expanded(expression, within))
+
+    def _operation(self, original: ex.Expression, operands: list[ex.Expression]) -> ex.Expression:
+        if isinstance(original, ex.Conditional):
+            return with_operands(original, operands)
+        row = operator_of(original)
+        if row is None:
+            return type(original)(value=original.value)  # type: ignore[attr-defined,call-arg]
+        mixed = {Rule.ORDERING, Rule.EQUALITY, Rule.ARITHMETIC}
+        if row.rule is Rule.DOUBLE or (row.rule in mixed and self._some_double(operands)):
+            operands = [self.as_double(operand) for operand in operands]
+        if row is FUNCTIONS["double"]:
+            return operands[0]
+        return with_operands(original, operands)
 
     def as_double(self, expression: ex.Expression) -> ex.Expression:
         """The expression itself where it is a double, else its conversion."""
@@ -138,6 +202,21 @@ class NodeExpressions(_Expressions):
         if isinstance(expression, ex.IntegerLiteral):
             return ex.DoubleLiteral(value=float(expression.value))
         return ex.DoubleConversion(operand=expression)
+
+
+def _no_name(reference: ex.Expression) -> Value:
+    raise TypeError(f"{type(reference).__name__} in a constant")
+
+
+def _by_cases(function: str, operands: Sequence[ex.Expression]) -> ex.Expression:
+    """`abs`, `min` or `max` of integers, as a choice between its operands."""
+    first, second = operands[0], operands[-1]
+    if function == "abs":
+        below: ex.Expression = ex.LessThan(left=copied(first), right=ex.IntegerLiteral(value=0))
+        return ex.Conditional(condition=below, then=ex.UnaryMinus(operand=copied(first)), otherwise=first)
+    compared = ex.LessThan if function == "min" else ex.GreaterThan
+    below = compared(left=copied(second), right=copied(first))
+    return ex.Conditional(condition=below, then=second, otherwise=first)
 
 
 def _table(comparison: ex.Expression, original: ex.Expression) -> ex.Expression:

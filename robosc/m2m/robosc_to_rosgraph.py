@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from functools import partial
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING
 
 from robosc.m2m.declarations import Declarations, default_value
-from robosc.m2m.expressions import NodeExpressions
+from robosc.m2m.expressions import Carried, NodeExpressions
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc, rosgraph, sct
 from robosc.ros_types import RosTypes
@@ -16,14 +15,11 @@ from robosc.semantics.naming import Names
 from robosc.semantics.printing import RoboscPrinter
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from robosc.m2m.trace import Trace
     from robosc.semantics.communication import PortEvent
     from robosc.semantics.instances import Instance, InstanceVariable, PortInstance
-
-    #: What an access to `value` means where it stands.
-    Value: TypeAlias = Callable[[robosc.Access], ex.Expression]
 
 #: The wire types of basic data without `links`, all of std_msgs.
 _BASIC = {
@@ -69,7 +65,7 @@ class _Transformation:
         self.conversion_names = Names()
         self.subscriptions: dict[tuple[str, rosgraph.Interface], rosgraph.Subscription] = {}
         self.publishers: dict[tuple[str, rosgraph.Interface], rosgraph.Publisher] = {}
-        self.expressions = NodeExpressions(trace, self.declarations, self.variables)
+        self.expressions = NodeExpressions(trace, self.declarations, self.variables, self.wire)
 
     def run(self) -> rosgraph.RosGraph:
         for instance in self.instances:
@@ -139,7 +135,7 @@ class _Transformation:
         if linked is not None:
             package, name = linked.package, linked.type
         elif isinstance(communication, robosc.Message):
-            package, name = "std_msgs", _BASIC[type(_wire_type(communication.type))]
+            package, name = "std_msgs", _BASIC[type(_basis(communication.type))]
         else:
             package, name = "std_srvs", "Empty"
         key = (package, name, kind.name)
@@ -170,21 +166,30 @@ class _Transformation:
     def fields(
         self, data: ex.Expression, within: Instance | None, path: tuple[str, ...], declared: robosc.DataType
     ) -> list[rosgraph.FieldAssignment]:
+        if isinstance(data, robosc.ArrayLiteral):
+            assert isinstance(declared, robosc.Array)
+            values = [self.converted(element, within, declared.type) for element in data.elements]
+            array = rosgraph.ArrayLiteral(elements=values)
+            kind = self.wire_type(declared)
+            return [rosgraph.FieldAssignment(path=list(path), type=kind, value=array, source=data.source)]
         if isinstance(data, robosc.ObjectValue):
             return [
                 field
                 for given in data.properties
                 for field in self.fields(given.value, within, (*path, given.property.name), given.property.type)
             ]
-        value = self.expressions(data, within)
         return [
             rosgraph.FieldAssignment(
                 path=list(path),
                 type=self.declarations.type(declared),
-                value=self.expressions.as_double(value) if isinstance(declared, robosc.DoubleDataType) else value,
+                value=self.converted(data, within, declared),
                 source=data.source,
             )
         ]
+
+    def converted(self, value: ex.Expression, within: Instance | None, declared: robosc.DataType) -> ex.Expression:
+        made = self.expressions(value, within)
+        return self.expressions.as_double(made) if isinstance(declared, robosc.DoubleDataType) else made
 
     # Data that comes in
 
@@ -198,7 +203,8 @@ class _Transformation:
         for data, declared in self.trace.inputs.items():
             if data.port == port and data.event == event:
                 path = robosc.Access(value=True, segments=[robosc.PropertySegment(property=part) for part in data.path])
-                reception.inputs.append(rosgraph.InputAssignment(input=declared, value=value(path)))
+                assigned = self.expressions(path, port.instance, value)
+                reception.inputs.append(rosgraph.InputAssignment(input=declared, value=assigned))
         return reception
 
     def field(self, port: PortInstance, event: PortEvent) -> str:
@@ -207,29 +213,39 @@ class _Transformation:
         assert event.section is not None
         return _FIELD if linked is None else self.known.field_of_basic(linked.package, linked.type, event.section)
 
-    def value_of(self, port: PortInstance, event: PortEvent) -> Value:
-        """What `value` with its segments means where a ROS message carries the data of an event."""
+    def value_of(self, port: PortInstance, event: PortEvent) -> Carried:
+        """What `value` means where a ROS message carries the data of an event."""
         carried = data_type(port.communication, event)
         assert carried is not None
-        is_object = isinstance(_wire_type(carried), robosc.ComplexDataTypeReference)
-        return partial(self.wire, carried, port.instance, () if is_object else (self.field(port, event),))
+        is_object = isinstance(_basis(carried), robosc.ComplexDataTypeReference)
+        return Carried(carried, port.instance, () if is_object else (self.field(port, event),))
 
     def wire(
-        self, whole: robosc.DataType, within: Instance | None, fields: Sequence[str], access: robosc.Access
-    ) -> ex.Expression:
-        """What an access to data of a type reads, below some fields; an enum is converted."""
-        steps, reached = _steps(access.segments, whole)
+        self,
+        whole: robosc.DataType,
+        within: Instance | None,
+        fields: Sequence[str],
+        access: robosc.Access,
+        indices: Sequence[ex.Expression],
+    ) -> tuple[ex.Expression, robosc.DataType]:
+        """What an access to data of a type reads, below some fields, and its type; an enum is converted."""
+        steps, reached = _steps(access.segments, whole, iter(indices))
         steps[:0] = [rosgraph.FieldStep(name=name) for name in fields]
         enum = reached.type if isinstance(reached, robosc.ComplexDataTypeReference) else None
         if isinstance(enum, robosc.EnumDataType):
-            argument = rosgraph.WireAccess(steps=steps, type=self.basic_type(enum.type))
+            argument = rosgraph.WireAccess(steps=steps, type=self.wire_type(enum.type))
             assert isinstance(reached, robosc.ComplexDataTypeReference)
             given = bound_arguments(enum.parameters, reached.arguments)
             arguments = {name: self.instances.expanded(value, within) for name, value in given.items()}
-            return rosgraph.ConversionCall(conversion=self.conversion(enum, arguments), argument=argument)
-        return rosgraph.WireAccess(steps=steps, type=self.basic_type(reached))
+            call = rosgraph.ConversionCall(conversion=self.conversion(enum, arguments), argument=argument)
+            return call, reached
+        return rosgraph.WireAccess(steps=steps, type=self.wire_type(reached)), reached
 
-    def basic_type(self, kind: robosc.DataType) -> ex.Type | None:
+    def wire_type(self, kind: robosc.DataType) -> ex.Type | None:
+        """The type of a basic value or an array; None of an object."""
+        if isinstance(kind, robosc.Array):
+            element = kind.type if isinstance(kind.type, robosc.BasicDataType) else None
+            return rosgraph.ArrayType(element=self.declarations.type(element) if element else None)
         return self.declarations.type(kind) if isinstance(kind, robosc.BasicDataType) else None
 
     def conversion(
@@ -245,7 +261,7 @@ class _Transformation:
                 source=enum.source,
             )
             self.conversions[key] = conversion
-            value = partial(self.wire, enum.type, None, ())
+            value = Carried(enum.type)
             for rule in enum.rules:
                 if isinstance(rule, robosc.EnumTransformationRule):
                     condition = self.instances.expanded.argued(rule.condition, arguments)
@@ -282,7 +298,7 @@ class _Transformation:
                 )
             self.graph.reactions.append(reaction)
 
-    def data(self, transition: robosc.Transition, instance: Instance) -> Value | None:
+    def data(self, transition: robosc.Transition, instance: Instance) -> Carried | None:
         """What `value` means in a transition; None where its event brings no data."""
         if not isinstance(transition, robosc.ResultTransition):
             return None
@@ -292,15 +308,15 @@ class _Transformation:
         return self.value_of(port, event) if has_data else None  # type: ignore[arg-type]
 
 
-def _wire_type(kind: robosc.DataType) -> robosc.DataType:
+def _basis(kind: robosc.DataType) -> robosc.DataType:
     """An enum has the wire type of its base."""
     if isinstance(kind, robosc.ComplexDataTypeReference) and isinstance(kind.type, robosc.EnumDataType):
-        return _wire_type(kind.type.type)
+        return _basis(kind.type.type)
     return kind
 
 
 def _steps(
-    segments: Sequence[robosc.AccessSegment], whole: robosc.DataType
+    segments: Sequence[robosc.AccessSegment], whole: robosc.DataType, indices: Iterator[ex.Expression]
 ) -> tuple[list[rosgraph.WireStep], robosc.DataType]:
     """The steps into ROS data that segments mean, and the type of what they reach."""
     steps: list[rosgraph.WireStep] = []
@@ -312,6 +328,10 @@ def _steps(
         else:
             assert isinstance(segment, robosc.IndexSegment)
             assert isinstance(reached, robosc.Array)
-            steps.append(rosgraph.IndexStep(index=segment.index))
+            if segment.last is not None:
+                steps.append(rosgraph.SliceStep(first=next(indices), last=next(indices)))
+                continue
+            position = None if segment.first is None else next(indices)
+            steps.append(rosgraph.IndexStep(index=segment.index, position=position))
             reached = reached.type
     return steps, reached

@@ -104,7 +104,7 @@ def around(element: Any, kind: type) -> Any:
     return found
 
 
-_WANTED = {Rule.LOGICAL: BOOLEAN, Rule.DOUBLE: DOUBLE, Rule.INTEGER: INTEGER}
+_WANTED = {Rule.LOGICAL: BOOLEAN, Rule.DOUBLE: DOUBLE, Rule.INTEGER: INTEGER, Rule.ROUNDING: DOUBLE}
 
 
 def fitting_operands(expression: ex.Expression, model: Model) -> Iterator[Fault]:
@@ -119,7 +119,7 @@ def fitting_operands(expression: ex.Expression, model: Model) -> Iterator[Fault]
         wanted = INTEGER if isinstance(expression, ex.DoubleConversion) else _WANTED[row.rule]
         for operand in given:
             yield from model.unlike(operand, wanted)
-    elif row is not None:
+    elif row is not None and row.rule not in {Rule.SIZE, Rule.ELEMENTS}:
         faults = [*_differ(expression, given, model)]
         yield from faults
         found = model.types(given[0])

@@ -320,6 +320,23 @@ class InstanceQuantifier(expression.Expression):
     body: expression.Expression
     def __init__(self, *, quantifier: Quantifier | None = ..., template: Component | None = ..., body: expression.Expression | None = ..., source: Place | None = ...) -> None: ...
 
+class ArrayQuantifier(expression.Expression):
+    """A condition on the elements of an array, from left to right and no further than needed, or how many of them it holds of."""
+    quantifier: Quantifier
+    element: ArrayElement
+    array: Access
+    body: expression.Expression
+    def __init__(self, *, quantifier: Quantifier | None = ..., element: ArrayElement | None = ..., array: Access | None = ..., body: expression.Expression | None = ..., source: Place | None = ...) -> None: ...
+
+class ArrayElement(AccessibleItem):
+    """The name of an element of an array in the condition on it."""
+    def __init__(self, *, name: str | None = ..., source: Place | None = ...) -> None: ...
+
+class ArrayLiteral(expression.Expression):
+    """An array in provided data."""
+    elements: MutableSequence[expression.Expression]
+    def __init__(self, *, elements: Iterable[expression.Expression] = ..., source: Place | None = ...) -> None: ...
+
 class Quantifier:
     """How a condition on several things is put together."""
     name: str
@@ -337,9 +354,11 @@ class PropertySegment(AccessSegment):
     def __init__(self, *, property: ObjectProperty | None = ..., source: Place | None = ...) -> None: ...
 
 class IndexSegment(AccessSegment):
-    """An element of an array."""
-    index: int
-    def __init__(self, *, index: int | None = ..., source: Place | None = ...) -> None: ...
+    """An element of an array, or a slice of it."""
+    index: int | None
+    first: expression.Expression | None
+    last: expression.Expression | None
+    def __init__(self, *, index: int | None = ..., first: expression.Expression | None = ..., last: expression.Expression | None = ..., source: Place | None = ...) -> None: ...
 
 class Requirement(Definition, ComponentDefinition):
     """Restricts when communication may start (thesis figure 4.13)."""

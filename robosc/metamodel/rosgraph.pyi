@@ -143,7 +143,8 @@ class WireAccess(expression.Expression):
     """Reads the data that came in with the event at hand, or, in a conversion's rule, the conversion's argument."""
     steps: MutableSequence[WireStep]
     type: expression.Type | None
-    def __init__(self, *, steps: Iterable[WireStep] = ..., type: expression.Type | None = ..., source: Place | None = ...) -> None: ...
+    quantifier: ArrayQuantifier | None
+    def __init__(self, *, steps: Iterable[WireStep] = ..., type: expression.Type | None = ..., quantifier: ArrayQuantifier | None = ..., source: Place | None = ...) -> None: ...
 
 class WireStep(expression.Located):
     """One step into ROS data."""
@@ -156,11 +157,42 @@ class FieldStep(WireStep):
 
 class IndexStep(WireStep):
     """An element of an array."""
-    index: int
-    def __init__(self, *, index: int | None = ..., source: Place | None = ...) -> None: ...
+    index: int | None
+    position: expression.Expression | None
+    def __init__(self, *, index: int | None = ..., position: expression.Expression | None = ..., source: Place | None = ...) -> None: ...
+
+class SliceStep(WireStep):
+    """The elements of an array from one to another, both included; none where the last one is before the first."""
+    first: expression.Expression
+    last: expression.Expression
+    def __init__(self, *, first: expression.Expression | None = ..., last: expression.Expression | None = ..., source: Place | None = ...) -> None: ...
 
 class ConversionCall(expression.Expression):
     """The literal that a conversion gives."""
     conversion: Conversion
     argument: WireAccess
     def __init__(self, *, conversion: Conversion | None = ..., argument: WireAccess | None = ..., source: Place | None = ...) -> None: ...
+
+class ArrayQuantifier(expression.NamedElement, expression.Expression):
+    """A condition on the elements of an array, from left to right and no further than needed, or how many of them it holds of. Its name is that of an element."""
+    quantifier: Quantifier
+    array: WireAccess
+    body: expression.Expression
+    def __init__(self, *, quantifier: Quantifier | None = ..., array: WireAccess | None = ..., body: expression.Expression | None = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
+
+class Quantifier:
+    """How a condition on several things is put together."""
+    name: str
+    all: ClassVar[Quantifier]
+    any: ClassVar[Quantifier]
+    count: ClassVar[Quantifier]
+
+class ArrayLiteral(expression.Expression):
+    """An array of these elements."""
+    elements: MutableSequence[expression.Expression]
+    def __init__(self, *, elements: Iterable[expression.Expression] = ..., source: Place | None = ...) -> None: ...
+
+class ArrayType(expression.Type):
+    """An array."""
+    element: expression.Type | None
+    def __init__(self, *, element: expression.Type | None = ..., source: Place | None = ...) -> None: ...

@@ -12,6 +12,7 @@ from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
 from robosc.metamodel.model_checks import demand, fitting_operands, typed
 from robosc.metamodel.reflection import tree
+from robosc.semantics.messages import EACH, path_of
 from robosc.semantics.typing import declared_type
 
 if TYPE_CHECKING:
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from robosc.metamodel.model_checks import Check, Checks, Fault, Model
 
 #: What a field of ROS is in a model.
-_BASIC = (ex.BooleanType, ex.IntegerType, ex.DoubleType, ex.StringType)
+_BASIC = (ex.BooleanType, ex.IntegerType, ex.DoubleType, ex.StringType, rosgraph.ArrayType)
 
 
 def _own_event(element: Any, model: Model) -> Iterator[Fault]:
@@ -56,7 +57,9 @@ class _Shape:
         """Adds what is at the end of a path; `kind` is None where that is an object or an array as a whole."""
         for length, step in enumerate(path):
             yield from self._at(element, tuple(path[:length]), "an array" if isinstance(step, int) else "an object")
-        if kind is not None:
+        if isinstance(kind, rosgraph.ArrayType):
+            yield from self.add(element, [*path, -1], kind.element)
+        elif kind is not None:
             yield from self._at(element, tuple(path), type(kind).__name__)
 
     def _at(self, element: Any, path: tuple[str | int, ...], kind: str) -> Iterator[Fault]:
@@ -115,9 +118,7 @@ def _reads(values: Iterable[ex.Expression]) -> Iterator[rosgraph.WireAccess]:
 
 
 def _path(access: rosgraph.WireAccess) -> list[str | int]:
-    return [
-        step.index if isinstance(step, rosgraph.IndexStep) else str(getattr(step, "name", "")) for step in access.steps
-    ]
+    return [-1 if step == EACH else int(step) if step.isdigit() else step for step in path_of(access)]
 
 
 _BASIC_FIELD = demand(

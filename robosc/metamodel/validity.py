@@ -71,7 +71,13 @@ _INTERFACE = [
     demand(lambda interface: bool(_PACKAGE.fullmatch(interface.package)), "'{0.package}' is no name of a ROS package"),
     _identifier("type"),
 ]
-_INDEX = demand(lambda step: step.index >= 0, "an index counts from 0")
+_INDEX = demand(lambda step: step.index is None or step.index >= 0, "an index counts from 0")
+_INDEX_GIVEN = demand(
+    lambda step: (
+        (step.index is None) != ((step.position if isinstance(step, rosgraph.IndexStep) else step.first) is None)
+    ),
+    "an index is a number or computed",
+)
 
 _CHECKS: Checks = {
     ex.NamedElement: [_identifier("name")],
@@ -80,8 +86,8 @@ _CHECKS: Checks = {
     ex.DoubleLiteral: [_literal],
     robosc.Interface: _INTERFACE,
     rosgraph.Interface: _INTERFACE,
-    robosc.IndexSegment: [_INDEX],
-    rosgraph.IndexStep: [_INDEX],
+    robosc.IndexSegment: [_INDEX, _INDEX_GIVEN],
+    rosgraph.IndexStep: [_INDEX, _INDEX_GIVEN],
     rosgraph.FieldStep: [_identifier("name")],
     rosgraph.FieldAssignment: [_identifier("path")],
     robosc.Access: [

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import product
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph
-from robosc.metamodel.reflection import tree
 from robosc.ros_types import DefinitionError, RosDistribution, Section
 from robosc.ros_types.wire import Basic, Nested, Sequence
-from robosc.runtime.core.event_log import access_path
+from robosc.semantics.messages import EACH
+from robosc.semantics.messages import reads as all_reads
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
 
 #: Elements of an array that a walk makes at most.
 LONGEST = 10_000
+#: Elements that it tries of an array of which all may be read.
+_ELEMENTS = 3
 #: Names of fields and positions in arrays, from the outside inwards.
 Path = tuple[str, ...]
 Leaf = bool | int | float | str
@@ -39,13 +42,16 @@ class Field:
     wire: str | None
 
     @property
-    def default(self) -> Leaf:
+    def default(self) -> Leaf | list[Leaf]:
         """What ROS holds where nobody set it."""
-        return _DEFAULTS[type(self.type)][1]
+        return [] if isinstance(self.type, rosgraph.ArrayType) else _DEFAULTS[type(self.type)][1]
 
     @property
     def wire_type(self) -> str:
         """The type in ROS, or the widest of its kind."""
+        if isinstance(self.type, rosgraph.ArrayType):
+            assert self.type.element is not None
+            return f"{self.wire or _DEFAULTS[type(self.type.element)][0]}[]"
         return self.wire or _DEFAULTS[type(self.type)][0]
 
 
@@ -70,14 +76,18 @@ def wire_type(distribution: RosDistribution, interface: rosgraph.Interface, sect
 def reads(values: Iterable[ex.Expression], prefix: Path = ()) -> Iterator[tuple[Path, ex.Type]]:
     """All basic data in a message that expressions read, also through conversions; repeated where they repeat it."""
     for value in values:
-        arguments = []
-        for _, part in tree(value):
-            if isinstance(part, rosgraph.ConversionCall):
-                arguments.append(part.argument)
-                conditions = [rule.condition for rule in part.conversion.rules]
-                yield from reads(conditions, prefix + access_path(part.argument))
-            elif isinstance(part, rosgraph.WireAccess) and part not in arguments and part.type is not None:
-                yield prefix + access_path(part), part.type
+        for general, read in all_reads([value]):
+            for path in _some(general):
+                if read.conversion is not None:
+                    yield from reads([rule.condition for rule in read.conversion.rules], prefix + path)
+                elif read.type is not None:
+                    yield prefix + path, read.type
+
+
+def _some(path: Path) -> Iterator[Path]:
+    """The path, or those to the first elements where it may go to any."""
+    choices = [range(_ELEMENTS) if step == EACH else [step] for step in path]
+    yield from (tuple(map(str, chosen)) for chosen in product(*choices))
 
 
 def message(fields: Mapping[Path, Field], values: Mapping[Path, Leaf]) -> Any:

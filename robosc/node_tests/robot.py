@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from robosc.metamodel import rosgraph
 from robosc.node_tests.messages import Field, Path, message, wire_type
 from robosc.ros_types import Section
 from robosc.runtime.core.port import Outcome
@@ -12,7 +13,6 @@ from robosc.runtime.core.port import Outcome
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from robosc.metamodel import rosgraph
     from robosc.ros_types import RosDistribution
     from robosc.runtime.core.port import CallHandlers, Endpoint, GoalHandlers, Message
 
@@ -51,7 +51,8 @@ class Robot:
         fields = self._fields.setdefault((interface, section), {})
         for field in (field for data in sending.alternatives for field in data.fields):
             path = tuple(field.path)
-            fields[path] = Field(field.type, wire_type(self._distribution, interface, section, path))
+            inside = (*path, "0") if isinstance(field.type, rosgraph.ArrayType) else path
+            fields[path] = Field(field.type, wire_type(self._distribution, interface, section, inside))
 
     # What the controller asks
 

@@ -14,6 +14,7 @@ from robosc.metamodel import rosgraph
 from robosc.metamodel.reflection import tree
 from robosc.node_tests.messages import Field, Leaf, Path, message, reads, wire_type
 from robosc.ros_types.wire import INTEGER_RANGES
+from robosc.semantics import messages
 from robosc.semantics.messages import reads_elements
 
 if TYPE_CHECKING:
@@ -109,7 +110,7 @@ def incoming(
     distribution: RosDistribution,
     interface: rosgraph.Interface,
     part: Section,
-    receptions: Sequence[tuple[str, Mapping[Path, ex.Expression], Collection[ex.Expression]]],
+    receptions: Sequence[tuple[str, messages.Shown, Collection[ex.Expression]]],
 ) -> Incoming:
     """What comes in as one message: for each event its name, what is shown of it, and the values that read it."""
     fields: dict[Path, Field] = {}
@@ -121,8 +122,7 @@ def incoming(
         for path, kind in reads(values):
             fields.setdefault(path, Field(kind, wire_type(distribution, interface, part, path)))
         found = [
-            Read(path, value.conversion if isinstance(value, rosgraph.ConversionCall) else None)
-            for path, value in shown.items()
+            Read(path, part.conversion if isinstance(part, messages.Read) else None) for path, part in shown.items()
         ]
         events.append((event, found))
     return Incoming(events, fields, unreadable)

@@ -122,6 +122,8 @@ def same(one: Any, other: Any) -> bool:
     """Whether data is the same, up to the precision of a float32; null is any number that is not finite."""
     if isinstance(one, dict) and isinstance(other, dict):
         return one.keys() == other.keys() and all(same(one[name], other[name]) for name in one)
+    if isinstance(one, list) and isinstance(other, list):
+        return len(one) == len(other) and all(map(same, one, other))
     if isinstance(one, bool) or isinstance(other, bool):
         return one is other
     numbers = (int, float)
@@ -238,6 +240,8 @@ def fill(message: Any, fields: dict[str, Any], element: Callable[[Any, str], Any
 
 
 def _filled(held: Any, value: Any, make: Callable[[], Any], element: Callable[[Any, str], Any]) -> Any:
+    if isinstance(value, list):
+        value = {str(index): inner for index, inner in enumerate(value)}
     if isinstance(value, dict) and (isinstance(held, (Sequence, array)) or hasattr(held, "dtype")):
         items = list(held)
         for index, inner in value.items():

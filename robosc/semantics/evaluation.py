@@ -7,11 +7,12 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from robosc.metamodel import expression as ex
+from robosc.metamodel import rosgraph
 from robosc.semantics.operators import Rule, Value, as_double, divide, operator_of
 from robosc.semantics.walks import operands
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
 __all__ = ["Program", "Value", "as_double", "divide", "evaluate", "literal", "saturate"]
 
@@ -60,6 +61,7 @@ class Program(Generic[_Result]):
         """Runs the instructions."""
         stack: list[Any] = []
         code, position = self._code, 0
+        loops = _Loops()
         while position < len(code):
             kind, argument = code[position]
             position += 1
@@ -72,15 +74,14 @@ class Program(Generic[_Result]):
                 stack[-1] = argument(stack[-1])
             elif kind == _CONSTANT:
                 stack.append(argument)
-            elif kind == _CALL:
-                count, function = argument
-                stack[len(stack) - count :] = [function(*stack[len(stack) - count :])]
             elif kind == _DECIDE:
                 decided, value, end = argument
                 if bool(stack[-1]) is decided:
                     stack[-1], position = value, end.position
                 else:
                     stack.pop()
+            elif kind >= _CALL:
+                position = loops.step(kind, argument, stack, position, source)
             elif kind == _JUMP or not stack.pop():
                 position = argument.position
         return stack[0]  # type: ignore[no-any-return]
@@ -94,9 +95,14 @@ class Program(Generic[_Result]):
             other = _Label()
             chosen = [expression.condition, (_UNLESS, other), expression.then, (_JUMP, end)]
             return [*chosen, other, expression.otherwise, end]
+        if isinstance(expression, rosgraph.ArrayQuantifier):
+            start = _Label()
+            initial, decided = _QUANTIFIERS[str(expression.quantifier)]
+            loop = [start, (_NEXT, (expression, end)), expression.body, (_TALLY, (decided, start, end)), end]
+            return [expression.array, (_EACH, (expression, initial)), *loop]
         row = operator_of(expression)
         if row is None:
-            return [(_READ, self._reader(expression))]
+            return self._read(expression)
         given = operands(expression)
         if row.decided is not None:
             decide = (_DECIDE, (row.decided, row.compute(row.decided, False), end))
@@ -108,6 +114,55 @@ class Program(Generic[_Result]):
             return [*given, (_CALL, (len(given), compute))]
         return [*given, (_UNARY if len(given) == 1 else _BINARY, compute)]
 
+    def _read(self, reference: ex.Expression) -> list[Any]:
+        """A reference, behind the element of an array that it reads, if it does, and its indices."""
+        access = reference.argument if isinstance(reference, rosgraph.ConversionCall) else reference
+        reader = self._reader(reference)
+        bound = access.quantifier if isinstance(access, rosgraph.WireAccess) else None
+        given: list[Any] = [(_BOUND, bound)] if bound is not None else []
+        given += operands(access) if isinstance(access, rosgraph.WireAccess | rosgraph.ArrayLiteral) else []
+        return [*given, (_REACH, (len(given), reader))] if given else [(_READ, reader)]
+
+
+#: The value for no elements, and the value of the body that decides; where none does, those that hold are counted.
+_QUANTIFIERS: dict[str, tuple[bool | int, bool | None]] = {
+    "all": (True, False),
+    "any": (False, True),
+    "count": (0, None),
+}
+
+
+class _Loops:
+    """Conditions on elements of arrays while they are computed: what is left of each array, and the element at hand."""
+
+    def __init__(self) -> None:
+        self._arrays: dict[Any, Any] = {}
+        self._elements: dict[Any, Any] = {}
+
+    def step(self, kind: int, argument: Any, stack: list[Any], position: int, source: Sequence[Any]) -> int:
+        """Runs an instruction; where the next one stands."""
+        if kind in {_CALL, _REACH}:
+            count, function = argument
+            behind = source if kind == _REACH else ()
+            stack[len(stack) - count :] = [function(*stack[len(stack) - count :], *behind)]
+        elif kind == _BOUND:
+            stack.append(self._elements[argument])
+        elif kind == _EACH:
+            quantifier, initial = argument
+            self._arrays[quantifier] = iter(stack[-1])
+            stack[-1] = initial
+        elif kind == _NEXT:
+            quantifier, end = argument
+            element = self._elements[quantifier] = next(self._arrays[quantifier], _NOTHING)
+            if element is _NOTHING:
+                return int(end.position)
+        else:
+            decided, start, end = argument
+            holds = bool(stack.pop())
+            stack[-1] = stack[-1] + holds if decided is None else holds
+            return int(end.position if holds is decided else start.position)
+        return position
+
 
 class _Label:
     """A place in a program to which an instruction jumps."""
@@ -116,7 +171,9 @@ class _Label:
 
 
 #: The instructions: what each does with its argument and the values on the stack.
-_READ, _CONSTANT, _UNARY, _BINARY, _DECIDE, _UNLESS, _JUMP, _CALL = range(8)
+_READ, _CONSTANT, _UNARY, _BINARY, _DECIDE, _UNLESS, _JUMP, _CALL, _REACH, _BOUND, _EACH, _NEXT, _TALLY = range(13)
+#: Behind the last element.
+_NOTHING = object()
 
 
 def _fitted(fit: Callable[[int], int], compute: Callable[..., Any], *values: Any) -> Any:

@@ -9,6 +9,7 @@ from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc
 from robosc.metamodel.reflection import contents, features, is_attribute, tree
 from robosc.semantics.evaluation import Value, evaluate, literal
+from robosc.semantics.operators import UnreadableError
 from robosc.semantics.walks import copied, walk
 
 if TYPE_CHECKING:
@@ -51,6 +52,7 @@ class Expansion:
         self._instances = instances
         self._known: dict[tuple[ex.Expression, Instance | None, bool], ex.Expression] = {}
         self._made = 0
+        self._elements: dict[ex.Located, ex.Located] = {}
         self.too_large: dict[ex.Expression, None] = {}
 
     def __call__(self, expression: ex.Expression, within: Instance | None, *, readable: bool = False) -> ex.Expression:
@@ -151,6 +153,8 @@ class Expansion:
 
     def _copy(self, element: Any, environment: _Environment) -> Generator[Any, Any, Any]:
         made = type(element)()
+        if isinstance(element, robosc.ArrayElement):
+            self._elements[element] = made  # what names it stands behind it
         children = []
         for _, child in contents(element):
             children.append((yield (child, environment)))
@@ -161,7 +165,7 @@ class Expansion:
                 continue
             if is_attribute(feature) or not feature.containment:
                 if not feature.many:
-                    setattr(made, name, value)
+                    setattr(made, name, self._elements.get(value, value) if name == "item" else value)
             elif feature.many:
                 getattr(made, name).extend(next(inside) for _ in value)
             else:
@@ -206,7 +210,7 @@ def _folded(expression: ex.Expression) -> ex.Expression:
 def _value(expression: ex.Expression) -> Value | None:
     try:
         return evaluate(expression, _enum_value)
-    except (_NoValueError, TypeError, ValueError, OverflowError, AttributeError):
+    except (_NoValueError, UnreadableError, TypeError, ValueError, OverflowError, AttributeError):
         return None
 
 

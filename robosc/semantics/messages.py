@@ -7,13 +7,42 @@ array is one (rule `variable-type`, and what makes a rosgraph model valid).
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, TypeAlias
 
+from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph
 from robosc.metamodel.reflection import tree
+from robosc.semantics.operators import operator_of
 
 if TYPE_CHECKING:
-    from robosc.metamodel import expression as ex
+    from collections.abc import Iterable, Iterator
+
+#: Names of fields and positions in arrays, from the message inwards.
+Path: TypeAlias = tuple[str, ...]
+#: In the place of a position: each of them.
+EACH = "*"
+
+
+@dataclass(frozen=True)
+class Read:
+    """What is read somewhere in a message: a value of a type, or what a conversion makes of it.
+
+    `reference` is the first that reads it; without type and conversion it is an object of which nothing is read.
+    """
+
+    reference: ex.Expression
+    type: ex.Type | None = None
+    conversion: rosgraph.Conversion | None = None
+
+    @property
+    def is_value(self) -> bool:
+        """Whether it is no object."""
+        return self.type is not None or self.conversion is not None
+
+
+#: What is read of a message: values, and of arrays whose elements are all read what is read of each.
+Shown: TypeAlias = "dict[Path, Read | Shown]"
 
 
 def receptions(graph: rosgraph.RosGraph) -> list[rosgraph.Reception]:
@@ -27,8 +56,75 @@ def receptions(graph: rosgraph.RosGraph) -> list[rosgraph.Reception]:
 
 
 def reads_elements(expression: ex.Expression) -> bool:
-    """Whether an element of an array is read, which need not be there. What rules of enumerations read is theirs."""
-    return any(isinstance(step, rosgraph.IndexStep) for _, step in tree(expression))
+    """Whether an element of an array is read, which need not be there, or what need not have a value otherwise.
+
+    What rules of enumerations read is theirs.
+    """
+    return any(
+        isinstance(part, rosgraph.IndexStep | rosgraph.SliceStep) or _is_partial(part) for _, part in tree(expression)
+    )
+
+
+def _is_partial(part: ex.Located) -> bool:
+    row = operator_of(part) if isinstance(part, ex.FunctionCall) else None
+    return row is not None and row.is_partial
+
+
+def path_of(access: rosgraph.WireAccess) -> Path:
+    """The way that an access takes; EACH where it may read any element of an array."""
+    path: list[str] = [*path_of(access.quantifier.array), EACH] if access.quantifier else []
+    sliced = False
+    for step in access.steps:
+        match step:
+            case rosgraph.FieldStep():
+                path.append(step.name)
+            case rosgraph.IndexStep():
+                path.append(EACH if sliced or step.position is not None else str(step.index))
+        sliced = isinstance(step, rosgraph.SliceStep)
+    return tuple(path)
+
+
+def reads(values: Iterable[ex.Expression]) -> Iterator[tuple[Path, Read]]:
+    """What expressions read of a message; of a conversion's argument that it converts it."""
+    for value in values:
+        argument = None
+        for _, part in tree(value):
+            if isinstance(part, rosgraph.ConversionCall):
+                argument = part.argument
+                yield path_of(argument), Read(part, conversion=part.conversion)
+            elif isinstance(part, rosgraph.WireAccess) and part is not argument:
+                if isinstance(part.type, rosgraph.ArrayType):
+                    yield (*path_of(part), EACH), Read(part, part.type.element)
+                else:
+                    yield path_of(part), Read(part, part.type)
+
+
+def shown(values: Iterable[ex.Expression]) -> Shown:
+    """What the event log shows of the data that expressions read: where any element may be read, all of them."""
+    found: dict[Path, Read] = {}
+    for path, read in reads(values):
+        if path not in found or not found[path].is_value:
+            found[path] = read
+    return _in_arrays(found)
+
+
+def _in_arrays(found: dict[Path, Read]) -> Shown:
+    arrays = {path[: path.index(EACH)] for path in found if EACH in path}
+    made: Shown = {}
+    elements: dict[Path, dict[Path, Read]] = {}
+    for path, read in found.items():
+        array = next((path[:length] for length in range(len(path)) if path[:length] in arrays), None)
+        if array is None:
+            made[path] = read
+        else:
+            made.setdefault(array, {})
+            rest = tuple(EACH if step.isdigit() else step for step in path[len(array) + 1 :])
+            elements.setdefault(array, {}).setdefault(rest, read)
+    for array, inside in elements.items():
+        if len(inside) > 1:
+            inside.pop((), None)  # an object of which something is read
+        made[array] = _in_arrays(inside)
+    return made
 
 
 def parts_with_headers(sending: rosgraph.Sending) -> list[tuple[str, ...]]:

@@ -10,6 +10,7 @@ import math
 import operator
 from dataclasses import dataclass
 from enum import Enum, auto
+from functools import reduce
 from typing import TYPE_CHECKING, Any, TypeAlias, cast
 
 from robosc.metamodel import engine
@@ -38,6 +39,12 @@ class Rule(Enum):
     DOUBLE = auto()
     #: Integers; an integer.
     INTEGER = auto()
+    #: A double; an integer.
+    ROUNDING = auto()
+    #: An array or a string; an integer.
+    SIZE = auto()
+    #: An array of numbers; one of its elements.
+    ELEMENTS = auto()
 
 
 #: The operators with a boolean value.
@@ -55,6 +62,10 @@ class Associativity(Enum):
     RIGHT = auto()
 
 
+class UnreadableError(Exception):
+    """There is no value: an element that an array does not have, or no number that could be rounded."""
+
+
 @dataclass(frozen=True)
 class Operator:
     """One operator: its class in the metamodel, its text in RoboSC, and what it means.
@@ -63,6 +74,7 @@ class Operator:
     are of the right types: by IEEE 754 for doubles, integers however large. `interval` does the same for all values
     between bounds (None: no sct model has it). `decided` is the left operand's value at which the right one is not
     looked at, if there is such: the value is then `compute(decided, anything)`.
+    `compute` raises UnreadableError where there is none, which `is_partial` says is possible.
     A function has a number of `parameters`, and those of them that are `divisors` (from 0) must be positive constants.
     """
 
@@ -76,6 +88,11 @@ class Operator:
     decided: bool | None = None
     parameters: int = 0
     divisors: frozenset[int] = frozenset()
+
+    @property
+    def is_partial(self) -> bool:
+        """Whether some operands have no value."""
+        return self.rule in {Rule.ROUNDING, Rule.ELEMENTS}
 
 
 def as_double(number: Value) -> float:
@@ -103,6 +120,46 @@ def modulo(value: int, divisor: int) -> int:
 
 def _modulo_in(value: Interval, divisor: Interval) -> Interval:
     return value if Interval(0, divisor.low - 1).holds(value) else Interval(0, max(divisor.high - 1, 0))
+
+
+def _rounded(nearest: Callable[[float], int]) -> Callable[[float], int]:
+    def compute(value: float) -> int:
+        if math.isnan(value):
+            raise UnreadableError("NaN can't be rounded")
+        return nearest(max(float(_LEAST), min(float(_MOST), value)))
+
+    return compute
+
+
+def _nearest(value: float) -> int:
+    whole = math.trunc(value)
+    return whole + int(math.copysign(1, value)) if abs(value - whole) >= 0.5 else whole
+
+
+def _finite(compute: Callable[[float], float]) -> Callable[[float], float]:
+    """A function that Python does not compute where IEEE 754 has NaN."""
+
+    def computed(value: Value) -> float:
+        try:
+            return compute(as_double(value))
+        except ValueError:
+            return math.nan
+
+    return computed
+
+
+def _preferred(before: Callable[[Any, Any], bool]) -> Callable[[Any, Any], Any]:
+    return _arithmetic(lambda left, right: right if before(right, left) or left != left else left)  # noqa: PLR0124
+
+
+def _first(before: Callable[[Any, Any], bool]) -> Callable[[Any], Any]:
+    def chosen(values: Any) -> Any:
+        numbers = [value for value in values if value == value]  # noqa: PLR0124 - NaN is passed over
+        if not numbers:
+            raise UnreadableError(f"there is no number in an array of {len(values)}")
+        return reduce(lambda found, value: value if before(value, found) else found, numbers)
+
+    return chosen
 
 
 def _remainder(value: int, divisor: int) -> int:
@@ -217,9 +274,38 @@ OPERATORS = (
     Operator(ex.UnaryMinus, "-", 8, Rule.ARITHMETIC, operator.neg, lambda value: Interval(-value.high, -value.low)),
 )
 
+
+def _function(name: str, rule: Rule, compute: Callable[..., Any], parameters: int = 1) -> Operator:
+    return Operator(ex.FunctionCall, name, 9, rule, compute, None, parameters=parameters)
+
+
+#: What is rounded saturates at 32 bits.
+_LEAST, _MOST = -(2**31), 2**31 - 1
+
 #: The functions, by their names.
 FUNCTIONS = {
     "mod": Operator(ex.FunctionCall, "mod", 9, Rule.INTEGER, modulo, _modulo_in, parameters=2, divisors=frozenset({1}))
+} | {
+    row.symbol: row
+    for row in (
+        _function("abs", Rule.ARITHMETIC, abs),
+        _function("min", Rule.ARITHMETIC, _preferred(operator.lt), 2),
+        _function("max", Rule.ARITHMETIC, _preferred(operator.gt), 2),
+        _function("floor", Rule.ROUNDING, _rounded(math.floor)),
+        _function("ceil", Rule.ROUNDING, _rounded(math.ceil)),
+        _function("round", Rule.ROUNDING, _rounded(_nearest)),
+        _function("sqrt", Rule.DOUBLE, _finite(math.sqrt)),
+        _function("sin", Rule.DOUBLE, _finite(math.sin)),
+        _function("cos", Rule.DOUBLE, _finite(math.cos)),
+        _function("atan2", Rule.DOUBLE, lambda y, x: math.atan2(as_double(y), as_double(x)), 2),
+        _function("double", Rule.DOUBLE, as_double),
+        _function("size", Rule.SIZE, len),
+    )
+}
+#: Functions of the same names, of one array.
+_OF_ARRAYS = {
+    "min": _function("min", Rule.ELEMENTS, _first(operator.lt)),
+    "max": _function("max", Rule.ELEMENTS, _first(operator.gt)),
 }
 
 BY_CLASS = {row.metaclass: row for row in OPERATORS} | {
@@ -245,5 +331,6 @@ COMPARISONS = cast("tuple[type[ex.BinaryExpression], ...]", (*EQUALITY, *ORDERIN
 def operator_of(expression: ex.Expression | None) -> Operator | None:
     """The row of an expression's outermost operator or function; None of literals, references and choices."""
     if isinstance(expression, ex.FunctionCall):
-        return FUNCTIONS[expression.function]
+        own = _OF_ARRAYS.get(expression.function) if len(expression.arguments) == 1 else None
+        return own or FUNCTIONS[expression.function]
     return BY_CLASS.get(type(expression))  # type: ignore[arg-type]

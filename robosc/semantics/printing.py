@@ -15,7 +15,7 @@ from robosc.semantics.operators import ATOM, PRECEDENCE, SYMBOLS, Associativity,
 from robosc.semantics.walks import fold, operands
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 #: Levels between which binding is the same everywhere, but a reader (or a compiler that warns) wants parentheses.
 _LOOSE_PAIRS = {(2, 3), (1, 2), (1, 3), (4, 5)}
@@ -106,13 +106,25 @@ class Printer:
 class RoboscPrinter(Printer):
     """Prints a linked expression of a robot model as its author would write it, states and variables qualified."""
 
-    def atom(self, expression: ex.Expression) -> str:
-        """A name with the steps into its data, or a literal."""
+    def write(self, expression: ex.Expression, given: Sequence[Printed]) -> Printed:
+        """A name with the steps into its data, a condition on the elements of an array, or what all printers know."""
+        texts = [text for text, _ in given]
         match expression:
             case robosc.Access():
                 name = "value" if expression.item is None else written(expression.item.name)
                 owner = f"{written(expression.component.name)}." if expression.component else ""
-                return owner + name + "".join(map(_step, expression.segments))
+                indices = iter(texts)
+                return Printed(owner + name + "".join(_step(segment, indices) for segment in expression.segments))
+            case robosc.ArrayQuantifier():
+                array, body = texts
+                return Printed(f"({expression.quantifier} {written(expression.element.name)} in {array}: {body})")
+            case robosc.ArrayLiteral():
+                return Printed(f"[{', '.join(texts)}]")
+        return super().write(expression, given)
+
+    def atom(self, expression: ex.Expression) -> str:
+        """A literal."""
+        match expression:
             case ex.DoubleLiteral():
                 digits = format(Decimal(repr(expression.value)), "f")  # RoboSC has no exponents
                 return digits if "." in digits else f"{digits}.0"
@@ -121,11 +133,12 @@ class RoboscPrinter(Printer):
         return super().atom(expression)
 
 
-def _step(segment: robosc.AccessSegment) -> str:
+def _step(segment: robosc.AccessSegment, indices: Iterator[str]) -> str:
     if isinstance(segment, robosc.PropertySegment):
         return f".{written(segment.property.name)}"
     assert isinstance(segment, robosc.IndexSegment)
-    return f"[{segment.index}]"
+    first = segment.index if segment.first is None else next(indices)
+    return f"[{first}]" if segment.last is None else f"[{first}..{next(indices)}]"
 
 
 class SctPrinter(Printer):

@@ -107,6 +107,8 @@ def declared_type(data_type: rsc.DataType | ex.Type | None) -> Type:
         return EnumType(data_type.enumeration)
     if isinstance(data_type, rsc.Array):
         return ArrayType(declared_type(data_type.type))
+    if isinstance(data_type, rosgraph.ArrayType):
+        return ArrayType(declared_type(data_type.element))
     if isinstance(data_type, rsc.ComplexDataTypeReference):
         definition = data_type.type
         if isinstance(definition, rsc.ObjectDataType):
@@ -168,8 +170,13 @@ def operator_type(row: Operator, operands: Sequence[Type]) -> Type:
         return BOOLEAN
     if row.rule is Rule.DOUBLE:
         return DOUBLE
+    if row.rule in {Rule.ROUNDING, Rule.SIZE}:
+        return INTEGER
     if row.rule is Rule.INTEGER:
         return INTEGER if {*operands} == {INTEGER} else UNKNOWN
+    if row.rule is Rule.ELEMENTS:
+        (array,) = operands
+        return array.element if isinstance(array, ArrayType) and is_number(array.element) else UNKNOWN
     if row.metaclass is ex.Addition and {*operands} == {STRING}:
         return STRING  # in constant expressions
     if not all(is_number(operand) or operand == UNKNOWN for operand in operands):
@@ -190,6 +197,10 @@ def item_type(item: rsc.AccessibleItem | None) -> Type:
             return BOOLEAN
         case rsc.EnumValue():
             return EnumType(item.eContainer().eContainer())
+        case rsc.ArrayElement():
+            quantifier = item.eContainer()
+            array = infer(quantifier.array, value_type(quantifier))
+            return array.element if isinstance(array, ArrayType) else UNKNOWN
     return UNKNOWN
 
 
@@ -199,7 +210,7 @@ def segment_type(before: Type, segment: rsc.AccessSegment) -> Type:
         case rsc.PropertySegment():
             return declared_type(segment.property.type) if segment.property else UNKNOWN
         case rsc.IndexSegment() if isinstance(before, ArrayType):
-            return before.element
+            return before.element if segment.last is None else before
     return UNKNOWN
 
 
@@ -239,13 +250,15 @@ class Types:
         if row is not None:
             return operator_type(row, operands)
         match expression:
+            case rosgraph.ArrayLiteral():
+                return ArrayType(operands[0]) if operands else UNKNOWN
             case ex.Conditional():
                 return operands[1] if operands[1] != UNKNOWN else operands[2]
             case rsc.Access():
                 return access_types(expression, self._value)[-1]
             case rsc.Call():
                 return declared_type(expression.function.type) if expression.function else UNKNOWN
-            case rsc.InstanceQuantifier():
+            case rsc.InstanceQuantifier() | rsc.ArrayQuantifier():
                 return INTEGER if expression.quantifier == rsc.Quantifier.count else BOOLEAN
         return _reference_type(expression)
 
@@ -263,6 +276,8 @@ def _reference_type(expression: ex.Expression) -> Type:
             return declared_type(expression.input.type)
         case rosgraph.WireAccess():
             return declared_type(expression.type)
+        case rosgraph.ArrayQuantifier():
+            return INTEGER if expression.quantifier == rosgraph.Quantifier.count else BOOLEAN
         case rosgraph.ConversionCall():
             return EnumType(expression.conversion.enumeration)
     return _LITERAL.get(type(expression), UNKNOWN)

@@ -35,6 +35,29 @@ def operands(expression: ex.Expression | None) -> list[ex.Expression]:
             return [given.value for given in expression.properties]
         case rosgraph.ConversionCall():
             return [expression.argument]
+    return _in_arrays(expression)
+
+
+def _in_arrays(expression: ex.Expression | None) -> list[ex.Expression]:
+    match expression:
+        case robosc.Access():
+            return [index for segment in expression.segments for index in _indices(segment)]
+        case rosgraph.WireAccess():
+            return [index for step in expression.steps for index in _indices(step)]
+        case robosc.ArrayQuantifier() | rosgraph.ArrayQuantifier():
+            return [expression.array, expression.body]
+        case robosc.ArrayLiteral() | rosgraph.ArrayLiteral():
+            return list(expression.elements)
+    return []
+
+
+def _indices(step: robosc.AccessSegment | rosgraph.WireStep) -> list[ex.Expression]:
+    """What the index of a step into an array is computed from, if it is."""
+    match step:
+        case robosc.IndexSegment() | rosgraph.SliceStep():
+            return [index for index in (step.first, step.last) if index is not None]
+        case rosgraph.IndexStep() if step.position is not None:
+            return [step.position]
     return []
 
 
@@ -124,15 +147,18 @@ def walk(
 
 def copied(root: _Element) -> _Element:
     """A copy of an expression or a type with all that it contains; what contains the original keeps it."""
+    known: dict[Any, Any] = {}
 
     def copy(original: Any, children: list[Any]) -> Any:
         made, inside = type(original)(), iter(children)
+        known[original] = made
         for name, feature in features(original.eClass).items():
             value = getattr(original, name)
             if value is None:
                 continue
             if is_attribute(feature) or not feature.containment:
-                setattr(made, name, value)
+                # What names an element of an array names it in the copy, too: it stands before.
+                setattr(made, name, known.get(value, value) if isinstance(value, robosc.ArrayElement) else value)
             elif feature.many:
                 getattr(made, name).extend(next(inside) for _ in value)
             else:

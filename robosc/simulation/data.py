@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
@@ -11,10 +12,12 @@ from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
 from robosc.metamodel.reflection import tree
 from robosc.runtime.core.event_log import nested
-from robosc.runtime.core.node_data import NodeData, PastEndError
+from robosc.runtime.core.node_data import NodeData
 from robosc.semantics.evaluation import as_double
 from robosc.semantics.messages import receptions
+from robosc.semantics.operators import UnreadableError
 from robosc.semantics.roles import event_name
+from robosc.semantics.walks import operands
 from robosc.simulation.unreadable import Unreadable, past_end
 
 if TYPE_CHECKING:
@@ -122,29 +125,50 @@ class _JsonData(NodeData):
     def literal(self, conversion: rosgraph.Conversion, data: Any, place: str) -> str:
         """The name of the literal that a conversion makes of data. Raises DataError, also for what is not looked at."""
         for _, part in [read for rule in conversion.rules for read in tree(rule.condition)]:
-            if isinstance(part, rosgraph.WireAccess):
-                with suppress(PastEndError):
-                    self._leaf(self._reach(part, (data, place)), part.type)
+            if isinstance(part, rosgraph.WireAccess) and part.quantifier is None and not operands(part):
+                with suppress(UnreadableError):
+                    self.leaf(self._reach(part, (data, place)), part.type)
         return str(self.convert(conversion, (data, place)).name)
 
-    def _reach(self, access: rosgraph.WireAccess, data: tuple[Any, str]) -> tuple[Any, str]:
-        value, place = data
-        for step in access.steps:
-            if isinstance(step, rosgraph.IndexStep):
-                elements = _elements(value, place)
-                length = max(elements, default=-1) + 1
-                if step.index >= length:
-                    raise PastEndError(step.index, length)
-                value, place = elements.get(step.index, _ABSENT), f"{place}[{step.index}]"
-            else:
-                name = _field(step)
-                if value is not _ABSENT and not isinstance(value, dict):
-                    raise DataError(f"{place} is {json.dumps(value)}, expected an object with {name}")
-                value, place = _ABSENT if value is _ABSENT else value.get(name, _ABSENT), f"{place}.{name}"
-        return value, place
+    def _field(self, owner: tuple[Any, str], name: str) -> tuple[Any, str]:
+        value, place = owner
+        if value is not _ABSENT and not isinstance(value, dict):
+            raise DataError(f"{place} is {json.dumps(value)}, expected an object with {name}")
+        return _ABSENT if value is _ABSENT else value.get(name, _ABSENT), f"{place}.{name}"
 
-    def _leaf(self, value: tuple[Any, str], kind: ex.Type | None) -> Any:
-        return super()._leaf(_basic(value[0], kind, value[1]), kind)
+    def _element(self, array: Any, index: int) -> Any:
+        return super()._element(_list(array), index)
+
+    def _slice(self, array: Any, first: int, last: int) -> Any:
+        return super()._slice(_list(array), first, last)
+
+    def leaf(self, value: Any, kind: ex.Type | None) -> Any:
+        if isinstance(kind, rosgraph.ArrayType):
+            return super().leaf(_list(value), kind)
+        return super().leaf(_basic(value[0], kind, value[1]), kind) if kind is not None else value
+
+
+class _Array(Sequence[Any]):
+    """The elements of an array that stands in JSON, with their places; the array may be long and have few."""
+
+    def __init__(self, data: Any, place: str) -> None:
+        self._elements = _elements(data, place)
+        self._place = place
+
+    def __len__(self) -> int:
+        return max(self._elements, default=-1) + 1
+
+    def __getitem__(self, index: Any) -> Any:
+        if isinstance(index, slice):
+            return [self[one] for one in range(*index.indices(len(self)))]
+        if index >= len(self):
+            raise IndexError
+        return self._elements.get(index, _ABSENT), f"{self._place}[{index}]"
+
+
+def _list(array: tuple[Any, str] | list[tuple[Any, str]]) -> Sequence[tuple[Any, str]]:
+    """The elements of an array that stands in JSON; those of a slice as they are."""
+    return array if isinstance(array, list) else _Array(*array)
 
 
 def _elements(data: Any, place: str) -> dict[int, Any]:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph
 from robosc.runtime.core.node_data import PastEndError
 from robosc.semantics.evaluation import Value, evaluate
-from robosc.semantics.operators import operator_of
+from robosc.semantics.operators import UnreadableError, as_double, operator_of
 from robosc.semantics.walks import operands, walk
 
 if TYPE_CHECKING:
@@ -35,19 +36,23 @@ class _UnknownError(Exception):
     """A condition reads a value that the script does not give."""
 
 
-def past_end(expressions: Iterable[ex.Expression], value: Any) -> PastEndError | None:
+def past_end(expressions: Iterable[ex.Expression], value: Any) -> UnreadableError | None:
     """The first element that these expressions read and an array in the value lacks; None where there is none.
 
     The value is that of an event's data, as JSON: of an array that is not there nothing is known.
     """
 
-    def missing(expression: ex.Expression) -> Generator[ex.Expression, PastEndError | None, PastEndError | None]:
+    def missing(expression: ex.Expression) -> Generator[ex.Expression, UnreadableError | None, UnreadableError | None]:
         match expression:
-            case rosgraph.WireAccess():
+            case rosgraph.WireAccess() if not operands(expression) and expression.quantifier is None:
                 return _past_end(expression.steps, value)
-            case rosgraph.ConversionCall():
+            case rosgraph.ConversionCall() if not operands(expression.argument):
                 return _past_end(expression.argument.steps, value)
+            case rosgraph.ArrayQuantifier() | rosgraph.WireAccess() | rosgraph.ConversionCall():
+                return _fault(expression, value)
         operator = operator_of(expression)
+        if operator is not None and operator.is_partial:
+            return _fault(expression, value)
         for operand in operands(expression):
             fault = yield operand
             if fault is not None:
@@ -60,11 +65,23 @@ def past_end(expressions: Iterable[ex.Expression], value: Any) -> PastEndError |
     return next(filter(None, (walk(missing, expression) for expression in expressions)), None)
 
 
+def _fault(expression: ex.Expression, value: Any) -> UnreadableError | None:
+    """What keeps an expression from having a value; None where something that it reads is not given, too."""
+    try:
+        evaluate(expression, partial(_read, value))
+    except UnreadableError as fault:
+        return fault
+    except _UnknownError:
+        pass
+    return None
+
+
 def _past_end(steps: Sequence[rosgraph.WireStep], value: Any) -> PastEndError | None:
     reached = value
     for step in steps:
         if isinstance(step, rosgraph.IndexStep) and isinstance(reached, list | dict):
             length = len(reached) if isinstance(reached, list) else 1 + max(map(int, reached), default=-1)
+            assert step.index is not None
             if step.index >= length:
                 return PastEndError(step.index, length)
         reached = _below(reached, step)
@@ -74,7 +91,8 @@ def _past_end(steps: Sequence[rosgraph.WireStep], value: Any) -> PastEndError | 
 def _below(value: Any, step: rosgraph.WireStep) -> Any:
     if isinstance(step, rosgraph.IndexStep):
         if isinstance(value, list):
-            return value[step.index] if step.index < len(value) else _UNKNOWN
+            index = step.index
+            return value[index] if index is not None and index < len(value) else _UNKNOWN
         return value.get(str(step.index), _UNKNOWN) if isinstance(value, dict) else _UNKNOWN
     assert isinstance(step, rosgraph.FieldStep)
     return value.get(step.name, _UNKNOWN) if isinstance(value, dict) else _UNKNOWN
@@ -82,20 +100,46 @@ def _below(value: Any, step: rosgraph.WireStep) -> Any:
 
 def _known(condition: ex.Expression, value: Any) -> bool | None:
     """The value of a condition; None where something that it reads is not given."""
-
-    def read(reference: ex.Expression) -> Value:
-        if not isinstance(reference, rosgraph.WireAccess):
-            raise _UnknownError
-        reached = value
-        for step in reference.steps:
-            reached = _below(reached, step)
-        if reached is None and isinstance(reference.type, ex.DoubleType):
-            return math.nan
-        if not isinstance(reached, bool | int | float | str):
-            raise _UnknownError
-        return reached
-
     try:
-        return bool(evaluate(condition, read))
-    except _UnknownError:
+        return bool(evaluate(condition, partial(_read, value)))
+    except (_UnknownError, UnreadableError):
         return None
+
+
+def _read(value: Any, reference: ex.Expression, *given: Any) -> Value:
+    """What a reference reads of a value, or of the first that is `given`, an element; behind it stand its indices."""
+    if not isinstance(reference, rosgraph.WireAccess):
+        raise _UnknownError
+    rest = iter(given if reference.quantifier else (value, *given))
+    reached = next(rest)
+    for step in reference.steps:
+        if isinstance(step, rosgraph.SliceStep):
+            first, last, length = next(rest), next(rest), len(_elements(reached))
+            if first <= last and not (first >= 0 and last < length):
+                raise UnreadableError(f"there are no elements {first} to {last} in an array of {length}")
+            reached = _elements(reached)[first : last + 1] if first <= last else []
+        elif isinstance(step, rosgraph.IndexStep) and step.position is not None:
+            index, length = next(rest), len(_elements(reached))
+            if not 0 <= index < length:
+                raise PastEndError(index, length)
+            reached = _elements(reached)[index]
+        else:
+            reached = _below(reached, step)
+    found: Value = _leaf(reached, reference.type)
+    return found
+
+
+def _leaf(reached: Any, kind: ex.Type | None) -> Any:
+    if isinstance(kind, rosgraph.ArrayType):
+        return [_leaf(element, kind.element) for element in _elements(reached)]
+    if reached is None and isinstance(kind, ex.DoubleType):
+        return math.nan
+    if kind is not None and not isinstance(reached, bool | int | float | str):
+        raise _UnknownError
+    return as_double(reached) if isinstance(kind, ex.DoubleType) else reached
+
+
+def _elements(array: Any) -> list[Any]:
+    if not isinstance(array, list):
+        raise _UnknownError  # an object from index to element tells some of them only
+    return array

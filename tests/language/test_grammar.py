@@ -14,11 +14,21 @@ from robosc.semantics.naming import ROBOSC_KEYWORDS
 
 TEXT = locate("grammar/robosc.tx").read_text(encoding="utf-8")
 RULES = re.findall(r"^(\w+):", TEXT, re.MULTILINE)
-WORDS = {"BuiltIn", "Name", "UnreservedName", "Integer", "SignedInteger", "Double", "String", "LoneString"}
+WORDS = {
+    "BuiltIn",
+    "Name",
+    "UnreservedName",
+    "Integer",
+    "SignedInteger",
+    "LoneInteger",
+    "Double",
+    "String",
+    "LoneString",
+}
 WORDS |= {"Boolean", "Comment"}
 ENUMERATIONS = ["MessageDirection", "ResultType", "Quantifier"]
 #: Words that are keywords in one place only, so that they are names elsewhere.
-UNRESERVED = {"condition", "constant", "else", "function", "is", "then"}
+UNRESERVED = {"condition", "constant", "else", "function", "in", "is", "then"}
 #: What a text can't say: transformations make it.
 MADE_BY_TRANSFORMATIONS = {
     *("Type", "BooleanType", "IntegerType", "DoubleType", "StringType", "EnumerationType", "Enumeration"),

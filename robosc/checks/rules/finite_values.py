@@ -15,7 +15,7 @@ from robosc.checks.definitions import (
     variables,
 )
 from robosc.checks.rule import Finding, rule
-from robosc.checks.supervised import Fault, data_reads, supervised_faults, table_faults
+from robosc.checks.supervised import Fault, data_reads, function_faults, supervised_faults, table_faults
 from robosc.metamodel import robosc as rsc
 from robosc.semantics.communication import sent_type
 from robosc.semantics.cone_of_influence import ConeOfInfluence, Reason, accesses, read_type
@@ -56,6 +56,7 @@ def variable_type(base: rsc.Base) -> Iterator[Finding]:
                 else "declare a variable for each part that is used, such as `do part := value.…`",
             )
     yield from supervised_faults(base, _without_domain)
+    yield from supervised_faults(base, function_faults)
 
 
 def _without_domain(_: Instances, result: ConeOfInfluence) -> Iterator[Fault]:

@@ -14,7 +14,7 @@ from robosc.metamodel import robosc as rsc
 from robosc.metamodel.reflection import tree
 from robosc.semantics.cone_of_influence import accesses, conditions
 from robosc.semantics.expansion import LARGEST, constant_value
-from robosc.semantics.operators import FUNCTIONS
+from robosc.semantics.operators import operator_of
 from robosc.semantics.typing import INTEGER, declared_type, type_of
 
 if TYPE_CHECKING:
@@ -177,7 +177,8 @@ def unused_template(base: rsc.Base) -> Iterator[Finding]:
 
 
 def _built_in(element: ex.FunctionCall) -> Iterator[Finding]:
-    row, given = FUNCTIONS[element.function], list(element.arguments)
+    row, given = operator_of(element), list(element.arguments)
+    assert row is not None
     if len(given) != row.parameters:
         yield _wrong_number(element, row.symbol, len(given), "abcdef"[: row.parameters])
         return

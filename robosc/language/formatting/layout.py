@@ -24,7 +24,7 @@ _INLINED = {"", "ComponentType", "LocalComponent", "InstantiatedComponent", "Imp
 #: Rules without a space between their words.
 _TIGHT = {"Access", "CommunicationReference", "PropertySegment", "IndexSegment", "IntegerDataType", "Array"}
 _TIGHT |= {"InterfaceTypeReference", "Negation", "UnaryMinus"}
-_CALLS = {"FunctionCall", "Call", "ComplexDataTypeReference"}
+_CALLS = {"FunctionCall", "Call", "ComplexDataTypeReference", "ArrayLiteral"}
 #: By rule the words that a line may break before, and those that it may break behind.
 _COMMUNICATION: tuple[set[str], set[str]] = (set(), {"with", ","})
 CLAUSES: dict[str, tuple[set[str], set[str]]] = {

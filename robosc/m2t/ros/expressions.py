@@ -8,10 +8,10 @@ from robosc.m2t.c.comments import string_literal
 from robosc.m2t.c.expressions import number
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
-from robosc.semantics.operators import ARITHMETIC, PRECEDENCE, SYMBOLS
+from robosc.semantics.operators import ARITHMETIC, PRECEDENCE, SYMBOLS, Rule, operator_of
 from robosc.semantics.printing import Printed, Printer
 from robosc.semantics.typing import DOUBLE, Types
-from robosc.semantics.walks import fold
+from robosc.semantics.walks import fold, operands
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -23,6 +23,27 @@ _CONVERSIONS: dict[type[ex.Type | None], str] = {
     ex.IntegerType: "Integer",
     ex.DoubleType: "double",
 }
+
+
+def converted(place: str, kind: ex.Type | None) -> str:
+    """A place in the ROS data as a value of a type of the model."""
+    conversion = _CONVERSIONS.get(type(kind))
+    return f"{conversion}({place})" if conversion else place
+
+
+#: What functions are called in C++, where that is not their name: none like one of C, which takes other numbers.
+_FUNCTIONS = {
+    "abs": "magnitude",
+    "min": "smaller",
+    "max": "larger",
+    "sqrt": "std::sqrt",
+    "sin": "std::sin",
+    "cos": "std::cos",
+    "atan2": "std::atan2",
+    "size": "size_of",
+}
+_OF_ARRAYS = {"min": "least", "max": "greatest"}
+_QUANTIFIERS = {"all": "for_all", "any": "for_any", "count": "number_of"}
 
 
 class CppPrinter(Printer):
@@ -48,13 +69,35 @@ class CppPrinter(Printer):
         self._constants: dict[ex.Expression, bool] = {}
         self._types = Types()
 
+    def inside(self, expression: ex.Expression) -> Sequence[ex.Expression]:
+        """A conversion's argument is a place in the data: printed before are its indices."""
+        return operands(expression.argument if isinstance(expression, rosgraph.ConversionCall) else expression)
+
     def write(self, expression: ex.Expression, given: Sequence[Printed]) -> Printed:
         """A state is a comparison in C++, a conversion a call."""
         if isinstance(expression, sct.LocationReference):
             text = self._names.is_in(expression.location)
             return Printed(text, PRECEDENCE[ex.Equation]) if " " in text else Printed(text)
+        texts = [text for text, _ in given]
+        match expression:
+            case rosgraph.WireAccess():
+                return Printed(converted(self.wire(expression, texts), expression.type))
+            case rosgraph.ConversionCall():
+                read = self.wire(expression.argument, texts)
+                return Printed(f"{self._names.conversion(expression.conversion)}({read})")
+            case rosgraph.ArrayQuantifier():
+                array, body = texts
+                element = f"[[maybe_unused]] const auto& {_element(expression)}"
+                return Printed(
+                    f"{_QUANTIFIERS[str(expression.quantifier)]}({array}, [&]({element}) {{ return {body}; }})"
+                )
         if isinstance(expression, ex.DoubleConversion):
             return Printed(f"static_cast<double>({given[0].text})")
+        if isinstance(expression, ex.Conditional):
+            condition, then, otherwise = given
+            then, otherwise = Printed(then.tight), Printed(otherwise.tight)
+            then_text, other = self._whole(expression.then, then), self._whole(expression.otherwise, otherwise)
+            return Printed(f"({condition.tight} ? {then_text} : {other})")
         return super().write(expression, given)
 
     def binary(self, expression: ex.BinaryExpression, left: Printed, right: Printed) -> Printed:
@@ -75,16 +118,19 @@ class CppPrinter(Printer):
         return super().unary(expression, operand)
 
     def call(self, expression: ex.FunctionCall, given: Sequence[Printed]) -> Printed:
-        """A function of the header `data.hpp`, of whole numbers of the node."""
-        arguments = [
-            f"Integer({text})" if self._constant(argument) else text
-            for argument, (text, _) in zip(expression.arguments, given, strict=True)
-        ]
-        return Printed(f"{expression.function}({', '.join(arguments)})")
+        """A function of the header `data.hpp`, of whole numbers of the node; the reader has those that may fail."""
+        row = operator_of(expression)
+        assert row is not None
+        arguments = map(self._whole, expression.arguments, given)
+        name = _FUNCTIONS.get(row.symbol, row.symbol)
+        if row.rule is Rule.ELEMENTS:
+            number = "double" if self._double(expression) else "Integer"
+            name = f"{_OF_ARRAYS[row.symbol]}<{number}>"
+        owner = f"{self._reader}." if row.is_partial else ""
+        return Printed(f"{owner}{name}({', '.join(arguments)})")
 
-    def choice(self, condition: Printed, then: Printed, otherwise: Printed) -> Printed:
-        """The conditional operator, in parentheses."""
-        return Printed(f"({condition.tight} ? {then.tight} : {otherwise.tight})")
+    def _whole(self, expression: ex.Expression, given: Printed) -> str:
+        return f"Integer({given.text})" if self._constant(expression) else given.text
 
     def atom(self, expression: ex.Expression) -> str:
         """Literals, references to the state, the node's variables and the data that came in, conversions."""
@@ -104,22 +150,21 @@ class CppPrinter(Printer):
                 return f"Integer({value})" if isinstance(expression.variable.type, ex.IntegerType) else value
             case rosgraph.NodeVariableReference():
                 return f"{self._node}.{self._names.variable(expression.variable)}"
-            case rosgraph.WireAccess():
-                conversion = _CONVERSIONS.get(type(expression.type))
-                return f"{conversion}({self.wire(expression)})" if conversion else self.wire(expression)
-            case rosgraph.ConversionCall():
-                return f"{self._names.conversion(expression.conversion)}({self.wire(expression.argument)})"
         return super().atom(expression)
 
-    def wire(self, access: rosgraph.WireAccess) -> str:
+    def wire(self, access: rosgraph.WireAccess, indices: Sequence[str] = ()) -> str:
         """The place in the ROS data, not converted to a type of the model."""
-        text = self._data
+        text = _element(access.quantifier) if access.quantifier else self._data
+        rest = iter(indices)
         for step in access.steps:
-            if isinstance(step, rosgraph.FieldStep):
-                text += f".{step.name}"
-            else:
-                assert isinstance(step, rosgraph.IndexStep)
-                text = f"{self._reader}.at({text}, {step.index})"
+            match step:
+                case rosgraph.FieldStep():
+                    text += f".{step.name}"
+                case rosgraph.IndexStep():
+                    index = step.index if step.position is None else next(rest)
+                    text = f"{self._reader}.at({text}, {index})"
+                case rosgraph.SliceStep():
+                    text = f"{self._reader}.slice({text}, {next(rest)}, {next(rest)})"
         return text
 
     def integer(self, expression: ex.Expression, kind: ex.IntegerType) -> str:
@@ -141,6 +186,10 @@ class CppPrinter(Printer):
 
     def _double(self, expression: ex.Expression) -> bool:
         return self._types(expression) == DOUBLE
+
+
+def _element(quantifier: rosgraph.ArrayQuantifier) -> str:
+    return f"element_{quantifier.name}"
 
 
 def _is_constant(expression: ex.Expression, given: list[bool]) -> bool:

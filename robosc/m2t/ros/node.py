@@ -15,7 +15,7 @@ from robosc.metamodel import rosgraph, sct
 from robosc.semantics.messages import parts_with_headers, reads_elements
 from robosc.semantics.naming import Names
 from robosc.semantics.operators import PRECEDENCE
-from robosc.semantics.typing import DOUBLE, infer
+from robosc.semantics.typing import DOUBLE, ArrayType, infer
 from robosc.semantics.walks import parts
 
 if TYPE_CHECKING:
@@ -84,8 +84,8 @@ class Alternative:
 class Message:
     """Data that the node sends: a message, a request or a goal.
 
-    It may fail where a double could be no finite number. `reaction` is what sending it changes in the node; `parts`
-    may hold headers that are the node's to fill in, "" is the whole.
+    It may fail where a double could be no finite number, or where it `reads_elements` of arrays. `reaction` is what
+    sending it changes in the node; `parts` may hold headers that are the node's to fill in, "" is the whole.
     """
 
     word: str
@@ -93,6 +93,7 @@ class Message:
     requirements: list[str]
     alternatives: list[Alternative]
     may_fail: bool
+    reads_elements: bool
     reaction: EventHandler | None
     parts: list[str]
 
@@ -393,12 +394,15 @@ class Node:
 
     def _message(self, sending: rosgraph.Sending) -> Message:
         plant: sct.Plant = sending.event.eContainer()
+        values = [field.value for provided in sending.alternatives for field in provided.fields]
+        reads = any(map(reads_elements, values))
         return Message(
             self._sent.fresh(self._names.c.member(plant).removeprefix(f"{plant.kind.name}_")),
             self._names.c.enumerator(sending.event),
             self._reasons.of(sending.event),
             [self._alternative(provided) for provided in sending.alternatives],
-            any(infer(field.value) == DOUBLE for provided in sending.alternatives for field in provided.fields),
+            reads or any(infer(value) in {DOUBLE, ArrayType(DOUBLE)} for value in values),
+            reads,
             self._handler(sending.event) if self._reactions(sending.event) else None,
             [".".join(path) for path in parts_with_headers(sending)],
         )
@@ -410,7 +414,13 @@ class Node:
         )
 
     def _field(self, assignment: rosgraph.FieldAssignment) -> str:
-        kind = assignment.type
-        if isinstance(kind, ex.IntegerType):
-            return self._printer.integer(assignment.value, kind)
-        return self._printer(assignment.value)
+        value, kind = assignment.value, assignment.type
+        if isinstance(value, rosgraph.ArrayLiteral) and isinstance(kind, rosgraph.ArrayType):
+            element = kind.element
+            assert element is not None
+            values = [self._value(part, element) for part in value.elements]
+            return f"std::initializer_list<{self._type(element)}>{{{', '.join(values)}}}"
+        return self._value(value, kind)
+
+    def _value(self, value: ex.Expression, kind: ex.Type) -> str:
+        return self._printer.integer(value, kind) if isinstance(kind, ex.IntegerType) else self._printer(value)

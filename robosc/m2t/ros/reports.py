@@ -6,18 +6,16 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from robosc.m2t.c.comments import string_literal
-from robosc.m2t.ros.expressions import CppPrinter
+from robosc.m2t.ros.expressions import CppPrinter, converted
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
-from robosc.semantics.messages import reads_elements
-from robosc.semantics.walks import parts
+from robosc.semantics.messages import Read, reads_elements, shown
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from robosc.m2t.ros.names import CppNames
-
-_Path = tuple[str, ...]
+    from robosc.semantics.messages import Path, Shown
 
 
 @dataclass(frozen=True)
@@ -52,24 +50,48 @@ class Component:
 def received(values: Sequence[ex.Expression], names: CppNames) -> EventData | None:
     """What the node reads of a message, in the shape of the message; basic data is the value itself."""
     printer = CppPrinter(names, reader="element")
-    found: dict[_Path, tuple[ex.Expression, ex.Type | None]] = {}
-    for value in values:
-        remaining = iter(parts(value))
-        for part in remaining:
-            if isinstance(part, rosgraph.ConversionCall):
-                kind = ex.EnumerationType(enumeration=part.conversion.enumeration)
-                found.setdefault(_path(next(remaining)), (part, kind))  # its argument follows
-            elif isinstance(part, rosgraph.WireAccess):
-                found.setdefault(_path(part), (part, part.type))
+    found = shown(values)
     if not found:
         return None
-    if list(found) == [("data",)]:
-        found = {(): found["data",]}
-    texts = {path: _json(printer(part), kind, names) for path, (part, kind) in found.items()}
-    reading = {path for path, (part, _) in found.items() if reads_elements(part)}
+    texts = {path: _value(path, part, printer, names) for path, part in found.items()}
+    if list(texts) == [("data",)]:
+        texts = {(): texts["data",]}
+    reading = {path for path, part in found.items() if _reads_elements(path, part)}
     if not reading:
         return EventData(_nested(texts), [])
     return EventData("", [Member(_dotted(path), texts[path], path in reading) for path in _grouped(texts)])
+
+
+def _value(path: Path, part: Read | Shown, printer: CppPrinter, names: CppNames) -> str:
+    """What is shown of what stands at the end of a path."""
+    if isinstance(part, Read):
+        kind = ex.EnumerationType(enumeration=part.conversion.enumeration) if part.conversion else part.type
+        return _json(printer(part.reference), kind, names)
+    steps: list[rosgraph.WireStep] = [
+        rosgraph.IndexStep(index=int(step)) if step.isdigit() else rosgraph.FieldStep(name=step) for step in path
+    ]
+    return _list(printer.wire(rosgraph.WireAccess(steps=steps)), part, names)
+
+
+def _list(array: str, parts: Shown, names: CppNames, depth: int = 1) -> str:
+    """What is shown of the elements of an array."""
+    element = f"element{depth}"
+
+    def text(path: Path, part: Read | Shown) -> str:
+        place = ".".join((element, *path))
+        if not isinstance(part, Read):
+            return _list(place, part, names, depth + 1)
+        if part.conversion is not None:
+            kind = ex.EnumerationType(enumeration=part.conversion.enumeration)
+            return _json(f"{names.conversion(part.conversion)}({place})", kind, names)
+        return converted(place, part.type) if part.type is not None else "Json::object()"
+
+    value = _nested({path: text(path, part) for path, part in parts.items()})
+    return f"json_list({array}, []([[maybe_unused]] const auto& {element}) {{ return {value}; }})"
+
+
+def _reads_elements(path: Path, part: Read | Shown) -> bool:
+    return reads_elements(part.reference) if isinstance(part, Read) else any(map(str.isdigit, path))
 
 
 def component(plant: sct.Plant, variables: Sequence[rosgraph.NodeVariable], names: CppNames) -> Component:
@@ -104,21 +126,13 @@ def _json(value: str, kind: ex.Type | None, names: CppNames) -> str:
     return value
 
 
-def _path(access: ex.Expression) -> _Path:
-    assert isinstance(access, rosgraph.WireAccess)
-    return tuple(
-        step.name if isinstance(step, rosgraph.FieldStep) else str(step.index)  # type: ignore[attr-defined]
-        for step in access.steps
-    )
-
-
-def _dotted(path: _Path) -> str:
+def _dotted(path: Path) -> str:
     return string_literal(".".join(path))
 
 
-def _grouped(paths: Iterable[_Path]) -> list[_Path]:
+def _grouped(paths: Iterable[Path]) -> list[Path]:
     """The paths, those of one object behind each other, objects where their first member was."""
-    heads: dict[_Path, list[_Path]] = {}
+    heads: dict[Path, list[Path]] = {}
     for path in paths:
         heads.setdefault(path[:1], []).append(path)
     return [
@@ -128,7 +142,7 @@ def _grouped(paths: Iterable[_Path]) -> list[_Path]:
     ]
 
 
-def _nested(texts: Mapping[_Path, str]) -> str:
+def _nested(texts: Mapping[Path, str]) -> str:
     if () in texts:
         return texts[()]
     inner = {

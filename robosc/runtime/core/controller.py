@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 
 from robosc.configuration import NO_STOP, NO_STOP_ON_SILENCE
 from robosc.engine import Settings as LoopSettings
-from robosc.metamodel import expression as ex
 from robosc.ros_types import Section
 from robosc.runtime.core.clients import ActionClient, Answers, ServiceClient
 from robosc.runtime.core.event_handler import EventHandler
@@ -19,6 +18,7 @@ from robosc.runtime.core.monitors import GraphMonitor, Watchdog
 from robosc.runtime.core.node_data import NotFiniteError, bounded, fill
 from robosc.runtime.core.settings import SafeMessages
 from robosc.semantics.messages import parts_with_headers
+from robosc.semantics.operators import UnreadableError
 from robosc.semantics.parameters import topic_words, watchdog
 from robosc.semantics.roles import event_name, plant_of
 
@@ -248,6 +248,9 @@ class Controller(EventHandler):
         self._withheld.discard(name)
         return True
 
+    def _may_wait(self, event: sct.Event) -> bool:
+        return event not in self._cancels
+
     def _prepare(self, sender: _Sender) -> bool:
         """Makes the data of a trigger; False where it can't be sent."""
         message = self._node.create(sender.interface, sender.section)
@@ -257,15 +260,15 @@ class Controller(EventHandler):
         alternatives = sender.sending.alternatives
         chosen = next((data for data in alternatives if self._data.is_in(data.location)), None)
         try:
-            for field in chosen.fields if chosen is not None else ():
-                value = self._data.value(field.value)
-                if isinstance(field.type, ex.IntegerType):
-                    value = bounded(value, field.type)
+            given = list(chosen.fields) if chosen is not None else []
+            values = [bounded(self._data.value(field.value), field.type) for field in given]
+            for field, value in zip(given, values, strict=True):
                 fields[tuple(field.path)] = fill(self._node, message, field.path, value)
-        except NotFiniteError as fault:
+        except (NotFiniteError, UnreadableError) as fault:
             event = sender.sending.event
             word = plant_of(event).name.partition("_")[2]
-            self._warn((event_name(event), str(fault)), f"{word} is withheld: its {fault} would not be finite")
+            why = f"its {fault} would not be finite" if isinstance(fault, NotFiniteError) else str(fault)
+            self._warn((event_name(event), str(fault)), f"{word} is withheld: {why}")
             return False
         sender.message = message
         sender.logged = None

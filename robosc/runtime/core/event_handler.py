@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any
 from robosc.engine import ControlLoop, Hooks
 from robosc.metamodel import engine
 from robosc.runtime.core.event_log import EventLog, ReceivedData
-from robosc.runtime.core.node_data import NodeData, PastEndError
+from robosc.runtime.core.node_data import NodeData
 from robosc.runtime.core.reports import StateReporter, Throttle
 from robosc.semantics.messages import receptions
+from robosc.semantics.operators import UnreadableError
 from robosc.semantics.roles import event_name
 
 if TYPE_CHECKING:
@@ -127,7 +128,7 @@ class EventHandler:
                 self._note_failure(client, str(fault))
                 if self._control.enabled(event_name(client.error)):
                     # The log shows what can be read of the message.
-                    self._change_variables(client.error)
+                    self._changes(client.error)
                     self._run(client.error, (response, message))
             else:
                 self._note_success(client)
@@ -136,7 +137,11 @@ class EventHandler:
         """A call or goal has failed."""
         self._note_failure(client, why)
         with self._batch():
-            self._perform(client.error)
+            fault = self._perform(client.error)
+            if fault is not None:
+                # A failure that nobody heard of would leave the component waiting.
+                self._warn(client.error, f"{event_name(client.error)}: {fault}")
+                self._run(client.error, (client.error, None))
 
     def _note_success(self, client: Client) -> None:
         """A call or goal has come to a response that can be read."""
@@ -147,13 +152,13 @@ class EventHandler:
 
     def _perform(
         self, event: sct.Event, inputs: Sequence[rosgraph.InputAssignment] = (), message: Message = None
-    ) -> PastEndError | None:
+    ) -> UnreadableError | None:
         """Lets an event of the robot happen, if it can now; returns what keeps its data from being read."""
         if not self._control.enabled(event_name(event)):
             return None
         try:
             received = self._data.received(event, inputs, message)
-        except PastEndError as fault:
+        except UnreadableError as fault:
             return fault
         self._data.variables.update(received.variables)
         self._run(event, (event, message), received.inputs)
@@ -169,9 +174,14 @@ class EventHandler:
         self._control.perform(event_name(event), inputs)
         self._received = None
 
-    def _change_variables(self, event: sct.Event) -> None:
-        """Changes the node's variables as an event without data does, from the present state on."""
-        self._data.variables.update(self._data.received(event).variables)
+    def _changes(self, event: sct.Event) -> bool:
+        """Changes the node's variables as an event without data does; False where these can't be read: as reported."""
+        try:
+            self._data.variables.update(self._data.received(event).variables)
+        except UnreadableError as fault:
+            self._warn(event, f"{event_name(event)}: {fault}")
+            return False
+        return True
 
     # What happens
 
@@ -179,9 +189,11 @@ class EventHandler:
         event = self._events[name]
         if not self._may_happen(event):
             return False
-        if event not in self._incoming:
-            self._change_variables(event)
-        return True
+        return event in self._incoming or self._changes(event) or not self._may_wait(event)
+
+    def _may_wait(self, event: sct.Event) -> bool:  # noqa: ARG002  # what a controller does by itself may
+        """Whether an event that nobody in the robot has told of need not happen."""
+        return False
 
     def _may_happen(self, event: sct.Event) -> bool:  # noqa: ARG002  # a controller withholds some
         """Whether an enabled event may happen now, so that it is not withheld."""

@@ -6,23 +6,24 @@ import math
 import os
 import re
 import time
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from threading import Condition, Thread
-from typing import IO, TYPE_CHECKING, TypeAlias
+from typing import IO, TYPE_CHECKING, Any, TypeAlias
 
 from robosc.diagnostics.visible import HIDDEN_PATTERN, code
 from robosc.files.writing import open_log
 from robosc.metamodel import expression as ex
-from robosc.metamodel import rosgraph
-from robosc.metamodel.reflection import tree
-from robosc.runtime.core.node_data import PastEndError
+from robosc.semantics.messages import Read
+from robosc.semantics.messages import shown as all_shown
+from robosc.semantics.operators import UnreadableError
 
 if TYPE_CHECKING:
     from robosc.runtime.core.node_data import NodeData
     from robosc.runtime.core.port import Message
     from robosc.semantics.evaluation import Value
+    from robosc.semantics.messages import Shown
 
 _Path = tuple[str, ...]
 #: What can be written as JSON.
@@ -180,42 +181,38 @@ class ReceivedData:
     """What the node reads of the data of one event, in the shape of the message; basic data is the value itself."""
 
     def __init__(self, values: Iterable[ex.Expression]) -> None:
-        found: dict[_Path, ex.Expression] = {}
-        for value in values:
-            for part in _outermost_reads(value):
-                access = part.argument if isinstance(part, rosgraph.ConversionCall) else part
-                found.setdefault(access_path(access), part)
         #: What is read, by the names and indices on the way to it.
-        self.parts: Mapping[tuple[str, ...], ex.Expression] = found
+        self.parts = all_shown(values)
+        found = self.parts
         self._found = {(): found["data",]} if list(found) == [("data",)] else found
 
     def read(self, data: NodeData, message: Message) -> Mapping[str, Json] | None:
         """The data for the log, without what can't be read; None where that is nothing."""
-        values = {}
+        values: dict[_Path, Json] = {}
         for path, part in self._found.items():
-            with suppress(PastEndError):
-                values[path] = shown(data.value(part, message))
+            with suppress(UnreadableError):
+                if isinstance(part, Read):
+                    values[path] = shown(data.value(part.reference, message))
+                else:
+                    array = data.at(message, path or ("data",))
+                    values[path] = [_inside(element, part, data) for element in array]
         if not values:
             return None
         return {"value": values[()] if () in values else nested(values)}
 
 
-def _outermost_reads(value: ex.Expression) -> Iterator[rosgraph.ConversionCall | rosgraph.WireAccess]:
-    argument = None
-    for _, part in tree(value):
-        if isinstance(part, rosgraph.ConversionCall):
-            argument = part.argument
-            yield part
-        elif isinstance(part, rosgraph.WireAccess) and part is not argument:
-            yield part
-
-
-def access_path(access: rosgraph.WireAccess) -> tuple[str, ...]:
-    """The names of fields and indices on the way that an access takes."""
-    return tuple(
-        step.name if isinstance(step, rosgraph.FieldStep) else str(step.index)  # type: ignore[attr-defined]
-        for step in access.steps
-    )
+def _inside(element: Any, parts: Shown, data: NodeData) -> Json:
+    """What is shown of an element of an array."""
+    values: dict[_Path, Json] = {}
+    for path, part in parts.items():
+        reached = data.at(element, path)
+        if not isinstance(part, Read):
+            values[path] = [_inside(inner, part, data) for inner in reached]
+        elif part.conversion is not None:
+            values[path] = shown(data.convert(part.conversion, reached))
+        else:
+            values[path] = shown(data.leaf(reached, part.type)) if part.type is not None else {}
+    return values[()] if () in values else nested(values)
 
 
 def nested(values: Mapping[_Path, Json]) -> dict[str, Json]:

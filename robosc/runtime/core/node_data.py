@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+import re
 import struct
+from collections.abc import Iterable, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -11,9 +13,10 @@ from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
 from robosc.ros_types.wire import INTEGER_RANGES
 from robosc.semantics.evaluation import Program, Value, as_double, saturate
+from robosc.semantics.operators import UnreadableError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator
 
     from robosc.engine import Engine
     from robosc.runtime.core.event_log import Json
@@ -26,7 +29,7 @@ _FLOATS = {"float32": "f", "float": "f", "float64": "d", "double": "d"}
 _RANGES = {**INTEGER_RANGES, "octet": INTEGER_RANGES["uint8"]}
 
 
-class PastEndError(Exception):
+class PastEndError(UnreadableError):
     """An element that an array does not have."""
 
     def __init__(self, index: int, length: int) -> None:
@@ -62,7 +65,7 @@ class NodeData:
             self._reactions.setdefault(reaction.event, []).append(reaction)
 
     def value(self, expression: ex.Expression, data: Message = None) -> Value:
-        """The value of an expression; `data` is what came in. Raises PastEndError."""
+        """The value of an expression; `data` is what came in. Raises UnreadableError."""
         program = self._programs.get(expression)
         if program is None:
             program = Program[Value](expression, lambda reference: partial(self._read, reference), fit)
@@ -79,7 +82,7 @@ class NodeData:
     ) -> Received:
         """What the transitions that the event takes in the present state make of its data; nothing is changed yet.
 
-        Raises PastEndError where one of them can't read what it needs: then the event must not happen.
+        Raises UnreadableError where one of them can't read what it needs: then the event must not happen.
         """
         return Received(self._inputs(inputs, data), self._assigned(event, data))
 
@@ -108,23 +111,26 @@ class NodeData:
         return [assigned.value for reaction in self._reactions.get(event, ()) for assigned in reaction.assignments]
 
     def convert(self, conversion: rosgraph.Conversion, argument: Any) -> ex.EnumerationLiteral:
-        """The literal of the first rule that holds; one that reads past the end of an array does not."""
+        """The literal of the first rule that holds; one that can't be read does not."""
         for rule in conversion.rules:
             try:
                 if self.value(rule.condition, argument):
                     return rule.literal
-            except PastEndError:
+            except UnreadableError:
                 continue
         return conversion.default
 
-    def _read(self, reference: ex.Expression, data: Message) -> Value:
+    def _read(self, reference: ex.Expression, *given: Any) -> Value:
+        """The value of a reference; `given` is the element that it reads, its indices, and what came in."""
         match reference:
             case rosgraph.NodeVariableReference():
                 return self.variables[reference.variable]
             case rosgraph.WireAccess():
-                return self._leaf(self._reach(reference, data), reference.type)
+                return self.leaf(self._reach(reference, *given), reference.type)
             case rosgraph.ConversionCall():
-                return self.convert(reference.conversion, self._reach(reference.argument, data))
+                return self.convert(reference.conversion, self._reach(reference.argument, *given))
+            case rosgraph.ArrayLiteral():
+                return given[:-1]
             case ex.EnumerationLiteralReference():
                 return reference.literal
             case sct.LocationReference():
@@ -133,22 +139,46 @@ class NodeData:
                 return self._variable(reference.variable)
         raise TypeError(f"a ROS graph holds no {type(reference).__name__}")
 
-    def _reach(self, access: rosgraph.WireAccess, data: Message) -> Any:
-        """What an access reads of a message. Raises PastEndError."""
-        reached = data
+    def _reach(self, access: rosgraph.WireAccess, *given: Any) -> Any:
+        """What an access reads of a message, or of an element, with these indices. Raises UnreadableError."""
+        rest = iter(given if access.quantifier else (given[-1], *given[:-1]))
+        reached = next(rest)
         for step in access.steps:
-            if isinstance(step, rosgraph.FieldStep):
-                reached = getattr(reached, step.name)
-            else:
-                assert isinstance(step, rosgraph.IndexStep)
-                if step.index >= len(reached):
-                    raise PastEndError(step.index, len(reached))
-                reached = reached[step.index]
+            match step:
+                case rosgraph.FieldStep():
+                    reached = self._field(reached, step.name)
+                case rosgraph.IndexStep():
+                    index = step.index if step.position is None else next(rest)
+                    assert index is not None
+                    reached = self._element(reached, index)
+                case rosgraph.SliceStep():
+                    reached = self._slice(reached, next(rest), next(rest))
         return reached
 
-    def _leaf(self, value: Any, kind: ex.Type | None) -> Value:
+    def at(self, data: Any, path: Sequence[str]) -> Any:
+        """What stands at the end of a path of names and positions. Raises UnreadableError."""
+        for step in path:
+            data = self._element(data, int(step)) if step.isdigit() else self._field(data, step)
+        return data
+
+    def _field(self, owner: Any, name: str) -> Any:
+        return getattr(owner, name)
+
+    def _element(self, array: Any, index: int) -> Any:
+        if not 0 <= index < len(array):
+            raise PastEndError(index, len(array))
+        return array[index]
+
+    def _slice(self, array: Any, first: int, last: int) -> Any:
+        if last >= first and not (first >= 0 and last < len(array)):
+            raise UnreadableError(f"there are no elements {first} to {last} in an array of {len(array)}")
+        return array[first : last + 1] if last >= first else []
+
+    def leaf(self, value: Any, kind: ex.Type | None) -> Value:
         """A value of ROS as one of the model: numpy's scalars and ROS 2's `byte` become plain numbers."""
         match kind:
+            case rosgraph.ArrayType():
+                return [self.leaf(element, kind.element) for element in value]
             case ex.IntegerType():
                 return fit(value[0] if isinstance(value, bytes) else int(value))
             case ex.DoubleType():
@@ -169,6 +199,9 @@ def bounded(value: Value, kind: ex.Type) -> Value:
     if isinstance(kind, ex.IntegerType):
         assert isinstance(value, int)
         return saturate(fit(value), kind.minimum, kind.maximum)
+    if isinstance(kind, rosgraph.ArrayType) and kind.element is not None:
+        assert isinstance(value, Iterable)
+        return [bounded(element, kind.element) for element in value]
     return value
 
 
@@ -188,9 +221,28 @@ def fill(port: ControllerPort, message: Message, path: Sequence[str], value: Val
     for name in path[:-1]:
         owner = getattr(owner, name)
     kind = port.wire_types(owner)[path[-1]]
+    if isinstance(value, Sequence) and not isinstance(value, str):
+        return _fill_array(owner, kind, value, path)
     held: bool | int | float | str = _held(kind, value, path)
     setattr(owner, path[-1], bytes([held]) if kind == "octet" and isinstance(held, int) else held)
     return held
+
+
+def _fill_array(owner: Message, kind: str, values: Sequence[Value], path: Sequence[str]) -> Json:
+    """Sets the elements of an array; one of a fixed length keeps the elements behind them."""
+    element, length = _array(kind)
+    held = [_held(element, value, path) for value in values[:length]]
+    rest = [] if length is None else list(getattr(owner, path[-1]))[len(held) :]
+    octets = [bytes([number]) if element == "octet" and isinstance(number, int) else number for number in held]
+    setattr(owner, path[-1], [*octets, *rest])
+    return held
+
+
+def _array(kind: str) -> tuple[str, int | None]:
+    """The type of the elements, and the length if it is fixed; ROS 2 also has `sequence<double, 9>`."""
+    bounds = re.fullmatch(r"(?:sequence<)?(\w+(?:<\d+>)?)(?:\[(\d*)\]|(?:, *\d+)?>)", kind)
+    assert bounds is not None
+    return bounds[1], int(bounds[2]) if bounds[2] else None
 
 
 def _held(kind: str, value: Value, path: Sequence[str]) -> bool | int | float | str:

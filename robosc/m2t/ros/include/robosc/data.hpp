@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <string>
 #include <type_traits>
@@ -64,6 +65,9 @@ class Integer {
     return remainder < 0 ? remainder + b.value_ : remainder;
   }
   friend Integer operator-(Integer a) { return Integer(0) - a; }
+  friend Integer magnitude(Integer a) { return a.value_ < 0 ? -a : a; }
+  friend Integer smaller(Integer a, Integer b) { return b < a ? b : a; }
+  friend Integer larger(Integer a, Integer b) { return b > a ? b : a; }
   friend constexpr bool operator==(Integer a, Integer b) { return a.value_ == b.value_; }
   friend constexpr bool operator!=(Integer a, Integer b) { return a.value_ != b.value_; }
   friend constexpr bool operator<(Integer a, Integer b) { return a.value_ < b.value_; }
@@ -86,33 +90,135 @@ class Integer {
 /// Whether two numbers differ; false where one of them is no number, as for every comparison.
 inline bool differ(double a, double b) { return a < b || a > b; }
 
-/// Reads elements of arrays, and remembers the first one that was not there.
+inline double magnitude(double a) { return std::fabs(a); }
+/// The smaller of two numbers, or the larger: the other one where one is no number.
+inline double smaller(double a, double b) { return b < a || std::isnan(a) ? b : a; }
+inline double larger(double a, double b) { return b > a || std::isnan(a) ? b : a; }
+
+/// How many characters a text in UTF-8 has.
+inline Integer size_of(const std::string& text) {
+  return std::count_if(text.begin(), text.end(), [](char byte) { return (byte & 0xC0) != 0x80; });
+}
+
+/// Some elements of an array.
+template <typename Iterator>
+class Slice {
+ public:
+  using const_iterator = Iterator;
+  using const_reference = typename std::iterator_traits<Iterator>::reference;
+  using value_type = typename std::iterator_traits<Iterator>::value_type;
+
+  Slice(Iterator begin, Iterator end) : begin_(begin), end_(end) {}
+
+  Iterator begin() const { return begin_; }
+  Iterator end() const { return end_; }
+  std::size_t size() const { return static_cast<std::size_t>(std::distance(begin_, end_)); }
+  const_reference operator[](std::size_t index) const { return *std::next(begin_, static_cast<std::ptrdiff_t>(index)); }
+
+ private:
+  Iterator begin_, end_;
+};
+
+/// How many elements an array has.
+template <typename Array>
+Integer size_of(const Array& array) {
+  return array.size();
+}
+
+/// Whether a condition holds of all elements of an array, or of any; from left to right, no further than needed.
+template <typename Array, typename Condition>
+bool for_all(const Array& array, Condition holds) {
+  for (const auto& element : array) {
+    if (!holds(element)) return false;
+  }
+  return true;
+}
+template <typename Array, typename Condition>
+bool for_any(const Array& array, Condition holds) {
+  return !for_all(array, [&](const auto& element) { return !holds(element); });
+}
+
+/// How many elements of an array a condition holds of.
+template <typename Array, typename Condition>
+Integer number_of(const Array& array, Condition holds) {
+  std::int64_t count = 0;
+  for (const auto& element : array) count += holds(element) ? 1 : 0;
+  return count;
+}
+
+/// Reads elements of arrays and rounds numbers, and remembers the first that can't be.
 class ArrayReader {
  public:
+  Integer floor(double number) { return whole(std::floor(number)); }
+  Integer ceil(double number) { return whole(std::ceil(number)); }
+  Integer round(double number) { return whole(std::round(number)); }
+
   template <typename Array>
-  typename Array::const_reference at(const Array& array, std::size_t index) {
-    if (index < array.size()) return array[index];
-    if (complete_) {
-      complete_ = false;
-      index_ = index;
-      length_ = array.size();
-    }
+  typename Array::const_reference at(const Array& array, Integer position) {
+    const auto index = position.to<std::int64_t>();
+    if (index >= 0 && position < array.size()) return array[static_cast<std::size_t>(index)];
+    fail("there is no element " + std::to_string(index) + " in an array of " + std::to_string(array.size()));
     static const typename Array::value_type nothing{};
     return nothing;
   }
 
-  /// Whether all elements were there.
-  bool complete() const { return complete_; }
-
-  /// What was not there.
-  std::string fault() const {
-    return "there is no element " + std::to_string(index_) + " in an array of " + std::to_string(length_);
+  /// The elements from one to another, both included; none where the last one is before the first.
+  template <typename Array>
+  Slice<typename Array::const_iterator> slice(const Array& array, Integer first, Integer last) {
+    const auto from = first.to<std::int64_t>(), to = last.to<std::int64_t>();
+    if (last < first) return {array.begin(), array.begin()};
+    if (from >= 0 && last < array.size()) {
+      const auto begin = std::next(array.begin(), static_cast<std::ptrdiff_t>(from));
+      return {begin, std::next(begin, static_cast<std::ptrdiff_t>(to - from + 1))};
+    }
+    fail("there are no elements " + std::to_string(from) + " to " + std::to_string(to) + " in an array of " +
+         std::to_string(array.size()));
+    return {array.begin(), array.begin()};
   }
 
+  template <typename Number, typename Array>
+  Number least(const Array& array) {
+    return first_of<Number>(array, [](Number a, Number b) { return a < b; });
+  }
+  template <typename Number, typename Array>
+  Number greatest(const Array& array) {
+    return first_of<Number>(array, [](Number a, Number b) { return a > b; });
+  }
+
+  /// Whether all could be read.
+  bool complete() const { return fault_.empty(); }
+
+  /// What could not.
+  const std::string& fault() const { return fault_; }
+
  private:
-  bool complete_ = true;
-  std::size_t index_ = 0;
-  std::size_t length_ = 0;
+  /// The number that is before all others; what is no number is passed over.
+  template <typename Number, typename Array, typename Before>
+  Number first_of(const Array& array, Before before) {
+    Number found = 0;
+    bool any = false;
+    for (const auto& element : array) {
+      const auto number = static_cast<Number>(element);
+      if (number == number && (!any || before(number, found))) {
+        found = number;
+        any = true;
+      }
+    }
+    if (!any) fail("there is no number in an array of " + std::to_string(array.size()));
+    return found;
+  }
+
+  Integer whole(double number) {
+    if (std::isnan(number)) fail("NaN can't be rounded");
+    constexpr double least = std::numeric_limits<std::int32_t>::min(), most = std::numeric_limits<std::int32_t>::max();
+    return std::isnan(number) ? 0 : static_cast<std::int32_t>(std::clamp(number, least, most));
+  }
+
+  void fail(const std::string& why) {
+    if (complete()) fault_ = why;
+  }
+
+  std::string fault_;
 };
 
 }  // namespace v1

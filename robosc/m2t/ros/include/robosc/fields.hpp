@@ -2,7 +2,10 @@
 #ifndef ROBOSC_FIELDS_HPP_
 #define ROBOSC_FIELDS_HPP_
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <initializer_list>
 #include <limits>
 #include <string>
 #include <type_traits>
@@ -18,6 +21,28 @@ class FieldWriter {
  public:
   /// `noted`: whether what is set is kept as JSON, too.
   explicit FieldWriter(bool noted) : noted_(noted) {}
+
+  /// Sets the elements of an array; one of a fixed length keeps the elements behind them.
+  template <typename Array, typename Element>
+  void set(const char* path, Array& array, std::initializer_list<Element> values) {
+    reserve(array, values.size(), 0);
+    Json list = Json::array();
+    auto field = array.begin();
+    for (auto value = values.begin(); value != values.end() && field != array.end(); ++value, ++field) {
+      if constexpr (std::is_same_v<Element, Integer> || std::is_same_v<Element, double>) {
+        fill(path, *field, *value);
+        if constexpr (std::is_floating_point_v<std::decay_t<decltype(*field)>>) {
+          list.add(static_cast<double>(*field));
+        } else {
+          list.add(Integer(*field));
+        }
+      } else {
+        *field = *value;
+        list.add(*value);
+      }
+    }
+    note(path, list);
+  }
 
   template <typename Field, typename Value>
   void set(const char* path, Field& field, const Value& value) {
@@ -43,6 +68,13 @@ class FieldWriter {
   }
 
  private:
+  template <typename Array>
+  static auto reserve(Array& array, std::size_t size, int) -> decltype(array.resize(size)) {
+    array.resize(std::min(size, array.max_size()));
+  }
+  template <typename Array>
+  static void reserve(Array&, std::size_t, long) {}
+
   template <typename Field>
   void fill(const char* path, Field& field, Integer value) {
     if constexpr (std::is_integral_v<Field>) {

@@ -149,6 +149,14 @@ class Json {
   char end_;
 };
 
+/// A list of what a function makes of the elements of an array.
+template <typename Array, typename Function>
+Json json_list(const Array& array, Function shown) {
+  Json list = Json::array();
+  for (const auto& element : array) list.add(shown(element));
+  return list;
+}
+
 /// An object whose members are named by paths such as `position.x`; those of one object follow each other.
 class JsonTree {
  public:
