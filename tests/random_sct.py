@@ -38,10 +38,11 @@ class _Sketch:
 
 
 @st.composite
-def sct_models(draw: st.DrawFn, *, data: bool = True) -> sct.SupervisoryControlModel:
+def sct_models(draw: st.DrawFn, *, data: bool = True, invariants: bool = False) -> sct.SupervisoryControlModel:
     """Models without a supervisor: plants that share events, guards, saturating updates, inputs, requirements.
 
     With `data`, some have plants as provide statements make them (semantics.md, point 4): nothing reads them.
+    With `invariants`, some have conditions on their states.
     """
     sketches = [draw(_sketches(f"p{index}")) for index in range(draw(st.integers(1, 3)))]
     scope = _Scope(
@@ -56,7 +57,8 @@ def sct_models(draw: st.DrawFn, *, data: bool = True) -> sct.SupervisoryControlM
         draw(st.sampled_from((needs, disables)))(draw(st.sampled_from(events)), _boolean(draw, scope, 3))
         for _ in range(draw(st.integers(0, 3)) if events else 0)
     ]
-    return model(plants, requirements, _ENUMERATIONS)
+    conditions = [_boolean(draw, scope, 3) for _ in range(draw(st.sampled_from((0, 1, 2))) if invariants else 0)]
+    return model(plants, requirements, _ENUMERATIONS, invariants=conditions)
 
 
 @st.composite

@@ -148,6 +148,7 @@ def model(
     *,
     name: str = "robot",
     guards: Mapping[str, str | tuple[str | None, str | None]] | None = None,
+    invariants: Sequence[str] = (),
 ) -> sct.SupervisoryControlModel:
     """The model. `guards` attaches a supervisor that was not synthesized: event to requirement part, or both parts."""
     scope = _Scope(
@@ -173,6 +174,10 @@ def model(
                 text=requirement.text,
             )
             for requirement in requirements
+        ],
+        invariants=[
+            sct.StateInvariant(condition=scope.expression(condition, None), text=f"requirement always {condition}")
+            for condition in invariants
         ],
     )
     if guards is not None:

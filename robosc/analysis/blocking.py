@@ -28,7 +28,8 @@ class Reason:
     at all; none if all can be but never at once. `trace` is a shortest one from the initial state, the event last;
     `state` is where it ends, before an event that a requirement forbids: the location of every plant with several of
     them, and the value of every variable. `codes` are those of that state. `requirements` forbid the event at fault
-    there, or else something from there on.
+    there, or else something from there on. `violated` are the invariants that do not hold once the event happened, or
+    at the start.
     """
 
     event: sct.Event | None
@@ -37,6 +38,7 @@ class Reason:
     state: Mapping[str, Value]
     codes: Mapping[Element, int] = field(repr=False)
     requirements: tuple[sct.Requirement, ...] = ()
+    violated: tuple[sct.StatedRequirement, ...] = ()
 
 
 def reason_of_emptiness(system: SynthesizedSystem) -> Reason:
@@ -58,6 +60,9 @@ def _uncontrollable(system: SynthesizedSystem) -> Reason:
         [*system.trace(first), *system.trace(last)],
         last.states[-1],
     )
+    violated = system.violated(last.states[-1])
+    if violated:
+        return replace(reason, event=event, unmarked=(), violated=violated)
     changing = {relation.event for relation, _ in system.plant_moves}
     at_fault = [one for one in forbidden_from(system, last.states[-1]) if one.event in changing]
     return replace(reason, event=event, requirements=tuple(at_fault))
@@ -67,14 +72,21 @@ def _blocked_from_the_start(system: SynthesizedSystem) -> Reason:
     encoding = system.encoding
     path = shortest_path(encoding, system.plant_moves, encoding.initial, encoding.all_marked, system.diagrams.true)
     unmarked = system.never_marked(encoding.initial_codes)
+    violated = system.violated(encoding.initial_codes)
+    if violated:
+        return replace(_described(system, (), [], encoding.initial_codes), violated=violated)
     if path is None:
         return _described(system, unmarked, [], encoding.initial_codes)
     steps = system.trace(path)
-    for index, ((relation, _), codes) in enumerate(zip(path.moves, path.states, strict=False)):
+    for index, ((relation, _), codes, after) in enumerate(zip(path.moves, path.states, path.states[1:], strict=False)):
         if not system.is_in(codes, relation.requirement):
             reason = _described(system, unmarked, steps[: index + 1], codes)
             at_fault = [one for one, asked in relation.asked.items() if not system.is_in(codes, asked)]
             return replace(reason, event=relation.event, requirements=tuple(at_fault))
+        violated = system.violated(after)
+        if violated:
+            reason = _described(system, (), steps[: index + 1], after)
+            return replace(reason, event=relation.event, violated=violated)
     raise AssertionError("the requirements forbid nothing on the way")
 
 
@@ -93,19 +105,21 @@ def _described(
 
 @dataclass(frozen=True)
 class BlockingCounterexample:
-    """What the supervisor prevents when it holds an event back that plants and requirements would allow.
+    """What the supervisor prevents when it holds an event back that plants and requirements on it would allow.
 
     `trace` is a shortest one from the initial state, or from the state asked about, that ends with the event so held
-    back. `onwards` is a way from there, under the requirements, to where no marked state can be reached any more, as
-    `unavoidable` finds it: its last event is the uncontrollable one that is guarded against; empty where none is
-    needed. `codes` are those of the state where it ends. `unmarked` are the plants that can't be in a marked location
-    from then on; none if all can be but never at once.
+    back. `onwards` is a way from there, under the requirements, to where an invariant is violated or no marked state
+    can be reached any more, as `unavoidable` finds it: its last event is the uncontrollable one that is guarded
+    against; empty where none is needed. `codes` are those of the state where it ends, `violated` the invariants that do
+    not hold there. Where all hold, `unmarked` are the plants that can't be in a marked location from then on; none if
+    all can be but never at once.
     """
 
     trace: tuple[TraceStep, ...]
     onwards: tuple[TraceStep, ...]
     codes: Mapping[Element, int]
     unmarked: tuple[sct.Plant, ...]
+    violated: tuple[sct.StatedRequirement, ...] = ()
 
 
 def blocking_counterexample(system: SynthesizedSystem, event: sct.Event, way: Path) -> BlockingCounterexample:
@@ -117,8 +131,12 @@ def blocking_counterexample(system: SynthesizedSystem, event: sct.Event, way: Pa
     onwards = unavoidable(system, after)
     end = onwards.states[-1]
     unmarked = [plant for plant in system.model.plants if not plant.locations[end[plant]].marked]
+    trace = system.trace(Path([*way.states, after], [*way.moves, (relation, step)]))
+    violated = system.violated(end)
+    if violated:
+        return BlockingCounterexample(trace, system.trace(onwards), end, (), violated)
     return BlockingCounterexample(
-        system.trace(Path([*way.states, after], [*way.moves, (relation, step)])),
+        trace,
         system.trace(onwards),
         end,
         tuple(system.never_marked(end, deciding(system.moves, unmarked))),
@@ -126,7 +144,9 @@ def blocking_counterexample(system: SynthesizedSystem, event: sct.Event, way: Pa
 
 
 def unavoidable(system: SynthesizedSystem, start: Codes) -> Path:
-    """A way from a state that was given up to where no marked state can be reached, because of what nothing prevents.
+    """A way from a state that was given up to one that was first, because of what nothing prevents.
+
+    That one violates an invariant, or no marked state can be reached from it.
 
     Round by round, backwards: uncontrollable events lead from the state to one that, without the states given up in
     earlier rounds, reaches no marked state; its nearest way there leads through one of those, and so on. So the last

@@ -65,6 +65,8 @@ class _Findings:
             why, hint = f"wherever it could be, {forbid(observed.requirements, 'it')}", "loosen what it needs"
         elif observed.counterexample is not None:
             why, hint = counterexample_in_words(observed.counterexample, self._model), way_out(observed.counterexample)
+            if observed.counterexample.violated and plant.kind == sct.PlantKind.action:
+                hint = f"{hint} (what the action `needs` cancels it; `never` and `always` do not let it start)"
         elif observed.kept_away:
             why = f"the supervisor lets the robot reach no state in which it could be {done}"
             hint = "allow a way to such a state"
@@ -73,8 +75,9 @@ class _Findings:
         else:
             why = _not_requested(observed)
             hint = f"write `on request to {name(plant)}` in a state that can be reached"
+        at_fault = observed.requirements or (observed.counterexample and observed.counterexample.violated) or ()
         return _finding(
-            _blamed(observed.requirements, event),
+            _blamed(at_fault, event),
             "never-enabled",
             f"{subject} can never be {done}: {why}",
             f"{hint}, or leave it out",
@@ -187,7 +190,7 @@ def _finding(element: Any, rule: str, message: str, hint: str, severity: Severit
     return Diagnostic(file, span, severity, rule, message, hint)
 
 
-def _blamed(requirements: Sequence[sct.Requirement], event: sct.Event) -> Any:
+def _blamed(requirements: Sequence[sct.StatedRequirement], event: sct.Event) -> Any:
     return requirements[0] if len(requirements) == 1 else event
 
 

@@ -20,7 +20,7 @@ from robosc.semantics.definition import named_state
 from robosc.semantics.roles import Roles, plant_of
 from robosc.synthesis.decoding import value
 from robosc.synthesis.fixpoint import reachable, supervise
-from robosc.synthesis.relation import event_relations, plant_moves, required_moves, steps
+from robosc.synthesis.relation import event_relations, plant_moves, required_moves, steps, violations
 from robosc.synthesis.run_to_completion import Completion, completion, internal_events
 
 if TYPE_CHECKING:
@@ -66,6 +66,8 @@ class SupervisedSystem:
         self.relations = relations
         self.moves = moves
         self.plant_moves = plant_moves(relations.values())
+        #: The states that violate each invariant, reachable or not.
+        self.violations = violations(model, encoding)
 
     @cached_property
     def controlled(self) -> Diagram:
@@ -115,6 +117,15 @@ class SupervisedSystem:
         states = self.onwards(codes, moves)
         return [plant for plant in self.model.plants if not (states & self.encoding.marked(plant)).satisfiable()]
 
+    @property
+    def violating(self) -> Diagram:
+        """The states that violate some invariant."""
+        return self.diagrams.any_of(self.violations.values())
+
+    def violated(self, codes: Codes) -> tuple[sct.StatedRequirement, ...]:
+        """What a state violates."""
+        return tuple(one for one, states in self.violations.items() if self.is_in(codes, states))
+
     def holds(self, expression: ex.Expression | None, codes: Codes) -> bool:
         """Whether a condition is true in a state."""
         return self.is_in(codes, self.encoding.holds(expression))
@@ -154,10 +165,10 @@ class SynthesizedSystem(SupervisedSystem):
             model, encoding, {relation.event: relation for relation in relations}, required_moves(relations)
         )
         self.required = {relation.event: relation.requirement for relation in relations}
-        self.found = supervise(encoding, self.moves) if found is None else found
+        self.found = supervise(encoding, self.moves, self.violating) if found is None else found
         self.controlled = self.found.controlled
 
-    def without(self, requirements: AbstractSet[sct.Requirement]) -> Self:
+    def without(self, requirements: AbstractSet[sct.StatedRequirement]) -> Self:
         """The system that there would be without some requirements.
 
         An action that is cancelled where a requirement on it no longer holds is then cancelled for the others alone.
@@ -171,7 +182,8 @@ class SynthesizedSystem(SupervisedSystem):
             other.required[event] = kept if trigger is None else ~kept
         moves = ((relation, relation.step_where(other.required[event])) for event, relation in self.relations.items())
         other.moves = [(relation, step) for relation, step in moves if step is not None]
-        other.found = supervise(self.encoding, other.moves)
+        other.violations = {one: states for one, states in self.violations.items() if one not in requirements}
+        other.found = supervise(self.encoding, other.moves, other.violating)
         other.controlled = other.found.controlled
         return other
 
@@ -192,7 +204,7 @@ class SynthesizedSystem(SupervisedSystem):
             return None
         return next((other for other in plant.events if other.kind == sct.EventKind.trigger), None)
 
-    def _asked(self, relation: EventRelation, left_out: AbstractSet[sct.Requirement]) -> Diagram:
+    def _asked(self, relation: EventRelation, left_out: AbstractSet[sct.StatedRequirement]) -> Diagram:
         """Where the requirements on an event hold but for those left out."""
         kept = [asked for requirement, asked in relation.asked.items() if requirement not in left_out]
         return self.diagrams.all_of(kept)

@@ -83,7 +83,7 @@ def change(event: sct.Event) -> str:
     return f"{name(plant)} changes by itself: {', '.join(own)}" + (f" ({where})" if where else "")
 
 
-def called(requirements: Sequence[sct.Requirement]) -> str:
+def called(requirements: Sequence[sct.StatedRequirement]) -> str:
     """Requirements, each in its own words and with its line: "`requirement move needs Lidar.free` (line 12)"."""
     named = [_called(requirement) for requirement in requirements[:_NAMED]]
     if len(requirements) > _NAMED:
@@ -91,8 +91,11 @@ def called(requirements: Sequence[sct.Requirement]) -> str:
     return listed(named)
 
 
-def _called(requirement: sct.Requirement) -> str:
-    text = f"`{requirement.text}`" if requirement.text else f"a requirement on the {words(requirement.event)}"
+def _called(requirement: sct.StatedRequirement) -> str:
+    unnamed = "a requirement"
+    if isinstance(requirement, sct.Requirement):
+        unnamed = f"a requirement on the {words(requirement.event)}"
+    text = f"`{requirement.text}`" if requirement.text else unnamed
     return f"{text} (line {requirement.source.span.line})" if requirement.source else text
 
 
@@ -101,8 +104,20 @@ def forbid(requirements: Sequence[sct.Requirement], what: str) -> str:
     return f"{called(requirements)} {'forbids' if len(requirements) == 1 else 'forbid'} {what}"
 
 
+def violates(named: str, requirements: Sequence[sct.StatedRequirement]) -> str:
+    """That requirements, named so, do not hold."""
+    return f"{named} {'is' if len(requirements) == 1 else 'are'} violated"
+
+
 def blocking(reason: Reason) -> str:
     """Why there is no supervisor, in a sentence without its trace."""
+    if reason.violated:
+        problem = violates(called(reason.violated), reason.violated)
+        if reason.event is None:
+            return f"{problem} from the start"
+        if reason.event.controllable:
+            return f"the shortest way to a marked state needs {words(reason.event)}, after which {problem}"
+        return f"{words(reason.event)} can't be prevented, and after it {problem}"
     problem = "no marked state can be reached"
     if reason.event is None:
         problem += " at all"
@@ -144,6 +159,10 @@ def counterexample_in_words(counterexample: BlockingCounterexample, model: sct.S
         problem = (
             f"{listed([f'`{name(plant)}`' for plant in counterexample.unmarked])} can't get back to a marked state"
         )
+    if counterexample.violated:
+        # Without lines: the sentence stands in generated code, which changes where the robot does.
+        named = listed([f"`{one.text}`" if one.text else "a requirement" for one in counterexample.violated])
+        problem = violates(named, counterexample.violated)
     if not counterexample.onwards:
         return f"after {steps}, {problem}"
     *onwards, last = counterexample.onwards
@@ -153,6 +172,8 @@ def counterexample_in_words(counterexample: BlockingCounterexample, model: sct.S
 
 def way_out(counterexample: BlockingCounterexample) -> str:
     """What would make synthesis allow the event."""
+    if counterexample.violated:
+        return f"loosen the {'requirement' if len(counterexample.violated) == 1 else 'requirements'}"
     stuck = [f"`{name(plant)}`" for plant in counterexample.unmarked if plant.kind == sct.PlantKind.behaviour]
     return f"give {listed(stuck) or 'the components'} a way from there to a marked state"
 

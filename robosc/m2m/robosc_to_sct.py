@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from robosc.m2m.declarations import Declarations
 from robosc.m2m.expressions import SctExpressions
@@ -17,6 +17,8 @@ from robosc.semantics.printing import RoboscPrinter, conjunction, disjunction
 
 if TYPE_CHECKING:
     from robosc.metamodel.places import Place
+
+_Requirement = TypeVar("_Requirement", bound=robosc.Requirement)
 
 #: What comes from outside, or must always be possible: a component elsewhere than in the right state ignores it.
 _NEVER_BLOCKED = (sct.EventKind.response, sct.EventKind.error, sct.EventKind.feedback, sct.EventKind.cancel)
@@ -228,10 +230,10 @@ class _Transformation:
 
     def requirements(self) -> None:
         """Section 5.2.2: one for each communication named, on its trigger; and the cancelling of actions."""
-        on_action: dict[PortInstance, list[Statement[robosc.Requirement]]] = {
+        on_action: dict[PortInstance, list[Statement[robosc.CommunicationRequirement]]] = {
             port: [] for port in self.instances.ports() if isinstance(port.communication, robosc.Action)
         }
-        for requirement in self.instances.statements(robosc.Requirement):
+        for requirement in self.instances.statements(robosc.CommunicationRequirement):
             references = requirement.element.target.communicationTypes
             named = [self.instances.port(reference, requirement.within) for reference in references]
             for port in dict.fromkeys(port for port in named if port is not None):
@@ -240,23 +242,47 @@ class _Transformation:
                     on_action[port].append(requirement)
         for port, requirements in on_action.items():
             self.cancelling(port, requirements)
+        for invariant in self.instances.statements(robosc.StateInvariant):
+            self.invariant(invariant)
 
-    def requirement(self, statement: Statement[robosc.Requirement], port: PortInstance) -> None:
+    def requirement(self, statement: Statement[robosc.CommunicationRequirement], port: PortInstance) -> None:
         requirement, within = statement.element, statement.within
         disables = isinstance(requirement, robosc.DisablesRequirement)
         readable = self.instances.expanded(requirement.condition, within, readable=True)
-        name, condition = self.shown(port), self.print(readable)
+        name, condition, begin = self.shown(port), self.print(readable), self.heading(statement)
         target = sct.Requirement(
             event=self.trace.event(port, sct.EventKind.trigger),
             kind=sct.RequirementKind.disables if disables else sct.RequirementKind.needs,
             condition=self.expressions(requirement.condition, within),
-            text=f"requirement {condition} disables {name}" if disables else f"requirement {name} needs {condition}",
+            name=_stated_name(statement),
+            text=f"{begin} {condition} disables {name}" if disables else f"{begin} {name} needs {condition}",
             source=requirement.source,
         )
         self.model.requirements.append(target)
         self.trace.origins[target] = requirement
 
-    def cancelling(self, port: PortInstance, requirements: list[Statement[robosc.Requirement]]) -> None:
+    def invariant(self, statement: Statement[robosc.StateInvariant]) -> None:
+        invariant, within = statement.element, statement.within
+        readable = self.instances.expanded(invariant.condition, within, readable=True)
+        condition = self.expressions(invariant.condition, within)
+        never = invariant.kind == robosc.InvariantKind.never
+        target = sct.StateInvariant(
+            condition=ex.Negation(operand=condition) if never else condition,
+            name=_stated_name(statement),
+            text=f"{self.heading(statement)} {invariant.kind.name} {self.print(readable)}",
+            source=invariant.source,
+        )
+        self.model.invariants.append(target)
+        self.trace.origins[target] = invariant
+
+    def heading(self, statement: Statement[_Requirement]) -> str:
+        """What the text of a requirement begins with: its name and its text."""
+        text = statement.element.text
+        said = [_stated_name(statement), None if text is None else self.print(ex.StringLiteral(value=text))]
+        named = " ".join(filter(None, said))
+        return f"requirement {named}:" if named else "requirement"
+
+    def cancelling(self, port: PortInstance, requirements: list[Statement[robosc.CommunicationRequirement]]) -> None:
         """Algorithm 2, starting at false: an action is cancelled exactly when it could not be started any more."""
         broken: list[ex.Expression] = []
         for requirement in requirements:
@@ -279,6 +305,12 @@ class _Transformation:
     def shown(self, port: PortInstance) -> str:
         name = port.communication.name
         return f"{port.instance.name}.{name}" if self.communication_name(port) != name else name
+
+
+def _stated_name(statement: Statement[_Requirement]) -> str | None:
+    """The name of a requirement, with its component where it stands in one."""
+    name = statement.element.name
+    return f"{statement.within.name}.{name}" if name and statement.within else name
 
 
 def _location(plant: sct.Plant, name: str, *, initial: bool = False, marked: bool = False) -> sct.Location:

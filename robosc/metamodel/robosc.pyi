@@ -361,18 +361,36 @@ class IndexSegment(AccessSegment):
     def __init__(self, *, index: int | None = ..., first: expression.Expression | None = ..., last: expression.Expression | None = ..., source: Place | None = ...) -> None: ...
 
 class Requirement(Definition, ComponentDefinition):
-    """Restricts when communication may start (thesis figure 4.13)."""
+    """What the supervised robot is to keep to (thesis figure 4.13)."""
+    name: str | None
+    text: str | None
+    def __init__(self, *, name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
+
+class CommunicationRequirement(Requirement):
+    """Restricts when communication may start."""
     target: CommunicationTypeSet
     condition: expression.Expression
-    def __init__(self, *, target: CommunicationTypeSet | None = ..., condition: expression.Expression | None = ..., source: Place | None = ...) -> None: ...
+    def __init__(self, *, target: CommunicationTypeSet | None = ..., condition: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
 
-class NeedsRequirement(Requirement):
+class StateInvariant(Requirement):
+    """Restricts the states that the supervised robot may come to."""
+    kind: InvariantKind
+    condition: expression.Expression
+    def __init__(self, *, kind: InvariantKind | None = ..., condition: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
+
+class InvariantKind:
+    """never: the condition holds in no reachable state; always: it holds in each."""
+    name: str
+    never: ClassVar[InvariantKind]
+    always: ClassVar[InvariantKind]
+
+class NeedsRequirement(CommunicationRequirement):
     """The communication may start only where the condition holds."""
-    def __init__(self, *, target: CommunicationTypeSet | None = ..., condition: expression.Expression | None = ..., source: Place | None = ...) -> None: ...
+    def __init__(self, *, target: CommunicationTypeSet | None = ..., condition: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
 
-class DisablesRequirement(Requirement):
+class DisablesRequirement(CommunicationRequirement):
     """The communication may not start where the condition holds."""
-    def __init__(self, *, target: CommunicationTypeSet | None = ..., condition: expression.Expression | None = ..., source: Place | None = ...) -> None: ...
+    def __init__(self, *, target: CommunicationTypeSet | None = ..., condition: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
 
 class ProvideStatement(Definition, ComponentDefinition):
     """The data that is sent along (thesis figure 4.12)."""

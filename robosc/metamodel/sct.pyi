@@ -11,8 +11,9 @@ class SupervisoryControlModel(expression.NamedElement):
     enumerations: MutableSequence[expression.Enumeration]
     plants: MutableSequence[Plant]
     requirements: MutableSequence[Requirement]
+    invariants: MutableSequence[StateInvariant]
     supervisor: Supervisor | None
-    def __init__(self, *, enumerations: Iterable[expression.Enumeration] = ..., plants: Iterable[Plant] = ..., requirements: Iterable[Requirement] = ..., supervisor: Supervisor | None = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
+    def __init__(self, *, enumerations: Iterable[expression.Enumeration] = ..., plants: Iterable[Plant] = ..., requirements: Iterable[Requirement] = ..., invariants: Iterable[StateInvariant] = ..., supervisor: Supervisor | None = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class Plant(expression.NamedElement):
     """An automaton with variables. From each location, at most one edge has a given event."""
@@ -86,19 +87,29 @@ class Update(expression.Located):
     value: expression.Expression
     def __init__(self, *, variable: DiscreteVariable | None = ..., value: expression.Expression | None = ..., source: Place | None = ...) -> None: ...
 
-class Requirement(expression.Located):
+class StatedRequirement(expression.Located):
+    """A requirement as the robot model states it."""
+    name: str | None
+    text: str | None
+    def __init__(self, *, name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
+
+class Requirement(StatedRequirement):
     """Restricts a controllable event."""
     event: Event
     kind: RequirementKind
     condition: expression.Expression
-    text: str | None
-    def __init__(self, *, event: Event | None = ..., kind: RequirementKind | None = ..., condition: expression.Expression | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
+    def __init__(self, *, event: Event | None = ..., kind: RequirementKind | None = ..., condition: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
 
 class RequirementKind:
     """needs: the event happens only where the condition holds; disables: only where it does not."""
     name: str
     needs: ClassVar[RequirementKind]
     disables: ClassVar[RequirementKind]
+
+class StateInvariant(StatedRequirement):
+    """A condition on every reachable state under the supervisor."""
+    condition: expression.Expression
+    def __init__(self, *, condition: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
 
 class Supervisor(expression.Located):
     """The maximally permissive, controllable, non-blocking supervisor."""

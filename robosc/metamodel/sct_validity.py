@@ -146,6 +146,7 @@ CHECKS: Checks = {
     sct.Edge: [_OWN_TARGET, typed("guard"), _updated_once],
     sct.Update: [_OWN_VARIABLE, typed("value", lambda update: declared_type(update.variable.type))],
     sct.Requirement: [_CONTROLLABLE, typed("condition")],
+    sct.StateInvariant: [typed("condition")],
     sct.EventGuard: [_CONTROLLABLE, typed("requirement"), typed("synthesis")],
     sct.InputReference: [_read],
     sct.Supervisor: [_guards],

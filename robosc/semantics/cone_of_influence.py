@@ -99,9 +99,14 @@ def conditions(instances: Instances) -> Iterator[tuple[ex.Expression | None, Ins
         for transition, _ in instance.transitions:
             if isinstance(transition, robosc.TauTransition) and transition.guard is not None:
                 yield instances.expanded(transition.guard, instance), instance
-    found: list[Statement[robosc.Requirement] | Statement[robosc.ProvideStatement]] = [
-        *instances.statements(robosc.Requirement),
+    found: list[
+        Statement[robosc.CommunicationRequirement]
+        | Statement[robosc.ProvideStatement]
+        | Statement[robosc.StateInvariant]
+    ] = [
+        *instances.statements(robosc.CommunicationRequirement),
         *(statement for port in instances.ports() for statement in instances.provided(port)),
+        *instances.statements(robosc.StateInvariant),
     ]
     for statement in found:
         if statement.element.condition is not None:

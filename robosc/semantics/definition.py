@@ -40,7 +40,8 @@ def definition(graph: rosgraph.RosGraph) -> dict[str, Any]:
             {"event": event_name(requirement.event), "text": requirement.text}
             for requirement in graph.model.requirements
             if requirement.text
-        ],
+        ]
+        + [{"text": invariant.text} for invariant in graph.model.invariants if invariant.text],
     }
 
 

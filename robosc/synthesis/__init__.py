@@ -27,7 +27,7 @@ from robosc.synthesis.encoding import Encoding, Layout
 from robosc.synthesis.fixpoint import SupervisedStates, reachable, supervise
 from robosc.synthesis.guards import Permission, permission
 from robosc.synthesis.projection import Projection
-from robosc.synthesis.relation import EventRelation, event_relations, plant_moves, required_moves, steps
+from robosc.synthesis.relation import EventRelation, event_relations, plant_moves, required_moves, steps, violations
 from robosc.synthesis.run_to_completion import completion, internal_events
 from robosc.synthesis.statistics import Phase, Statistics
 
@@ -151,7 +151,8 @@ def _solved(model: sct.SupervisoryControlModel, layout: Layout, capacity: int, s
         plants, moves = steps(plant_moves(relations)), required_moves(relations)
     with statistics.during(Phase.FIXPOINT):
         uncontrolled = reachable(diagrams, plants, encoding.initial, diagrams.true)
-        found = supervise(encoding, moves)
+        violating = diagrams.any_of(violations(model, encoding).values())
+        found = supervise(encoding, moves, violating)
     all_states, nodes = encoding.count(uncontrolled), found.controlled.node_count()
     if not found.controlled.satisfiable():
         empty = Synthesis(None, all_states, 0, nodes, statistics)

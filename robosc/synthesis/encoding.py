@@ -363,7 +363,7 @@ def _elements(plant: sct.Plant) -> Iterator[Element]:
 
 
 def _couplings(model: sct.SupervisoryControlModel, index: Mapping[Element, int]) -> Iterable[list[Element]]:
-    """Which elements meet in one relation: for each event, all that its edges and requirements touch."""
+    """Which elements meet: for each event, all that its edges and requirements touch; what each invariant reads."""
     touched: dict[sct.Event, dict[Element, None]] = {}
     for plant in model.plants:
         for edge in edges_of(plant):
@@ -375,7 +375,8 @@ def _couplings(model: sct.SupervisoryControlModel, index: Mapping[Element, int])
                 own.update(dict.fromkeys(referenced(update.value)))
     for requirement in model.requirements:
         touched.setdefault(requirement.event, {}).update(dict.fromkeys(referenced(requirement.condition)))
-    return [sorted(elements, key=index.__getitem__) for elements in touched.values()]
+    together = [*touched.values(), *(dict.fromkeys(referenced(one.condition)) for one in model.invariants)]
+    return [sorted(elements, key=index.__getitem__) for elements in together]
 
 
 def _groups_of_wide(model: sct.SupervisoryControlModel) -> dict[Element, list[Element]]:

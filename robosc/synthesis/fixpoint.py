@@ -36,7 +36,8 @@ class SupervisedStates:
     """What the fixpoint found.
 
     `rounds` are the states still held to be good, from all that are reachable under the requirements to the final ones;
-    `alive` of the same round those from which a marked state can be reached within them. `controlled` are the states
+    `alive` of the same round those from which a marked state can be reached within them and without one that violates
+    an invariant: no such state is itself among them. `controlled` are the states
     that are reachable under the supervisor: none if the supervisor is empty.
     """
 
@@ -109,10 +110,10 @@ def coreachable(diagrams: Diagrams, steps: Sequence[Step], states: Diagram, with
     return _Saturation(diagrams, steps, forwards=False).closure(states, within)
 
 
-def supervise(encoding: Encoding, moves: Sequence[Move]) -> SupervisedStates:
+def supervise(encoding: Encoding, moves: Sequence[Move], violating: Diagram) -> SupervisedStates:
     """The states of the maximally permissive, controllable, non-blocking supervisor.
 
-    `moves` are all events under the requirements.
+    `moves` are all events under the requirements, `violating` the states that none may come to.
     """
     steps = [step for _, step in moves]
     uncontrollable = [step for relation, step in moves if not relation.event.controllable]
@@ -123,7 +124,8 @@ def supervise(encoding: Encoding, moves: Sequence[Move]) -> SupervisedStates:
     while True:
         statistics.rounds += 1
         statistics.states = encoding.count(good)
-        alive.append(coreachable(diagrams, steps, marked & good, good))
+        kept = good & ~violating
+        alive.append(coreachable(diagrams, steps, marked & kept, kept))
         blocked = good & ~alive[-1]
         if not blocked.satisfiable():
             break

@@ -186,6 +186,11 @@ def event_relations(model: sct.SupervisoryControlModel, encoding: Encoding) -> l
     ]
 
 
+def violations(model: sct.SupervisoryControlModel, encoding: Encoding) -> dict[sct.StatedRequirement, Diagram]:
+    """The states that violate each of the model's invariants."""
+    return {invariant: ~encoding.holds(invariant.condition) for invariant in model.invariants}
+
+
 def requirements_by_event(requirements: Iterable[sct.Requirement]) -> dict[sct.Event, list[sct.Requirement]]:
     """The requirements on each event that has any."""
     found: dict[sct.Event, list[sct.Requirement]] = {}

@@ -26,9 +26,9 @@ WORDS = {
     "LoneString",
 }
 WORDS |= {"Boolean", "Comment"}
-ENUMERATIONS = ["MessageDirection", "ResultType", "Quantifier"]
+ENUMERATIONS = ["MessageDirection", "ResultType", "Quantifier", "InvariantKind"]
 #: Words that are keywords in one place only, so that they are names elsewhere.
-UNRESERVED = {"condition", "constant", "else", "function", "in", "is", "then"}
+UNRESERVED = {"always", "condition", "constant", "else", "function", "in", "is", "never", "then"}
 #: What a text can't say: transformations make it.
 MADE_BY_TRANSFORMATIONS = {
     *("Type", "BooleanType", "IntegerType", "DoubleType", "StringType", "EnumerationType", "Enumeration"),

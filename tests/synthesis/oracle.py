@@ -135,6 +135,10 @@ class Oracle:
             if requirement.event is event
         )
 
+    def violates(self, state: State) -> bool:
+        """Whether some invariant does not hold."""
+        return not all(self.value(invariant.condition, state, {}) for invariant in self.model.invariants)
+
     def is_marked(self, state: State) -> bool:
         return all(state[self.places[plant]].marked for plant in self.model.plants)
 
@@ -169,10 +173,11 @@ class Oracle:
             for state in good
         }
         while True:
-            alive = {state for state in good if self.is_marked(state)}
+            kept = {state for state in good if not self.violates(state)}
+            alive = {state for state in kept if self.is_marked(state)}
             grown = True
             while grown:
-                more = {s for s in good - alive if any(after in alive for _, after in next_states[s])}
+                more = {s for s in kept - alive if any(after in alive for _, after in next_states[s])}
                 alive |= more
                 grown = bool(more)
             kept = {

@@ -62,7 +62,7 @@ def describe(guard: sct.EventGuard) -> str:
     return f"{event_name(guard.event)}: requirement {parts[0]}, synthesis {parts[1]}"
 
 
-@given(sct_models())
+@given(sct_models(invariants=True))
 @RANDOM_MODELS
 def test_random_models(model):
     synthesis = synthesize(model)

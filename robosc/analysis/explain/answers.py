@@ -82,7 +82,7 @@ class Loosening:
     `states` are then left under the supervisor.
     """
 
-    requirements: tuple[sct.Requirement, ...]
+    requirements: tuple[sct.StatedRequirement, ...]
     states: int
 
 

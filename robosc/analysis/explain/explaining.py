@@ -135,8 +135,9 @@ def _way(system: SynthesizedSystem, start: Codes, allowed: Diagram) -> tuple[Tra
 
 
 def blamed(system: SynthesizedSystem, end: Codes) -> list[Note]:
-    """The requirements that forbid something which the plants would do from a state on."""
-    return [
+    """The invariants that a state violates, else the requirements that forbid something from it on."""
+    violated = [Note(one, one.text or "a requirement", ("forbids this state",)) for one in system.violated(end)]
+    return violated or [
         Note(one, one.text or "a requirement", (f"forbids the {words(one.event)}",))
         for one in forbidden_from(system, end)
     ]
@@ -243,7 +244,7 @@ def _stuck(reason: Reason) -> list[Note]:
 
 
 def loosenings(
-    system: SynthesizedSystem, helps: Callable[[SynthesizedSystem], bool], first: Iterable[sct.Requirement] = ()
+    system: SynthesizedSystem, helps: Callable[[SynthesizedSystem], bool], first: Iterable[sct.StatedRequirement] = ()
 ) -> tuple[Loosening, ...] | None:
     """The requirements of the text each of which helps if it alone is left out, those of `first` before the others.
 
@@ -261,11 +262,12 @@ def loosenings(
 
 
 def requirement_texts(
-    system: SynthesizedSystem, first: Iterable[sct.Requirement] = ()
-) -> list[tuple[sct.Requirement, ...]]:
+    system: SynthesizedSystem, first: Iterable[sct.StatedRequirement] = ()
+) -> list[tuple[sct.StatedRequirement, ...]]:
     """The requirements by the place in the text that they come from; not those that say when an action is cancelled."""
-    own = [requirement for requirement in system.model.requirements if system.start_of(requirement.event) is None]
-    by_place: dict[object, list[sct.Requirement]] = {}
+    asked = (requirement for requirement in system.model.requirements if system.start_of(requirement.event) is None)
+    own: list[sct.StatedRequirement] = [*asked, *system.model.invariants]
+    by_place: dict[object, list[sct.StatedRequirement]] = {}
     for requirement in dict.fromkeys([*(requirement for requirement in first if requirement in own), *own]):
         by_place.setdefault(requirement.source or requirement, []).append(requirement)
     return [tuple(requirements) for requirements in by_place.values()]

@@ -26,9 +26,9 @@ class CifError(ValueError):
 class Specification:
     """What a specification says, with CIF's own names and numbers.
 
-    `model` holds enumerations, plants and requirements; CIF knows no kinds of plants and events, nor which event
-    carries an input. `supervisor` is the automaton with what synthesis added, in one location, None where there is
-    none; `alphabet` are its events. `invariants` are what else holds under the supervisor.
+    `model` holds enumerations, plants, requirements and invariants of states; CIF knows no kinds of plants and events,
+    nor which event carries an input. `supervisor` is the automaton with what synthesis added, in one location, None
+    where there is none; `alphabet` are its events. `invariants` are what else holds under the supervisor.
     """
 
     model: sct.SupervisoryControlModel
@@ -86,8 +86,10 @@ class _Reading:
             self._fail(self._read, "there is no plant")
         invariants: dict[str, list[sct.Requirement]] = {"plant": [], "requirement": [], "supervisor": []}
         for invariant in self._of("Invariant"):
-            self._annotated(invariant)
-            invariants[invariant.kind].append(self._exclusion(invariant.restriction))
+            if type(self._annotated(invariant).restriction).__name__ == "Condition":
+                model.invariants.append(self._state_invariant(invariant))
+            else:
+                invariants[invariant.kind].append(self._exclusion(invariant.restriction))
         model.requirements.extend(invariants["requirement"])
         supervisors = [alphabet for alphabet in alphabets if alphabet[0].kind == "supervisor"]
         for declaration, _, _ in supervisors[1:]:
@@ -268,6 +270,15 @@ class _Reading:
 
     def _shown(self, variable: sct.DiscreteVariable) -> str:
         return types.shown(self._types[variable])
+
+    def _state_invariant(self, read: Any) -> sct.StateInvariant:
+        if read.kind != "requirement":
+            self._fail(read, f"an invariant of states is a requirement, not of a {read.kind}")
+        made = sct.StateInvariant(condition=self._condition(read.restriction.condition, None))
+        if read.name:
+            made.name = _plain(read.name)
+            self._define(made, read.name, self._outer)
+        return made
 
     def _exclusion(self, read: Any) -> sct.Requirement:
         return sct.Requirement(

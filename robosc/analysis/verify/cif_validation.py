@@ -23,7 +23,7 @@ from robosc.semantics.edges import edges_by_event
 from robosc.synthesis import MEMORY, arithmetic
 from robosc.synthesis.bdd import Diagrams, with_enough_memory
 from robosc.synthesis.decoding import pick
-from robosc.synthesis.encoding import Encoding, Layout, smallest
+from robosc.synthesis.encoding import Encoding, Layout, referenced, smallest
 from robosc.synthesis.relation import requirements_by_event
 
 if TYPE_CHECKING:
@@ -98,11 +98,14 @@ class _Comparison:
         """Raises CifError where there is a supervisor and none is due."""
         if not supervised and (specification.supervisor is not None or specification.invariants):
             raise CifError("it says what a supervisor does")
+        if supervised and specification.model.invariants:
+            raise CifError("it asks for an invariant, and under the supervisor all hold")
         self._model = model
         self._correspondence = correspondence
         self._supervised = supervised
         self._text = TEXT if supervised else UNSUPERVISED
         self._asked = requirements_by_event(model.requirements)
+        self._their_invariants = list(specification.model.invariants)
         self._invariants = requirements_by_event([*specification.invariants, *specification.model.requirements])
         self._layout = Layout(model)
         self._inputs = [domain for domain in self._layout.domains.values() if isinstance(domain.element, sct.Input)]
@@ -137,6 +140,9 @@ class _Comparison:
         }
         if any(code != encoding.initial_codes[element] for element, code in initial.items()):
             return refuted(PROPERTY, f"at the start {different(initial, encoding.initial_codes, self._text)}")
+        fault = None if self._supervised else self._invariants_differ(system, theirs)
+        if fault is not None:
+            return fault
         found = list(self._differences(system, theirs))
         if not found:
             evidence = f"{counted(len(system.relations), 'event')} in both files, each in every state"
@@ -149,6 +155,21 @@ class _Comparison:
         path = system.path_to(reached[0].where.exists(inputs) & system.controlled)
         codes = path.states[-1] | pick(reached[0].where & encoding.state(path.states[-1]), self._inputs)
         return refuted(PROPERTY, self._said(system, reached[0], codes), system.trace(path))
+
+    def _invariants_differ(self, system: GuardedSystem, theirs: Encoding) -> Verdict | None:
+        """That the states which the invariants allow are others in CIF."""
+        encoding = system.encoding
+        valid = encoding.diagrams.all_of(encoding.in_domain(domain.element) for domain in self._layout.state)
+        asked = encoding.diagrams.any_of(~theirs.holds(one.condition) for one in self._their_invariants)
+        differ = (system.violating ^ asked) & valid
+        if not differ.satisfiable():
+            return None
+        codes = pick(differ, self._layout.state)
+        allowed = "forbids" if system.is_in(codes, asked) else "allows"
+        elements = (element for one in self._model.invariants for element in referenced(one.condition))
+        return refuted(
+            PROPERTY, f"by its invariants {self._text} {allowed} the state `{system.where(codes, elements)}`"
+        )
 
     @staticmethod
     def _initial(counterpart: sct.DiscreteVariable, theirs: Encoding) -> int:

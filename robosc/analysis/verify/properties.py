@@ -47,6 +47,7 @@ def properties(system: GuardedSystem) -> list[Callable[[], Verdict]]:
         partial(controllability, system),
         partial(input_enabledness, system),
         *(partial(requirement_holds, system, requirement) for requirement in system.model.requirements),
+        *(partial(invariant_holds, system, invariant) for invariant in system.model.invariants),
         partial(no_dead_events, system),
         partial(maximal_permissiveness, system),
         partial(finite_response, system),
@@ -113,9 +114,11 @@ def input_enabledness(system: GuardedSystem) -> Verdict:
     return _nowhere("input-enabledness", system, evidence, blocking, explanation)
 
 
-def requirement_name(requirement: sct.Requirement) -> str:
+def requirement_name(requirement: sct.StatedRequirement) -> str:
     """The requirement in the robot model's words, and its line there."""
-    said = requirement.text or f"requirement on {event_name(requirement.event)}"
+    said = requirement.text or "requirement"
+    if isinstance(requirement, sct.Requirement) and not requirement.text:
+        said = f"requirement on {event_name(requirement.event)}"
     return f"{said} (line {requirement.source.span.line})" if requirement.source else said
 
 
@@ -140,6 +143,17 @@ def requirement_holds(system: GuardedSystem, requirement: sct.Requirement) -> Ve
     return _nowhere(requirement_name(requirement), system, evidence, broken, explanation, last=lambda one: one.event)
 
 
+def invariant_holds(system: GuardedSystem, invariant: sct.StateInvariant) -> Verdict:
+    """The condition of an invariant holds in every reachable state."""
+
+    def explanation(_: sct.StateInvariant, path: Path) -> str:
+        return f"it is violated where `{system.where(path.states[-1], referenced(invariant.condition))}`"
+
+    evidence = f"{system.size}, asks for `{RobotPrinter()(invariant.condition)}`"
+    broken = {invariant: system.controlled & system.violations[invariant]}
+    return _nowhere(requirement_name(invariant), system, evidence, broken, explanation)
+
+
 def no_dead_events(system: GuardedSystem) -> Verdict:
     """Each trigger, each internal transition and each reset can happen in some reachable state."""
     events = [event for event in system.relations if event.kind in _LIVE]
@@ -153,7 +167,7 @@ def no_dead_events(system: GuardedSystem) -> Verdict:
 
 def maximal_permissiveness(system: GuardedSystem) -> Verdict:
     """Where the guard of a controllable event forbids it in a reachable state, any supervisor has to."""
-    required = supervise(system.encoding, required_moves(system.relations.values())).controlled
+    required = supervise(system.encoding, required_moves(system.relations.values()), system.violating).controlled
     controllable = [relation for relation in system.relations.values() if relation.event.controllable]
     needless = {
         relation: system.controlled & _permitted(relation, required) & ~system.allowed[relation.event]

@@ -49,8 +49,10 @@ def types(base: rsc.Base) -> Iterator[Finding]:
     """Every expression has the type that its place wants, and its operators the operands that they want."""
     for enum in of_kind(rsc.EnumDataType, base.definitions):
         yield from _enum(enum)
-    for requirement in statements(rsc.Requirement, base):
+    for requirement in statements(rsc.CommunicationRequirement, base):
         yield from _boolean(requirement.condition, "the condition of a requirement", _REQUIREMENT)
+    for invariant in statements(rsc.StateInvariant, base):
+        yield from _boolean(invariant.condition, f"the condition behind `{invariant.kind.name}`", _REQUIREMENT)
     for statement in statements(rsc.ProvideStatement, base):
         yield from _provide(statement)
     for named in statements(rsc.NamedExpression, base):

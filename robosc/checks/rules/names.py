@@ -21,8 +21,12 @@ if TYPE_CHECKING:
     Scopes = Callable[[rsc.Base], Iterable[tuple[str, Iterable[ex.NamedElement]]]]
 
 
-def _components(base: rsc.Base) -> Iterator[tuple[str, list[ex.NamedElement]]]:
-    yield f"`{base.name}`", of_kind((rsc.Component, rsc.NamedExpression), base.definitions)
+def _components(base: rsc.Base) -> Iterator[tuple[str, list[Any]]]:
+    named: list[Any] = [
+        *of_kind((rsc.Component, rsc.NamedExpression), base.definitions),
+        *of_kind(rsc.Requirement, base.definitions),
+    ]
+    yield f"`{base.name}`", named
 
 
 def _data_types(base: rsc.Base) -> Iterator[tuple[str, list[rsc.ComplexDataType]]]:
@@ -41,6 +45,7 @@ _KINDS = {
     rsc.Condition: "condition",
     rsc.Function: "function",
     rsc.Variable: "variable",
+    rsc.Requirement: "requirement",
 }
 #: What has a name of its own: the rule, what it is in words, and among whom.
 _UNIQUE: tuple[tuple[str, str, Scopes], ...] = (
@@ -68,15 +73,17 @@ def unique_variable(base: rsc.Base) -> Iterator[Finding]:
         where = f"component `{component.name}`"
         first: dict[str, Any] = {}
         known = set()
-        members: list[Any] = of_kind(rsc.NamedExpression, local.definitions)
+        members: list[Any] = [
+            *of_kind(rsc.NamedExpression, local.definitions),
+            *of_kind(rsc.Requirement, local.definitions),
+        ]
         for behaviour in of_kind(rsc.ComponentBehaviour, local.definitions):
             members += of_kind(rsc.AccessibleItem, behaviour.automaton.definitions if behaviour.automaton else ())
         for definition in members:
             is_state = isinstance(definition, rsc.State)
             # That a state has the name of another state is the matter of `unique-state`.
             if definition.name in first and not (is_state and definition.name in known):
-                kind = _KINDS.get(type(definition), "variable")
-                yield _declared_again(kind, definition, first[definition.name], where)
+                yield _declared_again("variable", definition, first[definition.name], where)
             if is_state:
                 known.add(definition.name)
             first.setdefault(definition.name, definition)
@@ -135,9 +142,13 @@ def _repeated(elements: Iterable[ex.NamedElement]) -> Iterator[tuple[ex.NamedEle
             yield element, first[element.name]
 
 
+def _called(element: Any, otherwise: str) -> str:
+    return next((word for kind, word in _KINDS.items() if isinstance(element, kind)), otherwise)
+
+
 def _declared_again(kind: str, second: ex.NamedElement, first: ex.NamedElement, where: str) -> Finding:
-    same = type(first) not in _KINDS or type(first) is type(second)
-    other = f"another {kind}" if same else f"a {_KINDS[type(first)]}"
+    kind, of_first = _called(second, kind), _called(first, kind)
+    other = f"another {kind}" if kind == of_first else f"a {of_first}"
     return Finding(
         second,
         f"{kind} `{second.name}` has the name of {other}{on_line(first)}, expected a name of its own in {where}",

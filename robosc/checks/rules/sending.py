@@ -44,7 +44,7 @@ def data_provisioning(base: rsc.Base) -> Iterator[Finding]:
 @rule("requirement-target")
 def requirement_target(base: rsc.Base) -> Iterator[Finding]:
     """A requirement restricts something, and something that the controller sends."""
-    for requirement in statements(rsc.Requirement, base):
+    for requirement in statements(rsc.CommunicationRequirement, base):
         if requirement.target is None:
             continue
         if not requirement.target.communicationTypes:

@@ -38,6 +38,7 @@ CLAUSES: dict[str, tuple[set[str], set[str]]] = {
     "EnumTransformationRule": ({"->"}, set()),
     "NeedsRequirement": (set(), {"needs"}),
     "DisablesRequirement": ({"disables"}, set()),
+    "StateInvariant": (set(), {"never", "always"}),
     "ProvideStatement": ({"if"}, set()),
     "Conditional": ({"then", "else"}, set()),
     "Constant": (set(), {"="}),

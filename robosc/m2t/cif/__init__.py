@@ -86,7 +86,7 @@ def _translate(element: Any) -> None:
             assigned(element.variable, element.value)
         case sct.Edge() if element.guard is not None:
             condition(element.guard)
-        case sct.Requirement():
+        case sct.Requirement() | sct.StateInvariant():
             condition(element.condition)
         case sct.EventGuard():
             for part in (element.requirement, element.synthesis):

@@ -57,9 +57,11 @@ class CifNames:
         outer = Names()
         for element in self._outer(model):
             self._names[element] = outer.fresh(element.name)
+        #: What invariants with a name are called.
+        self.invariants = {one: outer.fresh(one.name.replace(".", "_")) for one in model.invariants if one.name}
         #: The automaton that holds what synthesis added.
         self.supervisor = outer.fresh("sup")
-        taken = {*self._names.values(), self.supervisor}
+        taken = {*self._names.values(), *self.invariants.values(), self.supervisor}
         for plant in model.plants:
             inner = Names(taken)
             for member in (*plant.events, *plant.inputs, *plant.variables):

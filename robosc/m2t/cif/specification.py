@@ -96,6 +96,11 @@ class Writer:
             needs = requirement.kind == sct.RequirementKind.needs
             said = f"requirement {event} needs {asked};" if needs else f"requirement {asked} disables {event};"
             texts.setdefault(said, []).append(requirement.text or "")
+        for invariant in self._model.invariants:
+            name = self._names.invariants.get(invariant)
+            named = "" if name is None else f" {name}:"
+            said = f"requirement invariant{named} {self._condition(invariant.condition)};"
+            texts.setdefault(said, []).append(invariant.text or "")
         if texts:
             yield ""
         for said, found in texts.items():
