@@ -41,7 +41,7 @@ _BINARY = {
     ast.Div: ex.Division,
 }
 _UNARY = {ast.Not: ex.Negation, ast.USub: ex.UnaryMinus}
-_KINDS = ("trigger", "response", "error", "feedback", "cancel", "reset", "tau")
+_KINDS = ("trigger", "response", "error", "feedback", "cancel", "reset", "tau", "timeout")
 
 
 @dataclass(frozen=True)
@@ -188,7 +188,7 @@ def model(
 def _event_kind(event: str, plant_kind: str, controllable: bool) -> sct.EventKind:
     if plant_kind == "data":
         return sct.EventKind.data
-    stem = event.partition("_")[2].rstrip("0123456789")
+    stem = event.partition("_")[2].rstrip("0123456789").replace("after", "timeout")
     return getattr(sct.EventKind, stem if stem in _KINDS else "trigger" if controllable else "response")
 
 

@@ -6,6 +6,7 @@ from itertools import groupby
 from typing import TYPE_CHECKING
 
 from robosc.metamodel import sct
+from robosc.semantics.durations import timer_text
 from robosc.semantics.edges import edges_from
 from robosc.semantics.roles import event_name, plant_of, provide_number
 from robosc.synthesis.decoding import text
@@ -28,7 +29,10 @@ _EVENTS = {
     sct.EventKind.cancel: "cancel of {}",
     sct.EventKind.reset: "reset of {}",
     sct.EventKind.tau: "transition of {}",
+    sct.EventKind.timeout: "timeout of {}",
 }
+#: The events of transitions without communication: their names say nothing of the text that they come from.
+_OWN = (sct.EventKind.tau, sct.EventKind.timeout)
 
 
 def name(plant: sct.Plant) -> str:
@@ -48,13 +52,14 @@ def words(event: sct.Event) -> str:
         where = _where(event) if number else ""
     else:
         said = _EVENTS[event.kind].format(owner)
-        where = _where(event) if event.kind == sct.EventKind.tau else ""
+        said += f" after {timer_text(event.timer)}" if event.timer else ""
+        where = _where(event) if event.kind in _OWN else ""
     return f"{said} in {where}" if where else said
 
 
 def with_words(event: sct.Event) -> str:
     """The event's name; of those whose name says nothing of the text that they come from, also that."""
-    unclear = event.kind in (sct.EventKind.tau, sct.EventKind.data) and event.source
+    unclear = event.kind in (*_OWN, sct.EventKind.data) and event.source
     return f"{event_name(event)} ({words(event)})" if unclear else event_name(event)
 
 

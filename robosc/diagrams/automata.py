@@ -9,6 +9,7 @@ from robosc.diagnostics.visible import visible
 from robosc.diagrams.graph import Arrow, Graph, Group, Node
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc, sct
+from robosc.semantics.durations import timer_text
 from robosc.semantics.edges import edges_from
 from robosc.semantics.instances import Instances
 from robosc.semantics.naming import written
@@ -111,6 +112,10 @@ class _Component(RoboscPrinter):
                 first = f"on {kind} {word} {self.communication(transition.communicationType)}"
             case robosc.TauTransition():
                 first = "transition" if transition.guard is None else f"transition if {self(transition.guard)}"
+            case robosc.TimedTransition():
+                first = f"after {self(transition.duration)} {transition.unit}"
+                if transition.without:
+                    first += f" without {', '.join(map(self.communication, transition.without))}"
         return (first, *self.assignments(transition.assignments))
 
     def assignments(self, assignments: Sequence[robosc.Assignment]) -> list[str]:
@@ -165,7 +170,8 @@ class _Plant(SctPrinter):
             f"{self(sct.VariableReference(variable=update.variable))} := {self(update.value)}"
             for update in edge.updates
         ]
-        return (edge.event.name if own else event_name(edge.event), *guard, *updates)
+        timer = [f"after {timer_text(edge.event.timer)}"] if own and edge.event.timer else []
+        return (edge.event.name if own else event_name(edge.event), *timer, *guard, *updates)
 
     def atom(self, expression: ex.Expression) -> str:
         """A location or variable of the plant itself by its bare name; an input by its own, as its event is near."""

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from robosc.engine.interpreter import Engine
+from robosc.engine.timers import Timers
 from robosc.metamodel import engine
 
 if TYPE_CHECKING:
@@ -19,12 +20,14 @@ if TYPE_CHECKING:
 class Settings:
     """How much the loop does.
 
-    Events in one tick (0: no limit), reactions to one topic, service or action between two ticks, whether it reacts.
+    Events in one tick (0: no limit), reactions to one topic, service or action between two ticks, whether it reacts;
+    and how many milliseconds later it may be than the caller says.
     """
 
     events_per_tick: int = 0
     reactions_per_tick: int = 10
     react_immediately: bool = True
+    resolution_ms: int = 0
 
 
 @dataclass(frozen=True)
@@ -48,6 +51,9 @@ class ControlLoop:
     `end` and `tick` silent events and data plants rest, or a livelock was reported. Cancels and triggers run from two
     queues, the least recently run first. Each topic, service and action has a count of reactions of its own, so that
     none uses up another's. Raises what `Engine` raises.
+
+    `timers` are the model's times: tell them before each call what time it is (`timers.at`), and call `expire` when
+    they want to be asked (`timers.wait`), until it finds nothing.
     """
 
     def __init__(
@@ -77,6 +83,7 @@ class ControlLoop:
         self._groups = {event.name: event.group for event in executed.events if event.group is not None}
         numbers = {source: number for number, source in enumerate(executed.sources, 1)}
         self._sources = {event.name: numbers[event.source] for event in executed.events if event.source is not None}
+        self.timers = Timers(self.engine, self.settings.resolution_ms)
         self._next_silent = 0
         self._quiescent = False
         self._livelocked = False
@@ -132,6 +139,15 @@ class ControlLoop:
             if left:
                 self._owed.clear()
 
+    def expire(self) -> str | None:
+        """Lets the first time run out that is up: its event is a batch. Says which event that is; None: none is up."""
+        event = self.timers.expire()
+        if event is not None:
+            self.begin()
+            self.perform(event)
+            self.end()
+        return event
+
     def tick(self) -> None:
         """Settles, then runs each enabled cancel and trigger once."""
         self._ticked = True
@@ -177,6 +193,7 @@ class ControlLoop:
         """Lets an enabled event happen, unless the caller withholds it."""
         if self.hooks.before is not None and not self.hooks.before(event) and event in self._own:
             return False
+        self.timers.before(event)
         self.engine.perform(event)
         self._quiescent = False
         self._owed.discard(event)

@@ -149,7 +149,7 @@ class Builder:
                 return self._string(node)
             case "Boolean":
                 return node.value == "true"
-            case "MessageDirection" | "ResultType" | "Quantifier" | "InvariantKind":
+            case "MessageDirection" | "ResultType" | "Quantifier" | "InvariantKind" | "TimeUnit":
                 return getattr(rsc, node.rule_name).getEEnumLiteral(node.value)
         return True
 

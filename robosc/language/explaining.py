@@ -38,15 +38,12 @@ _FOREIGN = {
 #: What other languages have words for: what RoboSC has instead.
 _CONSTANT = "write `constant name: type = value`"
 _PARAMETER = "nothing is set on the robot itself; write `constant name: type = value`"
-_NO_TIME = (
-    "a model has no time: let a node send a message when the time is up, or let `watchdogMs` in the configuration"
-    " watch a topic"
-)
+_TIME = "write `after 3.0 s goto state` in a state, or `after 500 ms without message goto state` for its silence"
 _FUNCTION = "write `function name(parameter: type): type = expression`"
 _FOREIGN_WORDS = {
     **dict.fromkeys(("const", "let", "val", "define"), _CONSTANT),
     **dict.fromkeys(("param", "parameter"), _PARAMETER),
-    **dict.fromkeys(("after", "timeout", "timer", "wait", "delay", "sleep", "every"), _NO_TIME),
+    **dict.fromkeys(("after", "timeout", "timer", "wait", "delay", "sleep", "every"), _TIME),
     **dict.fromkeys(("def", "fn", "func", "fun"), _FUNCTION),
     "when": "write `if`",
     "unless": "write `if` and `!` before the condition",
@@ -117,6 +114,8 @@ def hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) -> Rep
     """How to mend what stands at a token of an item, where that can be told."""
     token, before = tokens[index], tokens[index - 1]
     symbols = _symbols(token, wanted)
+    if tokens[block.first].is_keyword("after") and (timed := _timed_hint(token, before, wanted)):
+        return timed
     if token.text in _FOREIGN:
         own = _FOREIGN[token.text]
         # A quotation mark has another one at the other end.
@@ -137,6 +136,14 @@ def hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) -> Rep
     if token.kind is Kind.NUMBER and not token.text.replace(".", "").isdigit():
         return "a number has digits and a point only, no exponent and no letters"
     return _word_hint(tokens, index, wanted, block) if token.kind is Kind.WORD else None
+
+
+def _timed_hint(token: Token, before: Token, wanted: Sequence[str]) -> str | None:
+    if Kind.NUMBER in {token.kind, before.kind} and "do" not in wanted:
+        return "write a number, a blank and a unit, `ms`, `s` or `min`: `after 3.0 s`"
+    if token.text == "if":
+        return "an `after` has no condition: let it go to a state with a `transition if …`"
+    return None
 
 
 def _symbols(token: Token, wanted: Sequence[str]) -> list[str]:

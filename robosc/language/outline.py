@@ -278,8 +278,9 @@ class Outline:
         """Whether a token is a starter; one that begins a line is, even if a name is missing before it."""
         token, after = self._tokens[at], self._tokens[at + 1]
         if token.text in level.starters and not is_reserved(token.text):
-            # A keyword before a name only, where no name of an expression stands.
-            return after.kind is Kind.WORD and not is_reserved(after.text) and not token.is_name
+            # A keyword before a name or a number only, where no name of an expression stands.
+            named = after.kind is Kind.NUMBER or (after.kind is Kind.WORD and not is_reserved(after.text))
+            return named and not token.is_name
         return token.is_keyword(*level.starters) or (token.is_name and token.is_first and token.text in level.starters)
 
     def _continues(self, level: Level, starters: tuple[str, ...]) -> bool:

@@ -11,6 +11,7 @@ from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc, sct
 from robosc.semantics.communication import CONTROLLABLE, data_type, events
 from robosc.semantics.cone_of_influence import cone_of_influence
+from robosc.semantics.durations import milliseconds
 from robosc.semantics.instances import Instance, Instances, InstanceVariable, PortInstance, Statement
 from robosc.semantics.naming import Names
 from robosc.semantics.printing import RoboscPrinter, conjunction, disjunction
@@ -41,6 +42,11 @@ _ACTION = (
     ("error", sct.EventKind.reset, _IDLE),
 )
 _MESSAGE = (("ready", sct.EventKind.trigger, "ready"), ("ready", sct.EventKind.response, "ready"))
+#: The transitions that have an event of their own, with its kind and, before a number, its name.
+_OWN_EVENTS = (
+    (robosc.TauTransition, sct.EventKind.tau, "tau"),
+    (robosc.TimedTransition, sct.EventKind.timeout, "after"),
+)
 #: Listings 5.1 to 5.3: the edges of the plant of each communication; it begins, and may end, where the first one does.
 _PLANTS = {robosc.Message: _MESSAGE, robosc.Service: _SERVICE, robosc.Action: _ACTION}
 
@@ -159,12 +165,13 @@ class _Transformation:
             plant.variables.append(variable)
             self.trace.variables[owned] = variable
             self.trace.origins[variable] = owned.variable
-        taus = (transition for transition, _ in instance.transitions if isinstance(transition, robosc.TauTransition))
-        for number, transition in enumerate(taus, start=1):
-            name = names.fresh(f"c_tau{number}").removeprefix("c_")
-            event = _event(plant, name, sct.EventKind.tau, transition.source)
-            self.trace.taus[instance, transition] = event
-            self.trace.origins[event] = transition
+        for transitions, event_kind, name in _OWN_EVENTS:
+            own = (transition for transition, _ in instance.transitions if isinstance(transition, transitions))
+            for number, transition in enumerate(own, start=1):
+                event = _event(plant, f"{name}{number}", event_kind, transition.source)
+                event.name = names.fresh(event.name)
+                self.trace.own[instance, transition] = event
+                self.trace.origins[event] = transition
 
     def variables(self, instance: Instance) -> list[InstanceVariable]:
         """Those in the cone of influence."""
@@ -182,6 +189,7 @@ class _Transformation:
             for event in mentioned:
                 if event not in present:
                     _edge(location, event, location)
+        self.timers(instance)
 
     def edge(self, location: sct.Location, transition: robosc.Transition, instance: Instance) -> None:
         target = location if transition.target is None else self.trace.locations[instance, transition.target]
@@ -195,6 +203,30 @@ class _Transformation:
                 value = self.expressions(assignment.value, instance, transition)
                 variable = self.trace.variables[owned]
                 edge.updates.append(sct.Update(variable=variable, value=value, source=assignment.source))
+
+    def timers(self, instance: Instance) -> None:
+        """How long the times of an instance are, and what starts them anew."""
+        entries: dict[sct.Location, list[sct.Edge]] = {}
+        for location in self.trace.behaviours[instance].locations:
+            for edge in location.edges:
+                transition = self.trace.origins.get(edge)
+                named = isinstance(transition, robosc.Transition) and transition.target is not None
+                if named or edge.target is not location:
+                    entries.setdefault(edge.target, []).append(edge)
+        for transition, state in instance.transitions:
+            if isinstance(transition, robosc.TimedTransition):
+                length = milliseconds(transition, instance)
+                assert length is not None
+                within = None if state is None else self.trace.locations[instance, state]
+                ports = (self.instances.port(reference, instance) for reference in transition.without)
+                without = (self.trace.event(port, sct.EventKind.response) for port in ports if port is not None)
+                self.trace.own[instance, transition].timer = sct.Timer(
+                    milliseconds=length,
+                    location=within,
+                    entries=[] if within is None else entries.get(within, []),
+                    without=list(dict.fromkeys(without)),
+                    source=transition.source,
+                )
 
     # Provided data
 

@@ -29,7 +29,7 @@ class Trace:
     inputs: dict[Data, sct.Input] = field(default_factory=dict)
     behaviours: dict[Instance, sct.Plant] = field(default_factory=dict)
     locations: dict[tuple[Instance, robosc.State], sct.Location] = field(default_factory=dict)
-    taus: dict[tuple[Instance, robosc.TauTransition], sct.Event] = field(default_factory=dict)
+    own: dict[tuple[Instance, robosc.Transition], sct.Event] = field(default_factory=dict)
     variables: dict[InstanceVariable, sct.DiscreteVariable] = field(default_factory=dict)
     provided: dict[Statement[robosc.ProvideStatement], sct.Location] = field(default_factory=dict)
     origins: dict[ex.Located, ex.Located] = field(default_factory=dict)
@@ -39,10 +39,9 @@ class Trace:
         return self.events[port, kind.name]
 
     def event_of(self, transition: robosc.Transition, instance: Instance) -> sct.Event:
-        """What a transition of an instance reacts to (thesis table 5.1); each tau transition has its own event."""
-        if isinstance(transition, robosc.TauTransition):
-            return self.taus[instance, transition]
-        assert isinstance(transition, robosc.ResultTransition)
+        """What a transition of an instance reacts to (thesis table 5.1); without communication an event of its own."""
+        if not isinstance(transition, robosc.ResultTransition):
+            return self.own[instance, transition]
         port = self.instances.port(transition.communicationType, instance)
         named = event_of(transition.communicationType, transition.resultType)
         assert port is not None

@@ -18,7 +18,8 @@ class EngineModel(expression.NamedElement):
     choices: MutableSequence[Choice]
     settlingBound: int
     incremental: bool
-    def __init__(self, *, model: sct.SupervisoryControlModel | None = ..., variables: Iterable[StateVariable] = ..., inputs: Iterable[Input] = ..., sources: Iterable[Source] = ..., groups: Iterable[Group] = ..., conditions: Iterable[Condition] = ..., events: Iterable[Event] = ..., choices: Iterable[Choice] = ..., settlingBound: int | None = ..., incremental: bool | None = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
+    timers: MutableSequence[Timer]
+    def __init__(self, *, model: sct.SupervisoryControlModel | None = ..., variables: Iterable[StateVariable] = ..., inputs: Iterable[Input] = ..., sources: Iterable[Source] = ..., groups: Iterable[Group] = ..., conditions: Iterable[Condition] = ..., events: Iterable[Event] = ..., choices: Iterable[Choice] = ..., settlingBound: int | None = ..., incremental: bool | None = ..., timers: Iterable[Timer] = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class Storage:
     """An integer type of a machine."""
@@ -63,6 +64,27 @@ class Source:
     def eClass(self) -> Any: ...
     def __init__(self, *, name: str | None = ..., batch: bool | None = ...) -> None: ...
 
+class Timer:
+    """A time that runs, or does not. When it is up it runs no longer, and its event happens, if its guard holds."""
+    event: Event
+    milliseconds: int
+    initial: bool
+    location: sct.Location | None
+    def eContainer(self) -> Any: ...
+    @property
+    def eClass(self) -> Any: ...
+    def __init__(self, *, event: Event | None = ..., milliseconds: int | None = ..., initial: bool | None = ..., location: sct.Location | None = ...) -> None: ...
+
+class Restart:
+    """What an event does with timers, if the condition holds before it."""
+    condition: expression.Expression | None
+    left: sct.Plant | None
+    starts: MutableSequence[Timer]
+    def eContainer(self) -> Any: ...
+    @property
+    def eClass(self) -> Any: ...
+    def __init__(self, *, condition: expression.Expression | None = ..., left: sct.Plant | None = ..., starts: Iterable[Timer] = ...) -> None: ...
+
 class Group:
     """Events of which at most one happens in a while."""
     name: str
@@ -105,16 +127,18 @@ class Event(Reader):
     choice: Choice | None
     guard: Guard
     effect: Effect
-    def __init__(self, *, event: sct.Event | None = ..., role: Role | None = ..., description: str | None = ..., remarks: Iterable[str] = ..., inputs: Iterable[Input] = ..., source: Source | None = ..., group: Group | None = ..., choice: Choice | None = ..., guard: Guard | None = ..., effect: Effect | None = ..., name: str | None = ..., readers: Iterable[Reader] = ...) -> None: ...
+    restarts: MutableSequence[Restart]
+    def __init__(self, *, event: sct.Event | None = ..., role: Role | None = ..., description: str | None = ..., remarks: Iterable[str] = ..., inputs: Iterable[Input] = ..., source: Source | None = ..., group: Group | None = ..., choice: Choice | None = ..., guard: Guard | None = ..., effect: Effect | None = ..., restarts: Iterable[Restart] = ..., name: str | None = ..., readers: Iterable[Reader] = ...) -> None: ...
 
 class Role:
-    """cancel, trigger: what the controller sends, by the control loop, cancels first; silent: what the control loop performs by itself until none is enabled; data: chooses what a trigger sends; incoming: comes from the robot, the caller performs it. Whatever happens by time will be a role of its own."""
+    """cancel, trigger: what the controller sends, by the control loop, cancels first; silent: what the control loop performs by itself until none is enabled; data: chooses what a trigger sends; incoming: comes from the robot, the caller performs it; timeout: the time of a timer is up."""
     name: str
     cancel: ClassVar[Role]
     trigger: ClassVar[Role]
     silent: ClassVar[Role]
     data: ClassVar[Role]
     incoming: ClassVar[Role]
+    timeout: ClassVar[Role]
 
 class Guard:
     """When an event can happen: where all terms hold. No term is decided before the robot runs, but that a guard which holds nowhere is the term `false`; no two terms are alike."""

@@ -202,6 +202,20 @@ class TauTransition(Transition):
     guard: expression.Expression | None
     def __init__(self, *, guard: expression.Expression | None = ..., assignments: Iterable[Assignment] = ..., target: State | None = ..., source: Place | None = ...) -> None: ...
 
+class TimedTransition(Transition):
+    """Happens when a time is up: since its state was entered, or since the last of some messages."""
+    duration: expression.Expression
+    unit: TimeUnit
+    without: MutableSequence[CommunicationReference]
+    def __init__(self, *, duration: expression.Expression | None = ..., unit: TimeUnit | None = ..., without: Iterable[CommunicationReference] = ..., assignments: Iterable[Assignment] = ..., target: State | None = ..., source: Place | None = ...) -> None: ...
+
+class TimeUnit:
+    """ms: milliseconds; s: seconds; min: minutes."""
+    name: str
+    ms: ClassVar[TimeUnit]
+    s: ClassVar[TimeUnit]
+    min: ClassVar[TimeUnit]
+
 class Assignment(expression.Located):
     """Gives a variable a value."""
     item: Access

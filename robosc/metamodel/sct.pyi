@@ -41,10 +41,11 @@ class Event(expression.NamedElement):
     controllable: bool
     kind: EventKind
     inputs: MutableSequence[Input]
-    def __init__(self, *, controllable: bool | None = ..., kind: EventKind | None = ..., inputs: Iterable[Input] = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
+    timer: Timer | None
+    def __init__(self, *, controllable: bool | None = ..., kind: EventKind | None = ..., inputs: Iterable[Input] = ..., timer: Timer | None = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class EventKind:
-    """trigger, cancel: sent by the controller; response, error, feedback: come from the robot; reset, tau: silent; data: which provided data goes out."""
+    """trigger, cancel: sent by the controller; response, error, feedback: come from the robot; reset, tau: silent; data: which provided data goes out; timeout: a time is up."""
     name: str
     trigger: ClassVar[EventKind]
     response: ClassVar[EventKind]
@@ -54,6 +55,15 @@ class EventKind:
     reset: ClassVar[EventKind]
     tau: ClassVar[EventKind]
     data: ClassVar[EventKind]
+    timeout: ClassVar[EventKind]
+
+class Timer(expression.Located):
+    """A time that runs while a component is in a location, or always, and what starts it anew. When it is up, its event happens once. To synthesis the event is possible at any time."""
+    milliseconds: int
+    location: Location | None
+    entries: MutableSequence[Edge]
+    without: MutableSequence[Event]
+    def __init__(self, *, milliseconds: int | None = ..., location: Location | None = ..., entries: Iterable[Edge] = ..., without: Iterable[Event] = ..., source: Place | None = ...) -> None: ...
 
 class Input(expression.NamedElement):
     """Data that comes with an event. Only updates on edges of an event that names the input read it."""

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 from robosc.metamodel.model_checks import around, demand, fitting_operands, repeated, typed, unique
+from robosc.semantics.durations import LONGEST, SHORTEST
 from robosc.semantics.edges import edges_of
 from robosc.semantics.typing import declared_type
 
@@ -111,6 +112,27 @@ def _guards(supervisor: sct.Supervisor, model: Model) -> Iterator[Fault]:
                 yield supervisor, f"the event '{plant.name}.{event.name}' has no guard"
 
 
+def _timer(timer: sct.Timer, model: Model) -> Iterator[Fault]:
+    """What starts a time anew is of the same model, and in the location in which it runs."""
+    if not SHORTEST <= timer.milliseconds <= LONGEST:
+        yield timer, f"a time is {SHORTEST} to {LONGEST} ms long, found {timer.milliseconds}"
+    if timer.location is not None and timer.location.eContainer() is not around(timer, sct.Plant):
+        yield timer, f"the location '{timer.location.name}' is another plant's"
+    if timer.location is None and not timer.without:
+        yield timer, "a time that runs in all locations is the silence of a message"
+    if any(edge.target is not timer.location for edge in timer.entries):
+        yield timer, "an edge that enters the location leads elsewhere"
+    for message in timer.without:
+        if message.kind != sct.EventKind.response or message not in model.own:
+            yield timer, f"'{message.name}' is no message of this model that a component sends"
+
+
+_TIMED = demand(
+    lambda event: (
+        (event.timer is not None) == (event.kind == sct.EventKind.timeout) and not (event.timer and event.controllable)
+    ),
+    "'{0.name}' is a timeout, uncontrollable with a timer, or it is none and has no timer",
+)
 _FOREIGN = demand(lambda _: False, "{0.eClass.name} has no place in an sct model")
 _PLAIN = demand(
     lambda declared: isinstance(declared.type, (ex.BooleanType, ex.IntegerType, ex.EnumerationType)),
@@ -142,7 +164,8 @@ CHECKS: Checks = {
     ex.StringLiteral: [_FOREIGN],
     ex.DoubleConversion: [_FOREIGN],
     ex.Division: [_FOREIGN],
-    sct.Event: [_carried],
+    sct.Event: [_carried, _TIMED],
+    sct.Timer: [_timer],
     sct.Edge: [_OWN_TARGET, typed("guard"), _updated_once],
     sct.Update: [_OWN_VARIABLE, typed("value", lambda update: declared_type(update.variable.type))],
     sct.Requirement: [_CONTROLLABLE, typed("condition")],

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
+from robosc.semantics.durations import timer_text
 from robosc.semantics.edges import edges_from
 from robosc.semantics.printing import RobotPrinter
 from robosc.semantics.roles import event_name
@@ -81,7 +82,8 @@ def _component(plant: sct.Plant, graph: rosgraph.RosGraph) -> dict[str, Any]:
 
 def _transition(location: sct.Location, edge: sct.Edge) -> dict[str, Any]:
     guard = {} if edge.guard is None else {"guard": RobotPrinter()(edge.guard)}
-    return {"from": location.name, "to": edge.target.name, "event": event_name(edge.event), **guard}
+    after = {} if edge.event.timer is None else {"after": timer_text(edge.event.timer)}
+    return {"from": location.name, "to": edge.target.name, "event": event_name(edge.event), **after, **guard}
 
 
 def _type(kind: ex.Type) -> dict[str, Any]:

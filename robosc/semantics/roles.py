@@ -77,9 +77,14 @@ class Roles:
         return self._of(sct.EventKind.response, sct.EventKind.error, sct.EventKind.feedback)
 
     @cached_property
+    def timeouts(self) -> tuple[sct.Event, ...]:
+        """What happens when a time is up."""
+        return self._of(sct.EventKind.timeout)
+
+    @cached_property
     def sources(self) -> tuple[tuple[sct.Event, ...], ...]:
-        """What comes from the robot: what messages on one topic mean, what one service says, or one action."""
-        return _by_source(self.incoming)
+        """What drives reactions: messages on one topic, what one service says, or one action; times of a component."""
+        return _by_source([*self.incoming, *self.timeouts])
 
     @cached_property
     def batches(self) -> tuple[tuple[sct.Event, ...], ...]:

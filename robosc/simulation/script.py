@@ -16,6 +16,9 @@ if TYPE_CHECKING:
     from robosc.simulation.data import EventData
 
 RULE = "script"
+WAIT = "wait"
+#: 100 days: what is longer is a mistake.
+_LONGEST_WAIT = 8_640_000
 
 
 @dataclass(frozen=True)
@@ -34,8 +37,8 @@ def read_script(
 
     `others` are those that it may use only with `--loop`, or only without.
 
-    A line is `EVENT [JSON]`, or a JSON object with `event` and maybe `data` (other keys of an event log are ignored).
-    Empty lines and lines that begin with `#` are no steps.
+    A line is `EVENT [JSON]`, with `--loop` also `wait SECONDS`, or a JSON object with `event` and maybe `data` (other
+    keys of an event log are ignored). Empty lines and lines that begin with `#` are no steps.
     """
     steps: list[Step] = []
     findings: list[Diagnostic] = []
@@ -77,12 +80,31 @@ class _Line:
             if not isinstance(name, str) or not isinstance(data, dict):
                 self._fault(self._start, 'expected an object like {"event": "...", "data": {"value": ...}}')
                 return None
-            return Step(self._number, name, data) if self._known(name, self._line.find(name)) else None
+            known = self._known(name, self._line.find(name))
+            return (
+                self._wait(str(data.get("seconds", "")))
+                if known and name == WAIT
+                else Step(self._number, name, data)
+                if known
+                else None
+            )
         name, _, rest = self._line[self._start :].partition(" ")
         name = name.rstrip()
         known = self._known(name, self._start)
+        if known and name == WAIT:
+            return self._wait(rest)
         data = self._json(len(self._line) - len(rest.lstrip())) if rest.strip() else {}
         return Step(self._number, name, data) if known and data is not None else None
+
+    def _wait(self, seconds: str) -> Step | None:
+        try:
+            given = float(seconds)
+        except ValueError:
+            given = -1.0
+        if 0.0 <= given <= _LONGEST_WAIT:
+            return Step(self._number, WAIT, {"seconds": given})
+        self._fault(self._start, f"`wait` needs a number of seconds from 0 to {_LONGEST_WAIT}", "write `wait 3.0`", 4)
+        return None
 
     def _known(self, name: str, column: int) -> bool:
         if name in self._events:

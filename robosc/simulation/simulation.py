@@ -12,6 +12,7 @@ from robosc.metamodel.engine import Role
 from robosc.semantics.definition import named_state
 from robosc.semantics.roles import event_name
 from robosc.simulation.data import EventData
+from robosc.simulation.script import WAIT
 from robosc.simulation.unreadable import Unreadable
 
 if TYPE_CHECKING:
@@ -22,7 +23,8 @@ if TYPE_CHECKING:
     from robosc.engine.state import State, Value
     from robosc.metamodel import rosgraph
 
-#: What a script may say beside events: the period is over; a message from the robot with several events begins, ends.
+#: What a script may say beside events: the period is over; a message from the robot with several events begins, ends;
+#: so many seconds go by.
 TICK, BEGIN, END = "tick", "begin", "end"
 
 
@@ -118,7 +120,7 @@ def _any(kind: ex.Type, random: Random) -> Value:
 class LoopSimulation:
     """Runs a model's control loop, step by step: incoming events as batches of one or more, and ticks."""
 
-    OWN = (TICK, BEGIN, END)
+    OWN = (TICK, BEGIN, END, WAIT)
 
     def __init__(
         self,
@@ -136,14 +138,16 @@ class LoopSimulation:
     def events(self) -> list[str]:
         """What a script may name: what comes from the robot, and the loop's own steps."""
         events = self._loop.engine.executed.events
-        return [*(event.name for event in events if event.role == Role.incoming), *self.OWN]
+        return [*(event.name for event in events if event.role in (Role.incoming, Role.timeout)), *self.OWN]
 
     def step(self, event: str, data: Mapping[str, Any]) -> dict[str, Any]:
         """What came of a step: the object that `simulate --loop --script` prints. Raises DataError."""
         inputs = {} if event in self.OWN else self.data.inputs(event, data)
         self._happened.clear()
         by: Blocked | Unreadable | None = None
-        if event in self.OWN:
+        if event == WAIT:
+            self._wait(round(data["seconds"] * 1000))
+        elif event in self.OWN:
             self._in_batch = event == BEGIN
             getattr(self._loop, event)()
         else:
@@ -156,10 +160,21 @@ class LoopSimulation:
                 self._loop.perform(by.error)
             if not self._in_batch:
                 self._loop.end()
+        given = dict(data) if event == WAIT else {}
         return {
             "event": event,
+            **given,
             "accepted": by is None,
             "by": None if by is None else str(by),
             "happened": list(self._happened),
             "state": whole_state(self._loop.engine),
         }
+
+    def _wait(self, milliseconds: int) -> None:
+        """Lets time go by; what is up on the way happens at its time."""
+        timers = self._loop.timers
+        end = timers.now + milliseconds
+        while timers.wait is not None and timers.now + timers.wait <= end:
+            timers.at(timers.now + timers.wait)
+            self._loop.expire()
+        timers.at(end)

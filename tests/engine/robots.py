@@ -13,7 +13,8 @@ _MOODS = {"Mood": ["calm", "alert", "lost"]}
 @st.composite
 def robots(draw: st.DrawFn) -> sct.SupervisoryControlModel:
     """Robots with their supervisor; messages m0…, a service, an action, data plants for some of what is sent."""
-    components = [_component(draw, f"C{number}") for number in range(draw(st.integers(1, 2)))]
+    timed = draw(st.booleans())
+    components = [_component(draw, f"C{number}", timed=timed) for number in range(draw(st.integers(1, 2)))]
     places = [f"component_C{number}.{place}" for number in range(len(components)) for place in ("a", "b")]
     messages = [f"m{number}" for number in range(draw(st.integers(1, 3)))]
     sent = [
@@ -50,6 +51,7 @@ def robots(draw: st.DrawFn) -> sct.SupervisoryControlModel:
         if draw(st.booleans()):
             plants.append(_data(name, [_condition(draw, places) for _ in range(draw(st.integers(1, 3)))]))
     made = model(plants, requirements, _MOODS)
+    _set_times(draw, made)
     made.supervisor = synthesize(made).supervisor
     assume(made.supervisor is not None)
     return made
@@ -62,7 +64,27 @@ def _condition(draw: st.DrawFn, places: list[str]) -> str:
     )
 
 
-def _component(draw: st.DrawFn, name: str):
+def _set_times(draw: st.DrawFn, made: sct.SupervisoryControlModel) -> None:
+    """Gives each timeout a short time, which others may have, too; the last of a plant runs in all its locations."""
+    messages = [event for plant in made.plants for event in plant.events if event.name == "u_response" and plant.topic]
+    for automaton in made.plants:
+        timeouts = [event for event in automaton.events if event.kind == sct.EventKind.timeout]
+        for event in timeouts:
+            location = next(x for x in automaton.locations if any(edge.event is event for edge in x.edges))
+            everywhere = event is timeouts[-1]
+            without = draw(st.lists(st.sampled_from(messages), min_size=everywhere, max_size=2, unique=True))
+            edges = [edge for origin in automaton.locations for edge in origin.edges if edge.target is location]
+            event.timer = sct.Timer(
+                milliseconds=draw(st.sampled_from((1, 2, 20, 500, 500, 2000, 24 * 24 * 3600 * 1000))),
+                location=None if everywhere else location,
+                entries=[]
+                if everywhere
+                else [edge for edge in edges if edge.eContainer() is not location or draw(st.booleans())],
+                without=without,
+            )
+
+
+def _component(draw: st.DrawFn, name: str, *, timed: bool):
     """A sensor that says an integer and a mood, and the automaton that listens to it."""
     limit, rests = draw(st.integers(0, 3)), draw(st.booleans())
     sensor = plant(
@@ -85,20 +107,27 @@ def _component(draw: st.DrawFn, name: str):
         f"component_{name}",
         {
             "a": [
+                *(edges for number in (1, 2, 4) if timed for edges in _timeout(draw, number)),
                 edge(event, do=heard),
                 edge("c_tau1", to="b", when=f"level > {limit} and mood != lost", do={"last": "level", "level": "last"}),
             ],
             "b": [
+                *(edges for number in (3, 4) if timed for edges in _timeout(draw, number)),
                 edge(event, to=draw(st.sampled_from(("a", "b"))), do=heard),
                 edge("c_tau2", to="a", when=back, do={"level": "level - 1"}),
             ],
         },
         controllable=["c_tau1", "c_tau2"],
+        uncontrollable=[f"u_after{number}" for number in (1, 2, 3, 4) if timed],
         variables={"level": "0..5", "last": "0..7 = 3", "mood": "Mood"},
         marked=["a", "b"],
         origin=name,
     )
     return sensor, behaviour
+
+
+def _timeout(draw: st.DrawFn, number: int) -> list:
+    return [edge(f"u_after{number}", to=draw(st.sampled_from((None, "a", "b"))), do={"level": "level + 1"})]
 
 
 def _service():

@@ -26,9 +26,24 @@ WORDS = {
     "LoneString",
 }
 WORDS |= {"Boolean", "Comment"}
-ENUMERATIONS = ["MessageDirection", "ResultType", "Quantifier", "InvariantKind"]
+ENUMERATIONS = ["MessageDirection", "ResultType", "Quantifier", "InvariantKind", "TimeUnit"]
 #: Words that are keywords in one place only, so that they are names elsewhere.
-UNRESERVED = {"always", "condition", "constant", "else", "function", "in", "is", "never", "then"}
+UNRESERVED = {
+    "after",
+    "always",
+    "condition",
+    "constant",
+    "else",
+    "function",
+    "in",
+    "is",
+    "min",
+    "ms",
+    "never",
+    "s",
+    "then",
+    "without",
+}
 #: What a text can't say: transformations make it.
 MADE_BY_TRANSFORMATIONS = {
     *("Type", "BooleanType", "IntegerType", "DoubleType", "StringType", "EnumerationType", "Enumeration"),

@@ -331,7 +331,10 @@ def test_a_nameless_declaration_may_be_the_missing_one_of_its_definition(tmp_pat
 #: What is written in other languages, and what the hint says of it.
 FOREIGN = [
     ("robot R { const speed: double = 0.5 }", "write `constant name: type = value`"),
-    ("robot R { component C { behaviour { initial marked state s { after 3.0 s goto s } } } }", "a model has no time"),
+    ("robot R { component C { behaviour { initial marked state s { timeout 3.0 goto s } } } }", "write `after 3.0 s"),
+    ("robot R { component C { behaviour { initial marked state s { after 3s goto s } } } }", "a number, a blank and a"),
+    ("robot R { component C { behaviour { initial marked state s { after 3 goto s } } } }", "a number, a blank and a"),
+    ("robot R { component C { behaviour { initial marked state s { after 3 s if true } } } }", "has no condition"),
     ("robot R { func f(d: double): double = d }", "write `function name(parameter: type): type = expression`"),
     ("robot R { component C { incoming message m with type: none } provide m with mode(1) }", "did you mean `mod`?"),
     ("robot R { component C { behaviour { initial marked state s { transition when true } } } }", "write `if`"),

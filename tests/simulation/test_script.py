@@ -214,3 +214,41 @@ def test_the_control_loop_does_the_rest_itself() -> None:
 @pytest.mark.parametrize("options", [["--loop"], ["--random", "1", "--script", "-"]])
 def test_options_that_make_no_sense_together(options) -> None:
     assert simulate(*options).exit_code == 2
+
+
+@pytest.fixture
+def lamp(tmp_path: Path) -> Path:
+    model = tmp_path / "lamp.rscd"
+    model.write_text(
+        """robot Lamp {
+          component Button {
+            outgoing message pressed with identifier: "/pressed", type: none
+            behaviour {
+              initial marked state dark { on response from pressed goto bright }
+              state bright { after 30 s goto dark }
+            }
+          }
+        }"""
+    )
+    return model
+
+
+def test_a_time_is_an_event_as_any(lamp: Path) -> None:
+    """Scripts: `component_X.u_after1` as any event."""
+    lines = "component_Button.u_after1\nmessage_pressed.u_response\ncomponent_Button.u_after1"
+    for options in ((), ("--loop",)):
+        done = simulate("--script", "-", *options, lines=lines, model=lamp)
+        answers = [json.loads(line) for line in done.stdout.splitlines()]
+        assert [answer["accepted"] for answer in answers] == [False, True, True]
+        assert [answer["state"]["component_Button"] for answer in answers] == ["dark", "bright", "dark"]
+
+
+def test_a_script_lets_time_go_by(lamp: Path) -> None:
+    """`--loop` scripts have `wait SECONDS`."""
+    lines = 'message_pressed.u_response\nwait 29.999\nwait 0.001\n{"event": "wait", "data": {"seconds": 100}}'
+    done = simulate("--script", "-", "--loop", lines=lines, model=lamp)
+    answers = [json.loads(line) for line in done.stdout.splitlines()]
+    assert [answer["happened"] for answer in answers[1:]] == [[], ["component_Button.u_after1"], []]
+    assert answers[1]["seconds"] == 29.999
+    assert "it needs `--loop`" in simulate("--script", "-", lines="wait 3", model=lamp).stderr
+    assert "`wait` needs a number" in simulate("--script", "-", "--loop", lines="wait -1", model=lamp).stderr

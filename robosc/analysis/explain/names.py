@@ -56,7 +56,8 @@ def _event_names(event: sct.Event) -> Iterator[str]:
         return
     owners = [plant.name, *_plant_names(plant)]
     kind = event.kind.name
-    suffixes = [event.name] if event.kind == sct.EventKind.tau else [event.name, kind]
+    numbered = event.kind in (sct.EventKind.tau, sct.EventKind.timeout)
+    suffixes = [event.name] if numbered else [event.name, kind]
     if event.kind == sct.EventKind.trigger:
         suffixes.append("request")
     yield from (f"{owner}.{suffix}" for owner in owners for suffix in suffixes)

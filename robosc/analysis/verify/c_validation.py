@@ -152,6 +152,7 @@ class _Trial:
             f"#define FOR_INPUTS(DO) {for_all(self._inputs)}\n"
             f"#define ENGINE(name) {names.prefix}_##name\n"
             f"#define ENGINE_EVENTS {names.macro}_EVENT_COUNT\n"
+            + ("#define TIMES\n" if any(event.timer for event in self._events) else "")
         )
 
     def run(self, capacity: int) -> Verdict:

@@ -22,8 +22,16 @@
  *     EVENT_NAMES                  the initializers of the events' names
  *     FOR_CELLS(DO), FOR_INPUTS(DO)  DO(number, member of the struct, least value) for all of them
  *     ENGINE(name), ENGINE_EVENTS  `name` with the supervisor's prefix; how many events the supervisor has
+ *     TIMES                        where the model has timers, so that the supervisor takes the time
  */
 #include "model.h"
+
+#ifdef TIMES
+static uint32_t now;
+#define NOW , now
+#else
+#define NOW
+#endif
 
 enum { RESTART = 1000 }; /* Steps of a walk until it begins anew. */
 
@@ -129,7 +137,7 @@ static bool asked(const event *one, const uint64_t *state)
 {
     const bool possible = holds(one->enabled);
     const bool enabled = ENGINE(enabled)(&robot, one->number);
-    const bool performed = !enabled && ENGINE(perform)(&robot, one->number);
+    const bool performed = !enabled && ENGINE(perform)(&robot, one->number NOW);
     if (enabled != possible || performed || (!enabled && memcmp(&robot.state, &placed.state, sizeof robot.state) != 0)) {
         uint64_t after[CELLS + 1];
         get(after);
@@ -155,7 +163,7 @@ static void perform(const event *one, const uint64_t *state, uint64_t *after)
         expected[change->cell] = code;
     }
     put_inputs();
-    const bool performed = ENGINE(perform)(&robot, one->number);
+    const bool performed = ENGINE(perform)(&robot, one->number NOW);
     get(after);
     if (!performed || memcmp(after, expected, CELLS * sizeof *after) != 0) {
         differ(one, state, true, true, performed, after);
@@ -397,7 +405,7 @@ static void load(void)
 static bool begin(void)
 {
     uint64_t code[CELLS + 1];
-    ENGINE(init)(&robot, NULL, NULL);
+    ENGINE(init)(&robot, NULL, NULL NOW);
     get(code);
     if (memcmp(code, initial, CELLS * sizeof *code) != 0) {
         printf("initial");
@@ -458,7 +466,11 @@ static void follow(void)
             settings.events_per_tick = (uint16_t)number();
             settings.reactions_per_tick = (uint16_t)number();
             settings.react_immediately = number() != 0U;
-            ENGINE(init)(&robot, &settings, &hooks);
+#ifdef TIMES
+            settings.resolution_ms = 0U;
+            now = 0U;
+#endif
+            ENGINE(init)(&robot, &settings, &hooks NOW);
             memset(withheld, 0, sizeof withheld);
             continue;
         }
@@ -473,23 +485,34 @@ static void follow(void)
             withheld[event] = !withheld[event];
             continue;
         }
+#ifdef TIMES
+        if (operation == 'c') {
+            now = (uint32_t)number();
+            continue;
+        }
+#endif
         printf("\n%c", operation);
         switch (operation) {
         case 'p':
             event = events[number()].number;
-            result = ENGINE(perform)(&robot, event);
+            result = ENGINE(perform)(&robot, event NOW);
             break;
         case 'b':
-            ENGINE(begin)(&robot);
+            ENGINE(begin)(&robot NOW);
             break;
         case 'e':
-            ENGINE(end)(&robot);
+            ENGINE(end)(&robot NOW);
             break;
         case 't':
-            ENGINE(tick)(&robot);
+            ENGINE(tick)(&robot NOW);
             break;
+#ifdef TIMES
+        case 'x':
+            result = ENGINE(expire)(&robot, now);
+            break;
+#endif
         default:
-            ENGINE(settle)(&robot);
+            ENGINE(settle)(&robot NOW);
             break;
         }
         printf(" = %d", result);

@@ -19,6 +19,15 @@ _PARTS, _EARLY = 4, 3
 _SETTINGS = (Settings(), Settings(0, 1), Settings(1, 2), Settings(2, 1), Settings(react_immediately=False))
 #: So many values are near an end of an input's range.
 _NEAR = 3
+#: So many milliseconds go by at most where it is not known when something is up.
+_LONGEST = 10_000
+_OPERATIONS = {
+    "b": "the start of a batch",
+    "e": "the end of a batch",
+    "t": "a tick",
+    "s": "settling",
+    "x": "the end of a time",
+}
 
 
 class LoopWalk:
@@ -46,9 +55,9 @@ class LoopWalk:
             for _ in range(_EARLY):
                 self._batch()
             while len(self.said) * len(parts) < operations * part:
-                self._random.choice(
-                    (self._batch, self._batch, self._batch, self._batch, self._tick, self._settle, self._withhold)
-                )()
+                timed = [self._wait] * (3 * bool(self._loop.engine.executed.timers))
+                batches = [self._batch] * 4
+                self._random.choice((*batches, self._tick, self._settle, self._withhold, *timed))()
 
     def _begin(self, settings: Settings, numbers: dict[str, int]) -> None:
         self._happened: list[str] = []
@@ -82,6 +91,15 @@ class LoopWalk:
             name = self._random.choice(withheld)
             self._withheld ^= {name}
             self.script.append(f"w {self._names.index(name)}")
+
+    def _wait(self) -> None:
+        """Lets time go by, mostly until something is up or nearly so, and now and then backwards; then asks once."""
+        timers = self._loop.timers
+        steps = [timers.wait or 0, (timers.wait or 0) - 1, self._random.randrange(_LONGEST), -self._random.randrange(9)]
+        timers.at(max(timers.now + self._random.choice(steps), 0))
+        self.script.append(f"c {timers.now % 2**32}")
+        self.script.append("x")
+        self._say("x", self._loop.expire() is not None)
 
     def _perform(self) -> None:
         """Mostly something that the robot can do now, now and then anything."""
@@ -120,8 +138,7 @@ class LoopWalk:
         for number, ours in enumerate(self.said):
             told = theirs[number] if number < len(theirs) else ""
             if told != ours:
-                what = {"b": "the start of a batch", "e": "the end of a batch", "t": "a tick", "s": "settling"}
-                at = what.get(ours[0], "an event")
+                at = _OPERATIONS.get(ours[0], "an event")
                 events = [", ".join(self._told(line)) or "nothing happens" for line in (told, ours)]
                 if events[0] == events[1]:
                     events = ["the state is another one", "not"]

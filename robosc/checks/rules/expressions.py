@@ -22,6 +22,7 @@ from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
 from robosc.semantics.typing import (
     BOOLEAN,
+    DOUBLE,
     INTEGER,
     NONE,
     STRING,
@@ -41,6 +42,7 @@ _GUARD = Place(None, "a guard reads what the component remembers, and `value` is
 _REQUIREMENT = Place(None, "a requirement reads what components remember, and `value` is the data of one event")
 _PROVIDE = Place(None, "provided data is read from what components remember, and `value` is the data of one event")
 _FUNCTION = Place(None, "a function computes its value from its parameters", Restriction.FUNCTION)
+_TIMED = Place(None, "a time that is up brings no data")
 _SILENT = Place(None, "a silent transition has no event that could carry data")
 
 
@@ -122,6 +124,9 @@ def _transition(transition: rsc.Transition) -> Iterator[Finding]:
     place = _SILENT
     if isinstance(transition, rsc.TauTransition):
         yield from _boolean(transition.guard, "a guard", _GUARD)
+    elif isinstance(transition, rsc.TimedTransition):
+        place = _TIMED
+        yield from _duration(transition.duration)
     elif sends_message(transition):
         place = Place(UNKNOWN)  # That nothing can be assigned there is the matter of `assignment-on-message-to-node`.
     elif isinstance(transition, rsc.ResultTransition):
@@ -136,6 +141,14 @@ def _transition(transition: rsc.Transition) -> Iterator[Finding]:
         else:
             check.type(assignment.value)
         yield from check.findings
+
+
+def _duration(value: ex.Expression | None) -> Iterator[Finding]:
+    check = ExpressionCheck(replace(CONSTANT, what="a duration"))
+    found = check.type(value)
+    if value is not None and found not in {INTEGER, DOUBLE, UNKNOWN}:
+        check.report(value, f"a duration must be integer or double, found {found}", "write a number, such as `3.0 s`")
+    yield from check.findings
 
 
 def _variable_type(variable: rsc.Variable) -> Type:

@@ -32,6 +32,8 @@ _Event: TypeAlias = "tuple[rsc.Component | None, rsc.CommunicationType, str]"
 def result_type(base: rsc.Base) -> Iterator[Finding]:
     """A transition names an event that its communication has."""
     for _, transition in transitions(base):
+        if isinstance(transition, rsc.TimedTransition):
+            yield from _silences(transition)
         if not isinstance(transition, rsc.ResultTransition):
             continue
         communication = communication_of(transition.communicationType)
@@ -45,6 +47,20 @@ def result_type(base: rsc.Base) -> Iterator[Finding]:
                 f"{direction}{type(communication).__name__.lower()} `{communication.name}` has no {event}, expected"
                 f" {enumeration(f'`{name}`' for name in allowed)}",
                 f"write {enumeration(forms)}",
+            )
+
+
+def _silences(transition: rsc.TimedTransition) -> Iterator[Finding]:
+    for reference in transition.without:
+        communication = communication_of(reference)
+        known = isinstance(communication, rsc.Message) and "response" in event_names(communication)
+        if communication is not None and not known:
+            direction = f"{communication.direction} " if isinstance(communication, rsc.Message) else ""
+            kind = f"{direction}{type(communication).__name__.lower()}"
+            yield Finding(
+                reference,
+                f"`without` names the {kind} `{communication.name}`, expected an outgoing message",
+                "write a message that a component sends; that no answer comes from a service or action is its `error`",
             )
 
 

@@ -35,6 +35,7 @@ CLAUSES: dict[str, tuple[set[str], set[str]]] = {
     "Action": _COMMUNICATION,
     "ResultTransition": ({"do", "goto"}, set()),
     "TauTransition": ({"if", "do", "goto"}, set()),
+    "TimedTransition": ({"without", "do", "goto"}, set()),
     "EnumTransformationRule": ({"->"}, set()),
     "NeedsRequirement": (set(), {"needs"}),
     "DisablesRequirement": ({"disables"}, set()),

@@ -14,6 +14,7 @@ from robosc.m2m.sct_to_engine.collect_events import collect_edges, collect_event
 from robosc.m2m.sct_to_engine.combine_guards import combine_guards
 from robosc.m2m.sct_to_engine.find_readers import find_readers
 from robosc.m2m.sct_to_engine.lower_expressions import Lowering
+from robosc.m2m.sct_to_engine.lower_timers import lower_timers
 from robosc.m2m.sct_to_engine.merge_effects import EffectTerms, merge_effects
 from robosc.m2m.sct_to_engine.place_state import place_inputs, place_state
 from robosc.m2m.sct_to_engine.share_conditions import Shared, share_conditions
@@ -89,6 +90,7 @@ def _transform(model: sct.SupervisoryControlModel, polled: int) -> engine.Engine
         settlingBound=Roles(model).settling_bound,
         incremental=incremental,
     )
+    lower_timers(made, edges, lower)
     for term, condition in shared.conditions.items():
         condition.value = build_expression(term, shared, body=True)
     for event, element in events.items():

@@ -6,6 +6,7 @@ from pathlib import PurePath
 from typing import TYPE_CHECKING
 
 from robosc.metamodel import engine, sct
+from robosc.semantics.durations import timer_text
 from robosc.semantics.edges import edges_by_event, origin
 from robosc.semantics.printing import RobotPrinter
 from robosc.semantics.roles import Roles, event_name, plant_of, provide_numbers
@@ -34,6 +35,7 @@ _SENTENCES = {
     sct.EventKind.reset: "{what} is ready to be used again.",
     sct.EventKind.tau: "{what} changes by itself{steps}.",
     sct.EventKind.data: "{what} is to be sent {data}.",
+    sct.EventKind.timeout: "{what} has waited {time}{steps}.",
 }
 
 
@@ -48,7 +50,7 @@ def collect_edges(model: sct.SupervisoryControlModel) -> EdgeTable:
 def collect_events(
     model: sct.SupervisoryControlModel, edges: EdgeTable, inputs: Mapping[sct.Input, engine.Input]
 ) -> dict[sct.Event, engine.Event]:
-    """The events by role: cancels, triggers, silent events, data, and what comes from the robot."""
+    """The events by role: cancels, triggers, silent events, data, what comes from the robot, and timeouts."""
     roles = Roles(model)
     remarks = _remarks(model)
     numbers = {event: number for events in roles.data for event, number in provide_numbers(plant_of(events[0])).items()}
@@ -58,6 +60,7 @@ def collect_events(
         (engine.Role.silent, roles.silent),
         (engine.Role.data, [event for events in roles.data for event in events]),
         (engine.Role.incoming, roles.incoming),
+        (engine.Role.timeout, roles.timeouts),
     ]
     return {
         event: engine.Event(
@@ -76,7 +79,7 @@ def collect_events(
 def collect_sources(
     model: sct.SupervisoryControlModel, events: Mapping[sct.Event, engine.Event]
 ) -> list[engine.Source]:
-    """The sources of incoming events: topics, services and actions; sets `source` of the events."""
+    """The sources of reactions: topics, services, actions, components' times; sets `source` of the events."""
     roles, sources = Roles(model), []
     batches = {together[0] for together in roles.batches}
     for together in roles.sources:
@@ -135,4 +138,5 @@ def _description(event: sct.Event, edges: Edges, number: int | None) -> str:
         on=f" ({plant.topic})" if plant.topic else "",
         steps=f": {', '.join(steps)}" if steps else "",
         data=data if number else "without data",
+        time=timer_text(event.timer) if event.timer else "",
     )

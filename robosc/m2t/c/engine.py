@@ -36,6 +36,7 @@ _HEADINGS = {
     engine.Role.silent: "Silent events: the control loop runs them until none is enabled.",
     engine.Role.data: "Data: the control loop chooses what the triggers send.",
     engine.Role.incoming: "What comes from the robot: perform these.",
+    engine.Role.timeout: "Timeouts: they happen when their time is up.",
 }
 
 
@@ -75,7 +76,7 @@ class _Preparation:
     def all(self) -> dict[str, Any]:
         """All values by name."""
         readers = self._readers() if self._model.incremental else {}
-        return {**self._declarations(), **self._computations(), **self._loop(), **readers}
+        return {**self._declarations(), **self._computations(), **self._loop(), **self._timers(), **readers}
 
     def _enumerator(self, event: engine.Event) -> str:
         return self._names.enumerator(event.event)
@@ -180,7 +181,8 @@ class _Preparation:
     def _loop(self) -> dict[str, Any]:
         """What the control loop knows of the events: their numbers, and which exclude each other."""
         model, queued, silent = self._model, len(self._queued), len(self._silent)
-        data, incoming = self._events[engine.Role.data], self._events[engine.Role.incoming]
+        data = self._events[engine.Role.data]
+        incoming = self._events[engine.Role.incoming] + self._events[engine.Role.timeout]
         first = [self._enumerator(choice.alternatives[0].event) for choice in model.choices]
         groups = {group: number for number, group in enumerate(model.groups, 1)}
         sources = {source: number for number, source in enumerate(model.sources, 1)}
@@ -208,6 +210,51 @@ class _Preparation:
                 for event in self._queued
                 if event.choice is not None and event.choice.variable is not None
             ],
+        }
+
+    def _timers(self) -> dict[str, Any]:
+        """The times, and what events do with them."""
+        timers = self._model.timers
+        numbers = {timer: number for number, timer in enumerate(timers)}
+        located = [timer.location.eContainer() for timer in timers if timer.location is not None]
+        owners = {plant: number for number, plant in enumerate(dict.fromkeys(located), 1)}
+
+        def lines(restart: engine.Restart) -> list[str]:
+            left = [] if restart.left is None else [f"leave(self, {owners[restart.left]}U);"]
+            done = [*left, *(f"begin_time(self, {numbers[timer]}U);" for timer in restart.starts)]
+            if restart.condition is None:
+                return done
+            return [f"if ({self._printer(restart.condition)}) {{", *(f"    {line}" for line in done), "}"]
+
+        restarts = [restart for event in self._model.events for restart in event.restarts]
+        return {
+            "now": ", uint32_t now" if timers else "",
+            "timers": [
+                {
+                    "number": number,
+                    "milliseconds": timer.milliseconds,
+                    "owner": 0 if timer.location is None else owners[timer.location.eContainer()],
+                    "initial": timer.initial,
+                }
+                for timer, number in numbers.items()
+            ],
+            "timer_index": unsigned_type(len(timers)),
+            "timeouts": len(self._model.events) - len(timers),
+            "starting": any(timer.initial for timer in timers) or any(restart.starts for restart in restarts),
+            "leaving": any(restart.left is not None for restart in restarts),
+            "restarts_read_state": any(restart.condition is not None for restart in restarts),
+            "restarts": _merged(
+                [
+                    (
+                        self._enumerator(event),
+                        "",
+                        [line for restart in event.restarts for line in lines(restart)],
+                        False,
+                    )
+                    for event in self._model.events
+                    if event.restarts
+                ]
+            ),
         }
 
     def _readers(self) -> dict[str, Any]:

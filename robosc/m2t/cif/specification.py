@@ -16,6 +16,7 @@ from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 from robosc.metamodel.reflection import tree
 from robosc.semantics.domains import domain
+from robosc.semantics.durations import timer_text
 from robosc.semantics.edges import edges_from, edges_of
 from robosc.semantics.roles import provide_numbers
 
@@ -244,10 +245,13 @@ def _transitions(model: sct.SupervisoryControlModel) -> dict[sct.Event, str]:
     steps: dict[sct.Event, dict[str, None]] = {}
     edges = (edge for plant in model.plants for location in plant.locations for edge in location.edges)
     for edge in edges:
-        if edge.event.kind == sct.EventKind.tau:
+        if edge.event.kind in (sct.EventKind.tau, sct.EventKind.timeout):
             here, there = edge.eContainer().name, edge.target.name
             steps.setdefault(edge.event, {})[f"in {here}" if here == there else f"from {here} to {there}"] = None
-    return {event: f"A transition of {_owner(event)} {', '.join(steps)}." for event, steps in steps.items()}
+    times = {event: f" after {timer_text(event.timer)}" if event.timer else "" for event in steps}
+    return {
+        event: f"A transition of {_owner(event)}{times[event]} {', '.join(steps)}." for event, steps in steps.items()
+    }
 
 
 def _choices(model: sct.SupervisoryControlModel) -> dict[sct.Event, str]:

@@ -63,25 +63,28 @@ static void input(%(p)s_supervisor *robot)
     }
 }
 
-int main(void)
+int main(int arguments, char **argument)
 {
     %(p)s_supervisor robot;
+    unsigned now = arguments > 1 ? (unsigned)strtoul(argument[1], NULL, 10) : 0U;
     %(p)s_hooks hooks = { "!", before, after, livelock };
     char command[20];
     int result = 0;
-    %(p)s_init(&robot, NULL, &hooks);
+    %(settings)s
+    %(p)s_init(&robot, %(chosen)s, &hooks%(now)s);
     while (scanf(" %%19s", command) == 1) {
         if (strcmp(command, "input") == 0) { input(&robot); continue; }
         if (strcmp(command, "withhold") == 0) { %(p)s_event e = event(); withheld[e] = !withheld[e]; continue; }
+        if (strcmp(command, "now") == 0) { if (scanf(" %%u", &now) != 1) abort(); continue; }
         printf("%%s:", command);
         result = 0;
-        if (strcmp(command, "perform") == 0) result = %(p)s_perform(&robot, event());
-        else if (strcmp(command, "begin") == 0) %(p)s_begin(&robot);
-        else if (strcmp(command, "end") == 0) %(p)s_end(&robot);
-        else if (strcmp(command, "tick") == 0) %(p)s_tick(&robot);
-        else if (strcmp(command, "settle") == 0) %(p)s_settle(&robot);
-        else abort();
-        printf(" = %%d;", result);
+        if (strcmp(command, "perform") == 0) result = %(p)s_perform(&robot, event()%(now)s);
+        else if (strcmp(command, "begin") == 0) %(p)s_begin(&robot%(now)s);
+        else if (strcmp(command, "end") == 0) %(p)s_end(&robot%(now)s);
+        else if (strcmp(command, "tick") == 0) %(p)s_tick(&robot%(now)s);
+        else if (strcmp(command, "settle") == 0) %(p)s_settle(&robot%(now)s);
+%(expire)s        else abort();
+        printf(" = %%d;%(waits)s", result%(wait)s);
 %(state)s
         printf(";");
         for (int e = 0; e < %(u)s_EVENT_COUNT; ++e) {
@@ -108,7 +111,17 @@ def program(model: sct.SupervisoryControlModel) -> str:
             else:
                 values.append(f'printf(" %lld", (long long){member});')
     inputs = [f"robot->inputs.{names.member(input_)}" for plant in model.plants for input_ in plant.inputs]
+    timed = any(event.timer for plant in model.plants for event in plant.events)
+    supervisor = names.prefix
     return _PROGRAM % {
+        "now": ", now" if timed else "",
+        "settings": f"{supervisor}_settings chosen = {supervisor}_default_settings; chosen.resolution_ms = 0;" * timed
+        or "(void)now;",
+        "chosen": "&chosen" if timed else "NULL",
+        "expire": f'        else if (strcmp(command, "expire") == 0) result = {supervisor}_expire(&robot, now);\n'
+        * timed,
+        "waits": " %%u;".replace("%%", "%") * timed,
+        "wait": f", {supervisor}_wait(&robot, now)" * timed,
         "p": names.prefix,
         "u": names.macro,
         "state": "\n".join(f"        {value}" for value in values),

@@ -10,7 +10,9 @@ from robosc.metamodel import sct
 class Walk:
     """Performs random operations; `script` and `said` grow with each."""
 
-    def __init__(self, model: sct.SupervisoryControlModel, settings: Settings, seed: int) -> None:
+    def __init__(self, model: sct.SupervisoryControlModel, settings: Settings, seed: int, start: int = 0) -> None:
+        """`start` is what the clock of 32 bits shows at first, in models with times."""
+        self._start = start
         self.random = Random(seed)  # noqa: S311
         self.script: list[str] = []
         self.said: list[str] = []
@@ -23,7 +25,8 @@ class Walk:
         )
         roles = self.loop.engine.roles
         #: Events as the header orders them.
-        order = (*roles.cancels, *roles.triggers, *roles.silent, *(e for es in roles.data for e in es), *roles.incoming)
+        data = (event for events in roles.data for event in events)
+        order = (*roles.cancels, *roles.triggers, *roles.silent, *data, *roles.incoming, *roles.timeouts)
         self._events = [f"{event.eContainer().name}.{event.name}" for event in order]
         self._by_name = dict(zip(self._events, order, strict=True))
         self._inputs = {plant: number for number, plant in enumerate(x for p in model.plants for x in p.inputs)}
@@ -31,7 +34,8 @@ class Walk:
     def steps(self, number: int) -> None:
         for _ in range(number):
             kinds = ("perform", "perform", "batch", "batch", "batch", "tick", "tick", "settle", "withhold")
-            kind = self.random.choice(kinds)
+            timed = ("wait", "wait", "wait") if self.loop.engine.executed.timers else ()
+            kind = self.random.choice((*kinds, *timed))
             getattr(self, kind)()
 
     def perform(self) -> None:
@@ -50,6 +54,16 @@ class Walk:
         for _ in range(self.random.randint(0, 3)):
             self.perform()
         self._operate("end")
+
+    def wait(self) -> None:
+        """Lets time go by, often until something is up, and now and then backwards."""
+        timers = self.loop.timers
+        left = timers.wait or 0
+        step = self.random.choice((left, left, left - 1, self.random.randint(0, 3000), -self.random.randint(0, 20)))
+        timers.at(timers.now + step)
+        self.script.append(f"now {(self._start + timers.now) % 2**32}")
+        self.script.append("expire")
+        self._say("expire", self.loop.expire() is not None)
 
     def tick(self) -> None:
         self._operate("tick")
@@ -73,7 +87,10 @@ class Walk:
     def _say(self, operation: str, result: bool) -> None:
         values = [int(value) if isinstance(value, bool) else value for value in self.loop.state.values()]
         enabled = [event for event in self._events if self.loop.enabled(event)]
-        parts = (f"{operation}:", *self._happened, f"= {int(result)};", *values)
+        timers = self.loop.timers
+        wait = 2**32 - 1 if timers.wait is None else timers.wait
+        waits = [f"{wait};"] if self.loop.engine.executed.timers else []
+        parts = (f"{operation}:", *self._happened, f"= {int(result)};", *waits, *values)
         self.said.append(" ".join(map(str, parts)) + ";" + "".join(f" {number}" for number in enabled))
         self._happened.clear()
 
