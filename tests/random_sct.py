@@ -38,11 +38,11 @@ class _Sketch:
 
 
 @st.composite
-def sct_models(draw: st.DrawFn, *, data: bool = True, invariants: bool = False) -> sct.SupervisoryControlModel:
+def sct_models(draw: st.DrawFn, *, data: bool = True, requirements: bool = False) -> sct.SupervisoryControlModel:
     """Models without a supervisor: plants that share events, guards, saturating updates, inputs, requirements.
 
     With `data`, some have plants as provide statements make them (semantics.md, point 4): nothing reads them.
-    With `invariants`, some have conditions on their states.
+    With `requirements`, some have invariants, requirement automata, and requirements on uncontrollable events.
     """
     sketches = [draw(_sketches(f"p{index}")) for index in range(draw(st.integers(1, 3)))]
     scope = _Scope(
@@ -53,12 +53,17 @@ def sct_models(draw: st.DrawFn, *, data: bool = True, invariants: bool = False) 
     if data:
         plants += [_data_plant(draw, f"data_{index}", scope) for index in range(draw(st.integers(0, 1)))]
     events = [f"{sketch.name}.{event}" for sketch in sketches for event in sketch.controllable]
-    requirements = [
+    if requirements and draw(st.booleans()):
+        plants.append(_requirement_automaton(draw, sketches, scope))
+        scope = replace(scope, locations=(*scope.locations, "watching.l0", "watching.l1"))
+    if requirements:
+        events += [f"{sketch.name}.{event}" for sketch in sketches for event in sketch.uncontrollable]
+    restrictions = [
         draw(st.sampled_from((needs, disables)))(draw(st.sampled_from(events)), _boolean(draw, scope, 3))
         for _ in range(draw(st.integers(0, 3)) if events else 0)
     ]
-    conditions = [_boolean(draw, scope, 3) for _ in range(draw(st.sampled_from((0, 1, 2))) if invariants else 0)]
-    return model(plants, requirements, _ENUMERATIONS, invariants=conditions)
+    conditions = [_boolean(draw, scope, 3) for _ in range(draw(st.sampled_from((0, 1, 2))) if requirements else 0)]
+    return model(plants, restrictions, _ENUMERATIONS, invariants=conditions)
 
 
 @st.composite
@@ -150,6 +155,26 @@ def _data_plant(draw: st.DrawFn, name: str, scope: _Scope):
         controllable=[made.event for made in edges],
         marked=locations,
         kind="data",
+    )
+
+
+def _requirement_automaton(draw: st.DrawFn, sketches: Sequence[_Sketch], scope: _Scope):
+    """An automaton that follows some events and blocks none."""
+    events = [f"{one.name}.{event}" for one in sketches for event in (*one.controllable, *one.uncontrollable)]
+    followed = draw(st.lists(st.sampled_from(events), min_size=1, max_size=3, unique=True))
+    locations = ("l0", "l1")
+    return plant(
+        "watching",
+        {
+            location: [
+                edge(event, to=draw(st.sampled_from(locations)), do={"count": _number(draw, scope, 1)})
+                for event in followed
+            ]
+            for location in locations
+        },
+        variables={"count": "0..2"},
+        marked=locations,
+        kind="requirement",
     )
 
 

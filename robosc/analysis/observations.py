@@ -197,8 +197,9 @@ class Observer:
             if plant_of(event).kind != sct.PlantKind.action or not permission.guard.everEnabled:
                 continue
             after = permission.where if step is None else step.image(permission.where)
-            if not (after & permission.relation.requirement).satisfiable():
-                yield SelfCancelling(event, forbidding(permission.relation, after))
+            if not (after & self._system.started_where(event)).satisfiable():
+                at_fault = forbidding(permission.relation, after)
+                yield SelfCancelling(event, tuple(one for one in at_fault if one.automaton is None))
 
     def _provide_gaps(self) -> Iterator[ProvideGap]:
         for event in self._triggers:
@@ -222,7 +223,10 @@ class Observer:
     def _unrestricted_calls(self) -> Iterator[sct.Event]:
         for event in self._triggers:
             plant, permission = plant_of(event), self._permissions[event]
-            alone = all(participant is plant for participant in permission.relation.enabled_by)
+            alone = all(
+                participant is plant or participant.kind == sct.PlantKind.requirement
+                for participant in permission.relation.enabled_by
+            )
             restricted = permission.relation.requirements or not alone
             if plant.kind in _CALLS and not restricted and permission.guard.everEnabled:
                 yield event

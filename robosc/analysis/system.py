@@ -66,8 +66,8 @@ class SupervisedSystem:
         self.relations = relations
         self.moves = moves
         self.plant_moves = plant_moves(relations.values())
-        #: The states that violate each invariant, reachable or not.
-        self.violations = violations(model, encoding)
+        #: The states that violate a requirement whatever a supervisor does, reachable or not.
+        self.violations = violations(model, relations.values(), encoding)
 
     @cached_property
     def controlled(self) -> Diagram:
@@ -178,8 +178,10 @@ class SynthesizedSystem(SupervisedSystem):
         other.required = {}
         for event, relation in self.relations.items():
             trigger = self.start_of(event)
-            kept = self._asked(relation if trigger is None else self.relations[trigger], requirements)
-            other.required[event] = kept if trigger is None else ~kept
+            if trigger is None:
+                other.required[event] = self._asked(relation, requirements)
+            else:
+                other.required[event] = ~self.started_where(trigger, requirements)
         moves = ((relation, relation.step_where(other.required[event])) for event, relation in self.relations.items())
         other.moves = [(relation, step) for relation, step in moves if step is not None]
         other.violations = {one: states for one, states in self.violations.items() if one not in requirements}
@@ -203,6 +205,11 @@ class SynthesizedSystem(SupervisedSystem):
         if event.kind != sct.EventKind.cancel or not stands_there:
             return None
         return next((other for other in plant.events if other.kind == sct.EventKind.trigger), None)
+
+    def started_where(self, trigger: sct.Event, left_out: AbstractSet[sct.StatedRequirement] = frozenset()) -> Diagram:
+        """Where an action is not cancelled: what it `needs` holds, whatever orders and counts say of another start."""
+        asked = self.relations[trigger].asked.items()
+        return self.diagrams.all_of(holds for one, holds in asked if one.automaton is None and one not in left_out)
 
     def _asked(self, relation: EventRelation, left_out: AbstractSet[sct.StatedRequirement]) -> Diagram:
         """Where the requirements on an event hold but for those left out."""

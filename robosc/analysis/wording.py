@@ -106,12 +106,19 @@ def _called(requirement: sct.StatedRequirement) -> str:
 
 def forbid(requirements: Sequence[sct.Requirement], what: str) -> str:
     """That they forbid something."""
-    return f"{called(requirements)} {'forbids' if len(requirements) == 1 else 'forbid'} {what}"
+    return f"{called(requirements)} {_forbid(requirements)} {what}"
 
 
 def violates(named: str, requirements: Sequence[sct.StatedRequirement]) -> str:
     """That requirements, named so, do not hold."""
+    events = dict.fromkeys(one.event for one in requirements if isinstance(one, sct.Requirement))
+    if events:
+        return f"{listed([words(event) for event in events])} can come, which {named} {_forbid(requirements)}"
     return f"{named} {'is' if len(requirements) == 1 else 'are'} violated"
+
+
+def _forbid(requirements: Sequence[sct.StatedRequirement]) -> str:
+    return "forbids" if len(requirements) == 1 else "forbid"
 
 
 def blocking(reason: Reason) -> str:

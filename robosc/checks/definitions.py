@@ -113,6 +113,14 @@ def unit_of(element: ex.Located) -> Any:
     return around
 
 
+def restricted_events(base: rsc.Base) -> Iterator[rsc.EventSet]:
+    """What orders and counts restrict."""
+    for order in statements(rsc.OrderRequirement, base):
+        yield order.target
+    for count in statements(rsc.CountRequirement, base):
+        yield count.target
+
+
 def communication_of(reference: rsc.CommunicationReference | None) -> rsc.CommunicationType | None:
     """What a reference stands for; None where there is none, or it is not resolved."""
     return reference.communicationType if reference else None

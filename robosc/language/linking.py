@@ -119,7 +119,7 @@ class _Linker:
                 self._remapping(element, names["communicationType"])
             case rsc.CommunicationReference():
                 self._communication(element, names)
-            case rsc.Transition():
+            case rsc.Transition() | rsc.RequirementTransition():
                 self._target(element, names["target"])
             case rsc.Access():
                 self._access(element, names)
@@ -288,7 +288,13 @@ class _Linker:
         enum = value.eContainer().eContainer()
         return f"`{written(name.text)}` is a value of `{written(enum.name)}`: write it without a component"
 
-    def _target(self, transition: rsc.Transition, name: Name) -> None:
+    def _target(self, transition: rsc.Transition | rsc.RequirementTransition, name: Name) -> None:
+        if isinstance(transition, rsc.RequirementTransition):
+            own_states = by_name(transition.eContainer().eContainer().states)
+            transition.target = own_states.get(name.text)
+            if transition.target is None:
+                self._missing(name, "the requirement has no state", own_states)
+            return
         own = self._around(transition, rsc.Component)
         states = self._scope.states(own) if own is not None else {}
         if name.text in states:
@@ -313,6 +319,9 @@ class _Linker:
         elif qualifies and first.text in components and self._around(access, rsc.EnumDataType) is None:
             self._qualified(access, components[first.text], names["item"])
             return
+        elif qualifies and first.text in (automata := self._automata(access)):
+            self._requirement_state(access, automata[first.text], names["item"])
+            return
         elif qualifies and self._value_of(access, first, names["item"]):
             return
         elif self._around(access, rsc.EnumDataType) is not None:
@@ -321,6 +330,20 @@ class _Linker:
             self._bare(access, first, qualifies=qualifies)
         if qualifies:
             self._read_as_property(access, names["item"])
+
+    def _automata(self, element: ex.Located) -> Names:
+        """The requirement automata that an expression can read: those of its component, then those of the robot."""
+        own = self._around(element, rsc.Component)
+        local = own.type.definitions if own is not None and isinstance(own.type, rsc.LocalComponent) else ()
+        outer = self._file.base.definitions if self._file.base is not None else ()
+        return by_name(found for found in (*local, *outer) if isinstance(found, rsc.AutomatonRequirement))
+
+    def _requirement_state(self, access: rsc.Access, automaton: rsc.AutomatonRequirement, name: Name) -> None:
+        states = by_name(automaton.states)
+        if name.text in states:
+            access.item = states[name.text]
+        else:
+            self._missing(name, f"requirement `{automaton.name}` has no state", states)
 
     def _in_enum(self, access: rsc.Access, name: Name) -> None:
         if self._named_value(access, name) or self._enum_value(access, name):

@@ -62,6 +62,11 @@ class _Expressions:
             instance = instances.instance(access.component, within)
             assert instance is not None
             return sct.LocationReference(location=self._trace.locations[instance, access.item])
+        if isinstance(access.item, robosc.RequirementState):
+            inner = isinstance(access.item.eContainer().eContainer(), robosc.LocalComponent)
+            return sct.LocationReference(
+                location=self._trace.requirement_locations[within if inner else None, access.item]
+            )
         if isinstance(access.item, robosc.EnumValue):
             return ex.EnumerationLiteralReference(literal=self._declarations.literal(access.item))
         owned = instances.variable(access, within)

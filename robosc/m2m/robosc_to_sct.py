@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 from robosc.m2m.declarations import Declarations
 from robosc.m2m.expressions import SctExpressions
+from robosc.m2m.requirement_automata import RequirementAutomaton
 from robosc.m2m.trace import Trace
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc, sct
@@ -17,6 +18,8 @@ from robosc.semantics.naming import Names
 from robosc.semantics.printing import RoboscPrinter, conjunction, disjunction
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from robosc.metamodel.places import Place
 
 _Requirement = TypeVar("_Requirement", bound=robosc.Requirement)
@@ -262,6 +265,7 @@ class _Transformation:
 
     def requirements(self) -> None:
         """Section 5.2.2: one for each communication named, on its trigger; and the cancelling of actions."""
+        automata = list(self.requirement_automata())
         on_action: dict[PortInstance, list[Statement[robosc.CommunicationRequirement]]] = {
             port: [] for port in self.instances.ports() if isinstance(port.communication, robosc.Action)
         }
@@ -274,6 +278,9 @@ class _Transformation:
                     on_action[port].append(requirement)
         for port, requirements in on_action.items():
             self.cancelling(port, requirements)
+        for automaton in automata:
+            automaton.fill(self.expressions)
+            self.restrictions(automaton)
         for invariant in self.instances.statements(robosc.StateInvariant):
             self.invariant(invariant)
 
@@ -292,6 +299,64 @@ class _Transformation:
         )
         self.model.requirements.append(target)
         self.trace.origins[target] = requirement
+
+    def requirement_automata(self) -> Iterator[RequirementAutomaton]:
+        """Those of the orders, counts and automata, without edges: what reads one needs its locations."""
+        kinds = (robosc.OrderRequirement, robosc.CountRequirement, robosc.AutomatonRequirement)
+        stated = (one for one in self.instances.statements(robosc.Requirement) if isinstance(one.element, kinds))
+        for number, statement in enumerate(stated, start=1):
+            name = _stated_name(statement)
+            plant = self.plant(
+                f"requirement_{name.replace('.', '_') if name else number}",
+                sct.PlantKind.requirement,
+                name,
+                statement.element.source,
+            )
+            self.trace.origins[plant] = statement.element
+            made = RequirementAutomaton(self.trace, statement, plant)
+            made.declare()
+            yield made
+
+    def restrictions(self, automaton: RequirementAutomaton) -> None:
+        """The requirements on the locations of a requirement automaton, one for each event that it restricts."""
+        statement = automaton.statement
+        for event, condition in automaton.allowed.items():
+            target = sct.Requirement(
+                event=event,
+                kind=sct.RequirementKind.needs,
+                condition=condition,
+                automaton=automaton.plant,
+                name=_stated_name(statement),
+                text=f"{self.heading(statement)} {self.said(statement)}",
+                source=statement.element.source,
+            )
+            self.model.requirements.append(target)
+            self.trace.origins[target] = statement.element
+
+    def said(self, statement: Statement[robosc.Requirement]) -> str:
+        """An order, a count or an automaton in its author's words."""
+        match statement.element:
+            case robosc.OrderRequirement() as order:
+                fresh = "each " if order.each else ""
+                anchor = self.event_said(order.anchor, statement)
+                return f"{self.events_said(order.target, statement)} after {fresh}{anchor}"
+            case robosc.CountRequirement() as count:
+                bound = self.print(self.instances.expanded(count.bound, statement.within, readable=True))
+                events = self.events_said(count.target, statement)
+                return f"at most {bound} {events} since {self.event_said(count.anchor, statement)}"
+        return "automaton"
+
+    def events_said(self, events: robosc.EventSet, statement: Statement[robosc.Requirement]) -> str:
+        said = [self.event_said(event, statement) for event in events.events]
+        return said[0] if len(said) == 1 else f"{{ {', '.join(said)} }}"
+
+    def event_said(self, reference: robosc.EventReference, statement: Statement[robosc.Requirement]) -> str:
+        port = self.instances.port(reference.communicationType, statement.within)
+        assert port is not None
+        if not isinstance(reference, robosc.NamedEvent):
+            return self.shown(port)
+        kind = reference.resultType.name
+        return f"{kind} {'to' if kind == 'request' else 'from'} {self.shown(port)}"
 
     def invariant(self, statement: Statement[robosc.StateInvariant]) -> None:
         invariant, within = statement.element, statement.within

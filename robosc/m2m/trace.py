@@ -30,6 +30,9 @@ class Trace:
     behaviours: dict[Instance, sct.Plant] = field(default_factory=dict)
     locations: dict[tuple[Instance, robosc.State], sct.Location] = field(default_factory=dict)
     own: dict[tuple[Instance, robosc.Transition], sct.Event] = field(default_factory=dict)
+    requirement_locations: dict[tuple[Instance | None, robosc.RequirementState], sct.Location] = field(
+        default_factory=dict
+    )
     variables: dict[InstanceVariable, sct.DiscreteVariable] = field(default_factory=dict)
     provided: dict[Statement[robosc.ProvideStatement], sct.Location] = field(default_factory=dict)
     origins: dict[ex.Located, ex.Located] = field(default_factory=dict)

@@ -398,6 +398,58 @@ class InvariantKind:
     never: ClassVar[InvariantKind]
     always: ClassVar[InvariantKind]
 
+class OrderRequirement(Requirement):
+    """Events happen only after another one."""
+    target: EventSet
+    each: bool
+    anchor: EventReference
+    def __init__(self, *, target: EventSet | None = ..., each: bool | None = ..., anchor: EventReference | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
+
+class CountRequirement(Requirement):
+    """Events happen only so many times since another one, or since the start."""
+    bound: expression.Expression
+    target: EventSet
+    anchor: EventReference
+    def __init__(self, *, bound: expression.Expression | None = ..., target: EventSet | None = ..., anchor: EventReference | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
+
+class AutomatonRequirement(Requirement):
+    """The events that the transitions of an automaton are on happen only where it has one for them."""
+    states: MutableSequence[RequirementState]
+    def __init__(self, *, states: Iterable[RequirementState] = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
+
+class RequirementState(AccessibleItem):
+    """A state of a requirement automaton."""
+    initial: bool
+    marked: bool
+    transitions: MutableSequence[RequirementTransition]
+    def __init__(self, *, initial: bool | None = ..., marked: bool | None = ..., transitions: Iterable[RequirementTransition] = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
+
+class RequirementTransition(expression.Located):
+    """An event that may happen in a state of a requirement automaton."""
+    event: EventReference
+    guard: expression.Expression | None
+    target: RequirementState | None
+    def __init__(self, *, event: EventReference | None = ..., guard: expression.Expression | None = ..., target: RequirementState | None = ..., source: Place | None = ...) -> None: ...
+
+class EventSet(expression.Located):
+    """Events."""
+    events: MutableSequence[EventReference]
+    def __init__(self, *, events: Iterable[EventReference] = ..., source: Place | None = ...) -> None: ...
+
+class EventReference(expression.Located):
+    """An event of a communication."""
+    communicationType: CommunicationReference
+    def __init__(self, *, communicationType: CommunicationReference | None = ..., source: Place | None = ...) -> None: ...
+
+class NamedEvent(EventReference):
+    """An event that is named as a transition names it."""
+    resultType: ResultType
+    def __init__(self, *, resultType: ResultType | None = ..., communicationType: CommunicationReference | None = ..., source: Place | None = ...) -> None: ...
+
+class ImpliedEvent(EventReference):
+    """The request of a communication, or what an outgoing message brings."""
+    def __init__(self, *, communicationType: CommunicationReference | None = ..., source: Place | None = ...) -> None: ...
+
 class NeedsRequirement(CommunicationRequirement):
     """The communication may start only where the condition holds."""
     def __init__(self, *, target: CommunicationTypeSet | None = ..., condition: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...

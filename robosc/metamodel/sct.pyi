@@ -28,13 +28,14 @@ class Plant(expression.NamedElement):
     def __init__(self, *, kind: PlantKind | None = ..., origin: str | None = ..., topic: str | None = ..., events: Iterable[Event] = ..., inputs: Iterable[Input] = ..., variables: Iterable[DiscreteVariable] = ..., locations: Iterable[Location] = ..., edges: Iterable[Edge] = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class PlantKind:
-    """message, service, action: communication (thesis listings 5.1 to 5.3); behaviour: a component's automaton; data: the provide statements of one communication (listing 5.4)."""
+    """message, service, action: communication (thesis listings 5.1 to 5.3); behaviour: a component's automaton; data: the provide statements of one communication (listing 5.4); requirement: an automaton that follows events and never blocks one. What a requirement automaton forbids stands in requirements on its locations, and no state of the plants is counted twice for its locations."""
     name: str
     message: ClassVar[PlantKind]
     service: ClassVar[PlantKind]
     action: ClassVar[PlantKind]
     behaviour: ClassVar[PlantKind]
     data: ClassVar[PlantKind]
+    requirement: ClassVar[PlantKind]
 
 class Event(expression.NamedElement):
     """Something that happens, in all plants that have it in their alphabet at once."""
@@ -104,11 +105,12 @@ class StatedRequirement(expression.Located):
     def __init__(self, *, name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
 
 class Requirement(StatedRequirement):
-    """Restricts a controllable event."""
+    """Restricts a controllable event; with an automaton also an uncontrollable one, which synthesis then keeps from where it is forbidden."""
     event: Event
     kind: RequirementKind
     condition: expression.Expression
-    def __init__(self, *, event: Event | None = ..., kind: RequirementKind | None = ..., condition: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
+    automaton: Plant | None
+    def __init__(self, *, event: Event | None = ..., kind: RequirementKind | None = ..., condition: expression.Expression | None = ..., automaton: Plant | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
 
 class RequirementKind:
     """needs: the event happens only where the condition holds; disables: only where it does not."""

@@ -142,6 +142,10 @@ _CONTROLLABLE = demand(
     lambda restriction: restriction.event.controllable,
     "the event '{0.event.name}' is uncontrollable: nothing can restrict it",
 )
+_RESTRICTABLE = demand(
+    lambda requirement: requirement.event.controllable or requirement.automaton is not None,
+    "the event '{0.event.name}' is uncontrollable: nothing can restrict it",
+)
 _OWN_TARGET = demand(
     lambda edge: edge.target.eContainer() is around(edge, sct.Plant),
     "the target '{0.target.name}' is another plant's location",
@@ -168,7 +172,7 @@ CHECKS: Checks = {
     sct.Timer: [_timer],
     sct.Edge: [_OWN_TARGET, typed("guard"), _updated_once],
     sct.Update: [_OWN_VARIABLE, typed("value", lambda update: declared_type(update.variable.type))],
-    sct.Requirement: [_CONTROLLABLE, typed("condition")],
+    sct.Requirement: [_RESTRICTABLE, typed("condition")],
     sct.StateInvariant: [typed("condition")],
     sct.EventGuard: [_CONTROLLABLE, typed("requirement"), typed("synthesis")],
     sct.InputReference: [_read],

@@ -98,6 +98,15 @@ def event_of(reference: robosc.CommunicationReference | None, name: robosc.Resul
     return event(reference.communicationType if reference else None, name)
 
 
+def meant(reference: robosc.EventReference) -> PortEvent | None:
+    """The event that a requirement names; without a word for it the request, or what an outgoing message brings."""
+    named = reference.communicationType
+    communication = named.communicationType if named else None
+    if isinstance(reference, robosc.NamedEvent):
+        return event(communication, reference.resultType)
+    return next(iter(events(communication)), None)
+
+
 def sent(communication: robosc.CommunicationType | None) -> PortEvent | None:
     """The event with which data goes out of the controller; None where none goes out."""
     return next((row for row in events(communication) if row.is_sent), None)

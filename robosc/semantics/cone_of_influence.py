@@ -108,6 +108,11 @@ def conditions(instances: Instances) -> Iterator[tuple[ex.Expression | None, Ins
         *(statement for port in instances.ports() for statement in instances.provided(port)),
         *instances.statements(robosc.StateInvariant),
     ]
+    for automaton in instances.statements(robosc.AutomatonRequirement):
+        for state in automaton.element.states:
+            for guarded in state.transitions:
+                if guarded.guard is not None:
+                    yield instances.expanded(guarded.guard, automaton.within), automaton.within
     for statement in found:
         if statement.element.condition is not None:
             yield instances.expanded(statement.element.condition, statement.within), statement.within

@@ -35,7 +35,7 @@ def definition(graph: rosgraph.RosGraph) -> dict[str, Any]:
                 "events": [event_name(event) for event in plant.events],
             }
             for plant in plants
-            if plant.kind not in (sct.PlantKind.behaviour, sct.PlantKind.data)
+            if plant.kind not in (sct.PlantKind.behaviour, sct.PlantKind.data, sct.PlantKind.requirement)
         ],
         "requirements": [
             {"event": event_name(requirement.event), "text": requirement.text}

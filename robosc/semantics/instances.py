@@ -98,6 +98,8 @@ class Instance:
         return self._types[declared]
 
 
+#: How often an event may happen at most, by a requirement that counts.
+MOST = 1000
 #: The instance of each component that imports one; None where its import is broken.
 Resolved: TypeAlias = "dict[robosc.Component, Instance | None]"
 

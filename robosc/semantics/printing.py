@@ -112,7 +112,10 @@ class RoboscPrinter(Printer):
         match expression:
             case robosc.Access():
                 name = "value" if expression.item is None else written(expression.item.name)
-                owner = f"{written(expression.component.name)}." if expression.component else ""
+                component = expression.component
+                if isinstance(expression.item, robosc.RequirementState):
+                    component = expression.item.eContainer()
+                owner = f"{written(component.name)}." if component else ""
                 indices = iter(texts)
                 return Printed(owner + name + "".join(_step(segment, indices) for segment in expression.segments))
             case robosc.ArrayQuantifier():

@@ -151,9 +151,9 @@ def _solved(model: sct.SupervisoryControlModel, layout: Layout, capacity: int, s
         plants, moves = steps(plant_moves(relations)), required_moves(relations)
     with statistics.during(Phase.FIXPOINT):
         uncontrolled = reachable(diagrams, plants, encoding.initial, diagrams.true)
-        violating = diagrams.any_of(violations(model, encoding).values())
+        violating = diagrams.any_of(violations(model, relations, encoding).values())
         found = supervise(encoding, moves, violating)
-    all_states, nodes = encoding.count(uncontrolled), found.controlled.node_count()
+    all_states, nodes = encoding.count_plants(uncontrolled), found.controlled.node_count()
     if not found.controlled.satisfiable():
         empty = Synthesis(None, all_states, 0, nodes, statistics)
         return Solution(empty, encoding, relations, (), found, uncontrolled)

@@ -236,6 +236,14 @@ class Encoding:
         """How many states there are in a set of them."""
         return states.sat_count(sum(len(domain.levels) for domain in self.layout.state))
 
+    def count_plants(self, states: Diagram) -> int:
+        """How many states of the plants there are in a set, wherever requirement automata are."""
+        watching = {plant for plant in self.layout.plants if plant.kind == sct.PlantKind.requirement}
+        others = [domain for domain in self.layout.state if _plant(domain.element) in watching]
+        states = states.exists(self.diagrams.cube(level for domain in others for level in domain.levels))
+        counted = sum(len(domain.levels) for domain in self.layout.state if domain not in others)
+        return states.sat_count(counted) if others else self.count(states)
+
     @cached_property
     def initial(self) -> Diagram:
         """The initial state."""
@@ -354,6 +362,11 @@ class Encoding:
         if element not in self._places:
             self._places.update({sibling: place for place, sibling in enumerate(siblings)})
         return self._places[element]
+
+
+def _plant(element: Element) -> sct.Plant:
+    found: sct.Plant = element if isinstance(element, sct.Plant) else element.eContainer()
+    return found
 
 
 def _elements(plant: sct.Plant) -> Iterator[Element]:

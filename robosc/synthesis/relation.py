@@ -186,9 +186,19 @@ def event_relations(model: sct.SupervisoryControlModel, encoding: Encoding) -> l
     ]
 
 
-def violations(model: sct.SupervisoryControlModel, encoding: Encoding) -> dict[sct.StatedRequirement, Diagram]:
-    """The states that violate each of the model's invariants."""
-    return {invariant: ~encoding.holds(invariant.condition) for invariant in model.invariants}
+def violations(
+    model: sct.SupervisoryControlModel, relations: Iterable[EventRelation], encoding: Encoding
+) -> dict[sct.StatedRequirement, Diagram]:
+    """The states that violate a requirement whatever a supervisor does.
+
+    They are those where an invariant does not hold, and those where an uncontrollable event can happen that is
+    forbidden.
+    """
+    found: dict[sct.StatedRequirement, Diagram] = {one: ~encoding.holds(one.condition) for one in model.invariants}
+    for relation in relations:
+        if not relation.event.controllable:
+            found.update((requirement, relation.enabled & ~asked) for requirement, asked in relation.asked.items())
+    return found
 
 
 def requirements_by_event(requirements: Iterable[sct.Requirement]) -> dict[sct.Event, list[sct.Requirement]]:

@@ -136,8 +136,11 @@ class Oracle:
         )
 
     def violates(self, state: State) -> bool:
-        """Whether some invariant does not hold."""
-        return not all(self.value(invariant.condition, state, {}) for invariant in self.model.invariants)
+        """Whether some invariant does not hold, or something can come that is forbidden."""
+        forbidden = (event for event in self.events if not event.controllable and not self.required(event, state))
+        return any(self.edges(event, state) is not None for event in forbidden) or not all(
+            self.value(invariant.condition, state, {}) for invariant in self.model.invariants
+        )
 
     def is_marked(self, state: State) -> bool:
         return all(state[self.places[plant]].marked for plant in self.model.plants)
@@ -159,6 +162,16 @@ class Oracle:
     @cached_property
     def uncontrolled(self) -> set[State]:
         return self.reach(self.initial, requirements=False)
+
+    @cached_property
+    def uncontrolled_states(self) -> int:
+        """How many states of the plants there are, wherever requirement automata are."""
+        kept = [
+            index
+            for place, index in self.places.items()
+            if (place if isinstance(place, sct.Plant) else place.eContainer()).kind != sct.PlantKind.requirement
+        ]
+        return len({tuple(state[index] for index in kept) for state in self.uncontrolled})
 
     @cached_property
     def controlled(self) -> set[State]:

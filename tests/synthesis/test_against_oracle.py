@@ -23,7 +23,7 @@ RANDOM_MODELS = settings(
 def check(model: sct.SupervisoryControlModel, synthesis: Synthesis) -> None:
     """Everything that synthesis says of a model is what the definition says."""
     oracle = Oracle(model)
-    assert synthesis.uncontrolled_states == len(oracle.uncontrolled)
+    assert synthesis.uncontrolled_states == oracle.uncontrolled_states
     assert synthesis.controlled_states == len(oracle.controlled)
     assert (synthesis.supervisor is None) == (not oracle.controlled)
     if synthesis.supervisor is not None:
@@ -62,7 +62,7 @@ def describe(guard: sct.EventGuard) -> str:
     return f"{event_name(guard.event)}: requirement {parts[0]}, synthesis {parts[1]}"
 
 
-@given(sct_models(invariants=True))
+@given(sct_models(requirements=True))
 @RANDOM_MODELS
 def test_random_models(model):
     synthesis = synthesize(model)

@@ -26,7 +26,8 @@ class CifError(ValueError):
 class Specification:
     """What a specification says, with CIF's own names and numbers.
 
-    `model` holds enumerations, plants, requirements and invariants of states; CIF knows no kinds of plants and events,
+    `model` holds enumerations, plants, requirements and invariants of states; CIF knows no kinds of plants
+    and events but requirement automata,
     nor which event carries an input. `supervisor` is the automaton with what synthesis added, in one location, None
     where there is none; `alphabet` are its events. `invariants` are what else holds under the supervisor.
     """
@@ -73,15 +74,13 @@ class _Reading:
             model.enumerations.append(self._enumeration(enumeration))
         for declaration in self._of("Automaton"):
             self._annotated(declaration)
-            automata.append(
-                (declaration, self._define(sct.Plant(name=_plain(declaration.name)), declaration.name, self._outer))
-            )
+            automata.append((declaration, self._define(_automaton(declaration), declaration.name, self._outer)))
         for declaration, automaton in automata:
             self._declare(declaration, automaton)
         alphabets = [
             (declaration, automaton, self._fill(declaration, automaton)) for declaration, automaton in automata
         ]
-        model.plants.extend(automaton for declaration, automaton in automata if declaration.kind == "plant")
+        model.plants.extend(automaton for declaration, automaton in automata if declaration.kind != "supervisor")
         if not model.plants:
             self._fail(self._read, "there is no plant")
         invariants: dict[str, list[sct.Requirement]] = {"plant": [], "requirement": [], "supervisor": []}
@@ -349,6 +348,13 @@ class _Reading:
             case ex.EnumerationLiteral():
                 return ex.EnumerationLiteralReference(literal=element), element.eContainer()
         return self._fail(read, f"'{read.name.text}' has no value")
+
+
+def _automaton(read: Any) -> sct.Plant:
+    made = sct.Plant(name=_plain(read.name))
+    if read.kind == "requirement":
+        made.kind = sct.PlantKind.requirement
+    return made
 
 
 def _place(text: str, position: int) -> str:

@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Any
 
 from robosc.analysis.verify.cif_reading import CifError
 from robosc.metamodel import expression as ex
+from robosc.metamodel import sct
 from robosc.synthesis.encoding import domain_size, smallest
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from robosc.metamodel import sct
     from robosc.synthesis.encoding import Element
 
 
@@ -34,6 +34,8 @@ class Correspondence:
             self._pair(f"literals of '{enumeration.name}'", enumeration.literals, self[enumeration].literals)
         self._pair("plants", model.plants, specification.plants)
         for plant in model.plants:
+            if (plant.kind == sct.PlantKind.requirement) != (self[plant].kind == sct.PlantKind.requirement):
+                raise CifError(f"'{plant.name}' is a plant in one of the two, and a requirement in the other")
             self._pair_members(plant, self[plant])
         self._originals = {theirs: ours for ours, theirs in self._counterparts.items()}
         self._originals.update({theirs: ours for ours, theirs in self._numbers.items()})

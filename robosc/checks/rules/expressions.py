@@ -51,10 +51,7 @@ def types(base: rsc.Base) -> Iterator[Finding]:
     """Every expression has the type that its place wants, and its operators the operands that they want."""
     for enum in of_kind(rsc.EnumDataType, base.definitions):
         yield from _enum(enum)
-    for requirement in statements(rsc.CommunicationRequirement, base):
-        yield from _boolean(requirement.condition, "the condition of a requirement", _REQUIREMENT)
-    for invariant in statements(rsc.StateInvariant, base):
-        yield from _boolean(invariant.condition, f"the condition behind `{invariant.kind.name}`", _REQUIREMENT)
+    yield from _requirements(base)
     for statement in statements(rsc.ProvideStatement, base):
         yield from _provide(statement)
     for named in statements(rsc.NamedExpression, base):
@@ -69,6 +66,18 @@ def types(base: rsc.Base) -> Iterator[Finding]:
         yield from check.findings
     for _, transition in transitions(base):
         yield from _transition(transition)
+
+
+def _requirements(base: rsc.Base) -> Iterator[Finding]:
+    for requirement in statements(rsc.CommunicationRequirement, base):
+        yield from _boolean(requirement.condition, "the condition of a requirement", _REQUIREMENT)
+    for invariant in statements(rsc.StateInvariant, base):
+        yield from _boolean(invariant.condition, f"the condition behind `{invariant.kind.name}`", _REQUIREMENT)
+    for count in statements(rsc.CountRequirement, base):
+        yield from _constant(count.bound, INTEGER, "the number behind `at most`")
+    for automaton in statements(rsc.AutomatonRequirement, base):
+        for transition in (transition for state in automaton.states for transition in state.transitions):
+            yield from _boolean(transition.guard, "the condition behind `if`", _REQUIREMENT)
 
 
 def _named(named: rsc.NamedExpression) -> Iterator[Finding]:

@@ -20,6 +20,8 @@ from robosc.metamodel import robosc as rsc
 from robosc.semantics.communication import sent_type
 from robosc.semantics.cone_of_influence import ConeOfInfluence, Reason, accesses, read_type
 from robosc.semantics.evaluation import evaluate
+from robosc.semantics.expansion import constant_value
+from robosc.semantics.instances import MOST
 from robosc.semantics.printing import RoboscPrinter
 from robosc.semantics.typing import (
     DOUBLE,
@@ -105,6 +107,12 @@ def integer_range(base: rsc.Base) -> Iterator[Finding]:
                 f"the range {_text(declared)} is empty, expected the lower bound first",
                 f"write `integer({declared.maximum}..{declared.minimum})`",
             )
+    for count in statements(rsc.CountRequirement, base):
+        most = constant_value(count.bound)
+        if type(most) is int and not 1 <= most <= MOST:
+            message = f"`at most` counts to {most}, expected a number from 1 to {MOST:,}"
+            hint = "write a larger one" if most < 1 else "write a smaller one"
+            yield Finding(count.bound, message, f"{hint}, or another requirement")
     for constant, kind, name in _constants(base):
         yield from _outside(constant, kind, name)
 

@@ -33,9 +33,11 @@ def _data_types(base: rsc.Base) -> Iterator[tuple[str, list[rsc.ComplexDataType]
     yield f"`{base.name}`", of_kind(rsc.ComplexDataType, base.definitions)
 
 
-def _states(base: rsc.Base) -> Iterator[tuple[str, list[rsc.State]]]:
+def _states(base: rsc.Base) -> Iterator[tuple[str, list[Any]]]:
     for component, behaviour in behaviours(base):
         yield f"component `{component.name}`", states(behaviour.automaton)
+    for requirement in statements(rsc.AutomatonRequirement, base):
+        yield f"requirement `{requirement.name}`" if requirement.name else "the requirement", list(requirement.states)
 
 
 #: What a finding calls what is declared in a component.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robosc.checks.definitions import communication_of, statements
+from robosc.checks.definitions import communication_of, restricted_events, statements
 from robosc.checks.rule import Finding, rule
 from robosc.metamodel import robosc as rsc
 from robosc.semantics.communication import sent
@@ -44,6 +44,10 @@ def data_provisioning(base: rsc.Base) -> Iterator[Finding]:
 @rule("requirement-target")
 def requirement_target(base: rsc.Base) -> Iterator[Finding]:
     """A requirement restricts something, and something that the controller sends."""
+    for events in restricted_events(base):
+        if events is not None and not events.events:
+            message = "the requirement restricts nothing, expected at least one event in the braces"
+            yield Finding(events, message, "name what it restricts, or leave the requirement out")
     for requirement in statements(rsc.CommunicationRequirement, base):
         if requirement.target is None:
             continue

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from robosc.checks.definitions import behaviours, common_transitions, states
 from robosc.checks.rule import Finding, rule
+from robosc.checks.rules.requirement_events import initial_states
 from robosc.metamodel import robosc as rsc
 
 if TYPE_CHECKING:
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
 @rule("initial-state")
 def initial_state(base: rsc.Base) -> Iterator[Finding]:
     """A behaviour has exactly one initial state, and so at least one state."""
+    yield from initial_states(base)
     for component, behaviour in behaviours(base):
         every = states(behaviour.automaton)
         initial = [state for state in every if state.initial]

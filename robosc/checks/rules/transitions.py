@@ -17,6 +17,7 @@ from robosc.checks.definitions import (
     transitions,
 )
 from robosc.checks.rule import Finding, on_line, rule
+from robosc.checks.rules.requirement_events import repeated_events, unknown_events
 from robosc.diagnostics import Severity
 from robosc.metamodel import robosc as rsc
 from robosc.semantics.communication import event_names
@@ -31,6 +32,7 @@ _Event: TypeAlias = "tuple[rsc.Component | None, rsc.CommunicationType, str]"
 @rule("result-type")
 def result_type(base: rsc.Base) -> Iterator[Finding]:
     """A transition names an event that its communication has."""
+    yield from unknown_events(base)
     for _, transition in transitions(base):
         if isinstance(transition, rsc.TimedTransition):
             yield from _silences(transition)
@@ -67,6 +69,7 @@ def _silences(transition: rsc.TimedTransition) -> Iterator[Finding]:
 @rule("nondeterminism")
 def nondeterminism(base: rsc.Base) -> Iterator[Finding]:
     """A state reacts to an event in one way; the transitions that all states have are among its own."""
+    yield from repeated_events(base)
     for component, behaviour in behaviours(base):
         automaton = behaviour.automaton
         order = {definition: number for number, definition in enumerate(automaton.definitions)}

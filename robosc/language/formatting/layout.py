@@ -18,7 +18,8 @@ if TYPE_CHECKING:
 
 #: What has items in lines of their own between its braces; what has them in one line where they fit.
 _BLOCKS = {"Robot", "Library", "Component", "ComponentBehaviour", "State", "ObjectDataType", "EnumDataType"}
-_LISTS = {"ObjectValue", "CommunicationTypeSet"}
+_BLOCKS |= {"AutomatonRequirement", "RequirementState"}
+_LISTS = {"ObjectValue", "CommunicationTypeSet", "EventSet"}
 #: What belongs to the block around it.
 _INLINED = {"", "ComponentType", "LocalComponent", "InstantiatedComponent", "ImportedComponent", "Automaton"}
 #: Rules without a space between their words.
@@ -39,6 +40,9 @@ CLAUSES: dict[str, tuple[set[str], set[str]]] = {
     "EnumTransformationRule": ({"->"}, set()),
     "NeedsRequirement": (set(), {"needs"}),
     "DisablesRequirement": ({"disables"}, set()),
+    "OrderRequirement": ({"after"}, set()),
+    "CountRequirement": ({"since"}, set()),
+    "RequirementTransition": ({"if", "goto"}, set()),
     "StateInvariant": (set(), {"never", "always"}),
     "ProvideStatement": ({"if"}, set()),
     "Conditional": ({"then", "else"}, set()),

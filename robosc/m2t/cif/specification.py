@@ -87,7 +87,8 @@ class Writer:
             literals = ", ".join(map(self._names.declared, enumeration.literals))
             yield f"enum {self._names.declared(enumeration)} = {literals};"
         for plant in self._model.plants:
-            yield from ["", f"plant {self._names.declared(plant)}:", *self._plant(plant), "end"]
+            kind = "requirement automaton" if plant.kind == sct.PlantKind.requirement else "plant"
+            yield from ["", f"{kind} {self._names.declared(plant)}:", *self._plant(plant), "end"]
 
     def _requirements(self) -> Iterator[str]:
         """The requirements of the model; what several of them ask of an event alike stands there once."""

@@ -1,0 +1,121 @@
+"""`requirement-event`: which events requirements may restrict, and who may read requirement automata.
+
+And what requirement automata and the events in requirements are to be of what other rules say of behaviours.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from robosc.checks.definitions import communication_of, of_kind, restricted_events, statements, transitions
+from robosc.checks.libraries import instances
+from robosc.checks.rule import Finding, on_line, rule
+from robosc.metamodel import robosc as rsc
+from robosc.metamodel.reflection import tree
+from robosc.semantics.communication import event_names, meant
+from robosc.semantics.cone_of_influence import accesses
+from robosc.semantics.naming import enumeration, written
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from robosc.metamodel import expression as ex
+
+
+@rule("requirement-event")
+def requirement_event(base: rsc.Base) -> Iterator[Finding]:
+    """An order or a count restricts no outgoing message, and only requirements read requirement automata."""
+    for events in restricted_events(base):
+        for named in events.events if events else ():
+            communication = communication_of(named.communicationType)
+            if isinstance(communication, rsc.Message) and communication.direction == rsc.MessageDirection.outgoing:
+                yield Finding(
+                    named,
+                    f"`{communication.name}` comes from its component whenever that sends it, expected a request or an"
+                    " answer",
+                    "restrict what the controller does about it",
+                )
+    if any(True for _ in statements(rsc.AutomatonRequirement, base)):
+        yield from _readers(base)
+
+
+def _readers(base: rsc.Base) -> Iterator[Finding]:
+    """What reads a requirement automaton and is no requirement; what it inlines reads it, too."""
+    found = instances(base)
+    for instance in found:
+        for transition, _ in instance.transitions:
+            if isinstance(transition, rsc.TauTransition) and transition.guard is not None:
+                yield from _reading(transition.guard, found.expanded(transition.guard, instance), "a guard")
+    for statement in found.statements(rsc.ProvideStatement):
+        condition = statement.element.condition
+        if condition is not None:
+            expanded = found.expanded(condition, statement.within)
+            yield from _reading(condition, expanded, "the condition of a provide statement")
+    for _, transition in transitions(base):
+        for assignment in transition.assignments:
+            yield from _reading(assignment.value, assignment.value, "an assignment")
+
+
+def _reading(expression: ex.Expression | None, expanded: ex.Expression | None, what: str) -> Iterator[Finding]:
+    items = (access.item for access in accesses(expanded))
+    read = next((item for item in items if isinstance(item, rsc.RequirementState)), None)
+    if read is not None and expression is not None:
+        name = f"{written(read.eContainer().name)}.{written(read.name)}"
+        yield Finding(
+            expression,
+            f"{what} reads `{name}`, a state of a requirement, expected states and variables of components: the robot"
+            " does not know what is required of it",
+            "say it in a requirement, or remember it in a state of a component",
+        )
+
+
+def named_events(base: rsc.Base) -> Iterator[rsc.EventReference]:
+    """The events that orders, counts and automata name."""
+    for requirement in statements(rsc.Requirement, base):
+        if not isinstance(requirement, rsc.CommunicationRequirement | rsc.StateInvariant):
+            yield from of_kind(rsc.EventReference, (element for _, element in tree(requirement)))
+
+
+def unknown_events(base: rsc.Base) -> Iterator[Finding]:
+    """The events that their communications do not have, of the rule `result-type`."""
+    for named in named_events(base):
+        communication = communication_of(named.communicationType)
+        if communication is not None and meant(named) is None and isinstance(named, rsc.NamedEvent):
+            allowed = event_names(communication)
+            yield Finding(
+                named,
+                f"{type(communication).__name__.lower()} `{communication.name}` has no {named.resultType}, expected"
+                f" {enumeration(f'`{name}`' for name in allowed)}",
+                f"write `{written(communication.name)}` alone",
+            )
+
+
+def initial_states(base: rsc.Base) -> Iterator[Finding]:
+    """The automata without one initial state, of the rule `initial-state`."""
+    for automaton in statements(rsc.AutomatonRequirement, base):
+        initial = [state for state in automaton.states if state.initial]
+        for other in initial[1:]:
+            message = f"the automaton has a second initial state `{other.name}`, expected one"
+            yield Finding(other, message, f"leave `initial` out before `{other.name}` or `{initial[0].name}`")
+        if not initial:
+            message = "no state of the automaton is initial, expected one"
+            yield Finding(automaton, message, "write `initial` before the state it starts in", relies_on=automaton)
+
+
+def repeated_events(base: rsc.Base) -> Iterator[Finding]:
+    """Transitions of one state on one event, of the rule `nondeterminism`."""
+    for automaton in statements(rsc.AutomatonRequirement, base):
+        for state in automaton.states:
+            firsts: dict[Any, rsc.RequirementTransition] = {}
+            for transition in state.transitions:
+                reference = transition.event.communicationType if transition.event else None
+                event = meant(transition.event) if reference and reference.communicationType else None
+                if reference is None or event is None:
+                    continue
+                first = firsts.setdefault((reference.component, reference.communicationType, event), transition)
+                if first is not transition:
+                    yield Finding(
+                        transition,
+                        f"state `{state.name}` has a transition for this event already{on_line(first)}, expected one",
+                        "join the conditions of the two, or leave one of them out",
+                    )

@@ -1,0 +1,136 @@
+"""From orders, counts and automata of a text to requirement automata, and to the requirements on their locations.
+
+A requirement automaton follows its events and blocks none: in each location it has an edge for each. What it forbids
+are requirements, which ask where it is.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from robosc.diagnostics import Diagnostic, ModelError, Severity
+from robosc.metamodel import expression as ex
+from robosc.metamodel import robosc, sct
+from robosc.metamodel.places import place
+from robosc.semantics.communication import meant
+from robosc.semantics.expansion import constant_value
+from robosc.semantics.instances import MOST
+from robosc.semantics.printing import conjunction, disjunction
+
+if TYPE_CHECKING:
+    from robosc.m2m.expressions import SctExpressions
+    from robosc.m2m.trace import Trace
+    from robosc.semantics.instances import Instance, Statement
+
+
+@dataclass
+class RequirementAutomaton:
+    """One of them: its automaton, and for each event that it restricts the condition under which that may happen."""
+
+    trace: Trace
+    statement: Statement[robosc.Requirement]
+    plant: sct.Plant
+    allowed: dict[sct.Event, ex.Expression] = field(default_factory=dict)
+
+    def fill(self, expressions: SctExpressions) -> None:
+        """Gives the automaton its edges, and finds the conditions; the locations of all automata are there."""
+        match self.statement.element:
+            case robosc.OrderRequirement() as order:
+                self._order(order)
+            case robosc.CountRequirement() as count:
+                self._count(count)
+            case robosc.AutomatonRequirement() as automaton:
+                self._automaton(automaton, expressions)
+
+    def declare(self) -> None:
+        """Gives the automaton its locations."""
+        element = self.statement.element
+        if isinstance(element, robosc.AutomatonRequirement):
+            unmarked = not any(state.marked for state in element.states)
+            for state in element.states:
+                location = self._location(state.name, initial=state.initial, marked=unmarked or state.marked)
+                location.source = state.source
+                self.trace.requirement_locations[self._within, state] = location
+        elif isinstance(element, robosc.OrderRequirement):
+            self._location("waiting", initial=True)
+            self._location("ready")
+        else:
+            self._location("counting", initial=True)
+
+    @property
+    def _within(self) -> Instance | None:
+        return self.statement.within
+
+    def _location(self, name: str, *, initial: bool = False, marked: bool = True) -> sct.Location:
+        location = sct.Location(name=name, initial=initial, marked=marked, source=self.plant.source)
+        self.plant.locations.append(location)
+        return location
+
+    def _event(self, reference: robosc.EventReference) -> sct.Event:
+        port = self.trace.instances.port(reference.communicationType, self._within)
+        named = meant(reference)
+        assert port is not None
+        assert named is not None
+        return self.trace.event(port, named.kind)
+
+    def _events(self, named: robosc.EventSet) -> list[sct.Event]:
+        return list(dict.fromkeys(map(self._event, named.events)))
+
+    def _order(self, order: robosc.OrderRequirement) -> None:
+        waiting, ready = self.plant.locations
+        anchor, restricted = self._event(order.anchor), self._events(order.target)
+        for event in restricted if order.each else ():
+            if event is not anchor:
+                waiting.edges.append(sct.Edge(event=event, target=waiting))
+                ready.edges.append(sct.Edge(event=event, target=waiting))
+        for location in (waiting, ready):
+            location.edges.append(sct.Edge(event=anchor, target=ready))
+        self.allowed = {event: sct.LocationReference(location=ready) for event in restricted}
+
+    def _count(self, count: robosc.CountRequirement) -> None:
+        (counting,) = self.plant.locations
+        anchor, restricted = self._event(count.anchor), self._events(count.target)
+        most = constant_value(count.bound, self._within)
+        if type(most) is not int or not 1 <= most <= MOST:
+            raise ModelError([_no_bound(count)])
+        made = sct.DiscreteVariable(
+            name="count", type=ex.IntegerType(minimum=0, maximum=most), initial=ex.IntegerLiteral(value=0)
+        )
+        self.plant.variables.append(made)
+        so_far = sct.VariableReference(variable=made)
+        for event in dict.fromkeys([*restricted, anchor]):
+            one_more = ex.Addition(left=sct.VariableReference(variable=made), right=ex.IntegerLiteral(value=1))
+            value = ex.IntegerLiteral(value=0) if event is anchor else one_more
+            edge = sct.Edge(event=event, target=counting)
+            edge.updates.append(sct.Update(variable=made, value=value))
+            counting.edges.append(edge)
+        for event in restricted:
+            so_far = sct.VariableReference(variable=made)
+            self.allowed[event] = ex.LessThan(left=so_far, right=ex.IntegerLiteral(value=most))
+
+    def _automaton(self, automaton: robosc.AutomatonRequirement, expressions: SctExpressions) -> None:
+        here = {state: self.trace.requirement_locations[self._within, state] for state in automaton.states}
+        named = {self._event(transition.event): None for state in automaton.states for transition in state.transitions}
+        for event in named:
+            allowed: list[ex.Expression] = []
+            always = True
+            for state, location in here.items():
+                taken = next((one for one in state.transitions if self._event(one.event) is event), None)
+                target = location if taken is None or taken.target is None else here[taken.target]
+                location.edges.append(sct.Edge(event=event, target=target))
+                always = always and taken is not None and taken.guard is None
+                if taken is not None:
+                    guard = None if taken.guard is None else expressions(taken.guard, self._within)
+                    parts: list[ex.Expression] = [sct.LocationReference(location=location)]
+                    condition = conjunction([*parts, *([] if guard is None else [guard])])
+                    assert condition is not None
+                    allowed.append(condition)
+            holds = disjunction(allowed)
+            if not always and holds is not None:
+                self.allowed[event] = holds
+
+
+def _no_bound(count: robosc.CountRequirement) -> Diagnostic:
+    message = f"`at most` counts to a constant from 1 to {MOST:,}"
+    return Diagnostic(*place(count.bound), Severity.ERROR, "integer-range", message, "write such an integer")

@@ -1,0 +1,310 @@
+"""Orders, counts and requirement automata, from the text to the engine and to what people are told."""
+
+from pathlib import Path
+
+import pytest
+
+from robosc.analysis.supervise import EmptySupervisorError, supervise
+from robosc.analysis.verify import validate_c, validate_cif, verify_system
+from robosc.analysis.verify.verdict import Outcome
+from robosc.checks import check
+from robosc.configuration import Configuration
+from robosc.engine import Engine
+from robosc.language import read
+from robosc.language.formatting import format_text
+from robosc.language.text import Text
+from robosc.m2m import robosc_to_sct
+from robosc.m2t import cif, supervisor
+from robosc.m2t.models import Models
+from robosc.metamodel import sct
+
+ARM = """
+    component Arm {
+        incoming message grip with type: none
+        incoming message place with type: none
+        incoming message drop with type: none
+        outgoing message home with type: none
+        service dock with request: none, response: none
+    }
+"""
+
+
+def read_robot(folder: Path, *definitions: str) -> tuple[list[str], sct.SupervisoryControlModel | None]:
+    path = folder / "robot.rscd"
+    path.write_text(f"robot R {{ {ARM} {' '.join(definitions)} }}", encoding="utf-8")
+    reading = read(path)
+    found = [*reading.findings, *check(reading.base, reading.findings)]
+    texts = [f"{finding.rule}: {finding.message}" for finding in found]
+    return texts, None if texts else robosc_to_sct.transform(reading.base)[0]
+
+
+def supervised(folder: Path, *definitions: str) -> sct.SupervisoryControlModel:
+    findings, made = read_robot(folder, *definitions)
+    assert findings == []
+    supervise(made)
+    return made
+
+
+def possible(made: sct.SupervisoryControlModel, *events: str) -> set[str]:
+    """What of `grip`, `place`, `drop` and `dock` can happen after these events."""
+    interpreter = Engine(made)
+    for event in events:
+        interpreter.perform(event)
+    names = {f"{'service' if name == 'dock' else 'message'}_{name}.c_trigger": name for name in WORDS}
+    return {name for event, name in names.items() if interpreter.enabled(event)}
+
+
+WORDS = ("grip", "place", "drop", "dock")
+GRIP, PLACE, DROP, HOME = (
+    "message_grip.c_trigger",
+    "message_place.c_trigger",
+    "message_drop.c_trigger",
+    "message_home.u_response",
+)
+
+
+def test_b_after_a_is_a_at_least_once_before(tmp_path: Path) -> None:
+    made = supervised(tmp_path, "requirement place after grip")
+    assert possible(made) == {"grip", "drop", "dock"}
+    assert possible(made, GRIP) == possible(made, GRIP, PLACE) == {*WORDS}
+
+
+def test_b_after_each_a_is_a_fresh_a_for_each_b(tmp_path: Path) -> None:
+    made = supervised(tmp_path, "requirement place after each grip")
+    assert "place" not in possible(made)
+    assert "place" in possible(made, GRIP)
+    assert "place" not in possible(made, GRIP, PLACE)
+    assert "place" not in possible(made, GRIP, GRIP, PLACE)
+
+
+def test_a_set_on_the_left_any_event_of_it_counts(tmp_path: Path) -> None:
+    made = supervised(tmp_path, "requirement { place, drop } after each grip")
+    assert possible(made, GRIP) == {*WORDS}
+    assert possible(made, GRIP, DROP) == {"grip", "dock"}
+
+
+def test_at_most_n_b_since_a_counts_b_and_starts_anew_with_each_a(tmp_path: Path) -> None:
+    """A bare outgoing message means its response; N is any constant."""
+    made = supervised(tmp_path, "constant n: integer = 1", "requirement at most n + 1 { place, drop } since home")
+    assert possible(made, PLACE) == {*WORDS}
+    assert possible(made, PLACE, DROP) == {"grip", "dock"}
+    assert possible(made, PLACE, DROP, HOME) == {*WORDS}
+
+
+TURNS = """requirement Turns: automaton {
+    initial state mine { on request to grip goto yours }
+    state yours { on request to place if !Gate.shut goto mine }
+}"""
+GATE = """component Gate {
+    outgoing message closing with type: none
+    behaviour {
+        initial marked state open { on response from closing goto shut }
+        marked state shut { on response from closing goto open }
+    }
+}"""
+
+
+def test_an_automaton_forbids_where_no_transition_of_the_state_has_a_condition_that_holds(tmp_path: Path) -> None:
+    made = supervised(tmp_path, GATE, TURNS)
+    assert possible(made) == {"grip", "drop", "dock"}
+    assert possible(made, GRIP) == {"place", "drop", "dock"}
+    assert possible(made, GRIP, "message_closing.u_response") == {"drop", "dock"}
+    assert possible(made, GRIP, PLACE) == {"grip", "drop", "dock"}
+
+
+def test_requirements_read_the_states_of_an_automaton(tmp_path: Path) -> None:
+    made = supervised(tmp_path, GATE, TURNS, "condition my_turn = Turns.mine", "requirement drop needs my_turn")
+    assert "drop" in possible(made)
+    assert "drop" not in possible(made, GRIP)
+
+
+def test_it_does_not_start_what_it_could_not_let_go_on(tmp_path: Path) -> None:
+    """An uncontrollable event that is forbidden makes the state bad: the answer may come when the service is called."""
+    made = supervised(tmp_path, "requirement O1: response from dock after home")
+    assert possible(made) == {"grip", "place", "drop"}
+    assert possible(made, HOME) == {*WORDS}
+    explanation = next(
+        guard.explanation for guard in made.supervisor.guards if guard.event.name == "c_trigger" and guard.explanation
+    )
+    assert explanation == (
+        "after request to `Arm.dock`, response from `Arm.dock` can come, which `requirement O1: response from dock "
+        "after home` forbids"
+    )
+
+
+def test_an_empty_supervisor_names_the_requirement(tmp_path: Path) -> None:
+    gate = GATE.replace("marked state open", "state open")
+    findings, made = read_robot(
+        tmp_path, gate, "requirement T: automaton { initial state a { on response from closing if Gate.shut } }"
+    )
+    assert findings == []
+    with pytest.raises(EmptySupervisorError, match=r"which `requirement T: automaton` .* forbids"):
+        supervise(made)
+
+
+def test_marked_states_of_an_automaton_count(tmp_path: Path) -> None:
+    """With a marked state the robot must be able to come back to it."""
+    bound = "requirement T: automaton {{ initial {} state a {{ on request to grip goto b }} state b {{ }} }}"
+    assert "grip" in possible(supervised(tmp_path, bound.format("")))
+    assert "grip" not in possible(supervised(tmp_path, bound.format("marked")))
+
+
+def test_controlled_states_count_them_and_uncontrolled_states_do_not(tmp_path: Path) -> None:
+    alone = supervised(tmp_path).supervisor
+    made = supervised(tmp_path, "requirement at most 3 place since grip", "requirement drop after grip").supervisor
+    assert made.uncontrolledStates == alone.uncontrolledStates == 4
+    assert made.controlledStates == 4 * 8
+
+
+def test_they_are_requirement_automata_in_cif_and_read_back_the_same(tmp_path: Path) -> None:
+    made = supervised(
+        tmp_path, GATE, TURNS, "requirement C1: at most 3 drop since grip", "requirement place after each home"
+    )
+    files = cif.generate(Models(made), Configuration())
+    for name in ("requirement_Turns", "requirement_C1", "requirement_3"):
+        assert f"requirement automaton {name}:" in files["R.cif"]
+    assert validate_cif(made, files).outcome is Outcome.PROVED
+    for text, changed in (
+        ("requirement_Turns:", "plant"),
+        ("goto yours", ""),
+        ("needs requirement_C1.count < 3", "needs requirement_C1.count < 2"),
+        ("count := 0", "count := 1"),
+    ):
+        broken = (
+            files["R.cif"].replace(text, changed)
+            if changed != "plant"
+            else files["R.cif"].replace("requirement automaton requirement_Turns", "plant requirement_Turns")
+        )
+        assert broken != files["R.cif"]
+        assert validate_cif(made, {**files, "R.cif": broken}).outcome is Outcome.REFUTED
+
+
+@pytest.mark.build
+def test_the_c_engine_tracks_them(tmp_path: Path) -> None:
+    made = supervised(
+        tmp_path, GATE, TURNS, "requirement C1: at most 3 drop since grip", "requirement place after each home"
+    )
+    files = supervisor.generate(Models(made), Configuration())
+    assert validate_c(made, files).outcome is Outcome.PROVED
+    (name,) = [name for name in files if name.endswith(".c")]
+    assert "requirement C1: at most 3 drop since grip (robot.rscd)" in files[name]
+
+
+def test_verify_has_a_row_for_each_event_and_refutes_a_guard_that_forgets(tmp_path: Path) -> None:
+    made = supervised(tmp_path, "requirement O1: place after each grip")
+    row = "requirement O1: place after each grip (line 9)"
+    verdicts = {verdict.property: verdict for verdict in verify_system(made)}
+    assert {verdict.outcome for verdict in verdicts.values()} == {Outcome.PROVED}
+    assert row in verdicts
+    for guard in made.supervisor.guards:
+        guard.requirement = None
+    verdict = next(verdict for verdict in verify_system(made) if verdict.property == row)
+    assert verdict.outcome is Outcome.REFUTED
+    assert [step.event for step in verdict.trace] == [PLACE]
+
+
+def test_an_action_is_not_cancelled_for_an_order(tmp_path: Path) -> None:
+    """`drive after each grip` forbids another start while the action runs, and nothing is said to cancel itself."""
+    base = """component Base {
+        action drive with request: none, response: none, feedback: none links go
+    }
+    interface go use Dock from my_msgs"""
+    path = tmp_path / "robot.rscd"
+    path.write_text(f"robot R {{ {ARM} {base} requirement drive after each grip }}", encoding="utf-8")
+    made = robosc_to_sct.transform(read(path).base)[0]
+    found = supervise(made).findings
+    assert "self-cancelling" not in {finding.rule for finding in found}
+    assert {one.text for one in made.requirements} == {
+        "requirement drive after each grip",
+        "drive is never cancelled: no requirement restricts it",
+    }
+
+
+@pytest.mark.parametrize(
+    ("requirement", "finding"),
+    [
+        (
+            "requirement at most 0 place since grip",
+            "integer-range: `at most` counts to 0, expected a number from 1 to 1,000",
+        ),
+        (
+            "requirement at most 1001 place since grip",
+            "integer-range: `at most` counts to 1001, expected a number from 1 to 1,000",
+        ),
+        ("requirement at most 1.5 place since grip", "type: the number behind `at most` must be integer, found double"),
+        (
+            "requirement { } after grip",
+            "requirement-target: the requirement restricts nothing, expected at least one event in the braces",
+        ),
+        (
+            "requirement feedback from dock after grip",
+            "result-type: service `dock` has no feedback, expected `request`, `response` or `error`",
+        ),
+        (
+            "requirement T: automaton { state a { } }",
+            "initial-state: no state of the automaton is initial, expected one",
+        ),
+        (
+            "requirement T: automaton { initial state a { } initial state b { } }",
+            "initial-state: the automaton has a second initial state `b`, expected one",
+        ),
+        (
+            "requirement T: automaton { initial state a { } state a { } }",
+            "unique-state: state `a` has the name of another state (line 9)",
+        ),
+        (
+            "requirement T: automaton { initial state a { on request to grip goto b } }",
+            "unresolved-reference: the requirement has no state `b`",
+        ),
+        (
+            "requirement T: automaton { initial state a { on grip on request to grip } }",
+            "nondeterminism: state `a` has a transition for this event already (line 9), expected one",
+        ),
+        (
+            "requirement T: automaton { initial state a { } } requirement place needs T.b",
+            "unresolved-reference: requirement `T` has no state `b`",
+        ),
+        (
+            "requirement T: automaton { initial state a { on grip if 1 } }",
+            "type: the condition behind `if` must be boolean, found integer",
+        ),
+    ],
+)
+def test_what_is_wrong_is_found(tmp_path: Path, requirement: str, finding: str) -> None:
+    (found,) = read_robot(tmp_path, requirement)[0]
+    assert found.startswith(finding)
+
+
+@pytest.mark.parametrize("inside", ["variable v: boolean", "on request to grip goto a", "transition goto a"])
+def test_states_and_transitions_on_events_only(tmp_path: Path, inside: str) -> None:
+    """No variables, no silent transitions, nothing at automaton level: `syntax`."""
+    found, _ = read_robot(tmp_path, f"requirement T: automaton {{ initial state a {{ }} {inside} }}")
+    assert any(text.startswith("syntax") for text in found)
+
+
+def test_the_words_are_names_elsewhere(tmp_path: Path) -> None:
+    words = "after each at most since automaton"
+    messages = " ".join(f"incoming message {word} with type: none" for word in words.split())
+    component = f"component since_then {{ {messages} }}"
+    requirements = "requirement after after each each requirement at after since requirement at most 2 most since at"
+    made = supervised(tmp_path, component, requirements)
+    assert [one.text for one in made.requirements] == [
+        "requirement after after each each",
+        "requirement at after since",
+        "requirement at most 2 most since at",
+    ]
+
+
+def test_format_keeps_what_is_laid_out() -> None:
+    laid_out = """robot R {
+  requirement O1 "one each": { place, response from dock } after each grip
+  requirement at most 3 dock since response from undock
+  requirement Turns: automaton {
+    initial state mine {
+      on request to grip if Gate.open goto yours
+    }
+    state yours {}
+  }
+}
+"""
+    assert format_text(Text("robot.rscd", laid_out)) == (laid_out, [])
