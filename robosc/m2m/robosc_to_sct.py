@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from robosc.metamodel.places import Place
 
-_Requirement = TypeVar("_Requirement", bound=robosc.Requirement)
+_Stated = TypeVar("_Stated", bound=robosc.StatedDefinition)
 
 #: What comes from outside, or must always be possible: a component elsewhere than in the right state ignores it.
 _NEVER_BLOCKED = (sct.EventKind.response, sct.EventKind.error, sct.EventKind.feedback, sct.EventKind.cancel)
@@ -283,6 +283,8 @@ class _Transformation:
             self.restrictions(automaton)
         for invariant in self.instances.statements(robosc.StateInvariant):
             self.invariant(invariant)
+        for claimed in self.instances.statements(robosc.Property):
+            self.claim(claimed)
 
     def requirement(self, statement: Statement[robosc.CommunicationRequirement], port: PortInstance) -> None:
         requirement, within = statement.element, statement.within
@@ -372,12 +374,33 @@ class _Transformation:
         self.model.invariants.append(target)
         self.trace.origins[target] = invariant
 
-    def heading(self, statement: Statement[_Requirement]) -> str:
-        """What the text of a requirement begins with: its name and its text."""
+    def claim(self, statement: Statement[robosc.Property]) -> None:
+        claimed, within = statement.element, statement.within
+        condition = self.expressions(claimed.condition, within)
+        said = self.print(self.instances.expanded(claimed.condition, within, readable=True))
+        made: sct.Property
+        if isinstance(claimed, robosc.InvariantProperty):
+            never = claimed.kind == robosc.InvariantKind.never
+            made = sct.InvariantProperty(condition=ex.Negation(operand=condition) if never else condition)
+            said = f"{claimed.kind.name} {said}"
+        else:
+            assert isinstance(claimed, robosc.ReachabilityProperty)
+            made, said = sct.ReachabilityProperty(condition=condition), f"reachable {said}"
+            if claimed.origin is not None:
+                made.origin = self.expressions(claimed.origin, within)
+                said += f" from {self.print(self.instances.expanded(claimed.origin, within, readable=True))}"
+        made.name, made.source = _stated_name(statement), claimed.source
+        made.text = f"{self.heading(statement)} {said}"
+        self.model.properties.append(made)
+        self.trace.origins[made] = claimed
+
+    def heading(self, statement: Statement[_Stated]) -> str:
+        """What the text of a requirement or property begins with: its name and its text."""
         text = statement.element.text
         said = [_stated_name(statement), None if text is None else self.print(ex.StringLiteral(value=text))]
         named = " ".join(filter(None, said))
-        return f"requirement {named}:" if named else "requirement"
+        word = "property" if isinstance(statement.element, robosc.Property) else "requirement"
+        return f"{word} {named}:" if named else word
 
     def cancelling(self, port: PortInstance, requirements: list[Statement[robosc.CommunicationRequirement]]) -> None:
         """Algorithm 2, starting at false: an action is cancelled exactly when it could not be started any more."""
@@ -404,8 +427,8 @@ class _Transformation:
         return f"{port.instance.name}.{name}" if self.communication_name(port) != name else name
 
 
-def _stated_name(statement: Statement[_Requirement]) -> str | None:
-    """The name of a requirement, with its component where it stands in one."""
+def _stated_name(statement: Statement[_Stated]) -> str | None:
+    """The name of a requirement or property, with its component where it stands in one."""
     name = statement.element.name
     return f"{statement.within.name}.{name}" if name and statement.within else name
 

@@ -374,10 +374,14 @@ class IndexSegment(AccessSegment):
     last: expression.Expression | None
     def __init__(self, *, index: int | None = ..., first: expression.Expression | None = ..., last: expression.Expression | None = ..., source: Place | None = ...) -> None: ...
 
-class Requirement(Definition, ComponentDefinition):
-    """What the supervised robot is to keep to (thesis figure 4.13)."""
+class StatedDefinition(Definition, ComponentDefinition):
+    """What the supervised robot is to be like, enforced or proven."""
     name: str | None
     text: str | None
+    def __init__(self, *, name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
+
+class Requirement(StatedDefinition):
+    """What the supervised robot is to keep to (thesis figure 4.13)."""
     def __init__(self, *, name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
 
 class CommunicationRequirement(Requirement):
@@ -449,6 +453,21 @@ class NamedEvent(EventReference):
 class ImpliedEvent(EventReference):
     """The request of a communication, or what an outgoing message brings."""
     def __init__(self, *, communicationType: CommunicationReference | None = ..., source: Place | None = ...) -> None: ...
+
+class Property(StatedDefinition):
+    """What verification is to prove of the supervised robot; it is not enforced."""
+    condition: expression.Expression
+    def __init__(self, *, condition: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
+
+class InvariantProperty(Property):
+    """A condition on all states that the supervised robot comes to."""
+    kind: InvariantKind
+    def __init__(self, *, kind: InvariantKind | None = ..., condition: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
+
+class ReachabilityProperty(Property):
+    """Where the supervised robot can get to."""
+    origin: expression.Expression | None
+    def __init__(self, *, origin: expression.Expression | None = ..., condition: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
 
 class NeedsRequirement(CommunicationRequirement):
     """The communication may start only where the condition holds."""

@@ -12,8 +12,9 @@ class SupervisoryControlModel(expression.NamedElement):
     plants: MutableSequence[Plant]
     requirements: MutableSequence[Requirement]
     invariants: MutableSequence[StateInvariant]
+    properties: MutableSequence[Property]
     supervisor: Supervisor | None
-    def __init__(self, *, enumerations: Iterable[expression.Enumeration] = ..., plants: Iterable[Plant] = ..., requirements: Iterable[Requirement] = ..., invariants: Iterable[StateInvariant] = ..., supervisor: Supervisor | None = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
+    def __init__(self, *, enumerations: Iterable[expression.Enumeration] = ..., plants: Iterable[Plant] = ..., requirements: Iterable[Requirement] = ..., invariants: Iterable[StateInvariant] = ..., properties: Iterable[Property] = ..., supervisor: Supervisor | None = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class Plant(expression.NamedElement):
     """An automaton with variables. From each location, at most one edge has a given event."""
@@ -99,7 +100,7 @@ class Update(expression.Located):
     def __init__(self, *, variable: DiscreteVariable | None = ..., value: expression.Expression | None = ..., source: Place | None = ...) -> None: ...
 
 class StatedRequirement(expression.Located):
-    """A requirement as the robot model states it."""
+    """A requirement or a property as the robot model states it."""
     name: str | None
     text: str | None
     def __init__(self, *, name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
@@ -122,6 +123,20 @@ class StateInvariant(StatedRequirement):
     """A condition on every reachable state under the supervisor."""
     condition: expression.Expression
     def __init__(self, *, condition: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
+
+class Property(StatedRequirement):
+    """What verification is to prove of the supervised system; synthesis does not see to it."""
+    condition: expression.Expression
+    def __init__(self, *, condition: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
+
+class InvariantProperty(Property):
+    """The condition holds in every reachable state."""
+    def __init__(self, *, condition: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
+
+class ReachabilityProperty(Property):
+    """A state with the condition can be reached."""
+    origin: expression.Expression | None
+    def __init__(self, *, origin: expression.Expression | None = ..., condition: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
 
 class Supervisor(expression.Located):
     """The maximally permissive, controllable, non-blocking supervisor."""

@@ -174,6 +174,8 @@ CHECKS: Checks = {
     sct.Update: [_OWN_VARIABLE, typed("value", lambda update: declared_type(update.variable.type))],
     sct.Requirement: [_RESTRICTABLE, typed("condition")],
     sct.StateInvariant: [typed("condition")],
+    sct.Property: [typed("condition")],
+    sct.ReachabilityProperty: [typed("origin")],
     sct.EventGuard: [_CONTROLLABLE, typed("requirement"), typed("synthesis")],
     sct.InputReference: [_read],
     sct.Supervisor: [_guards],

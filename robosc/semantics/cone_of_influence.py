@@ -13,7 +13,7 @@ from robosc.semantics.walks import parts
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from robosc.semantics.instances import Instance, Instances, InstanceVariable, PortInstance, Statement
+    from robosc.semantics.instances import Instance, Instances, InstanceVariable, PortInstance
 
 #: A comparison of doubles is tabulated over the integers that it is computed from, up to so many valuations: a larger
 #: table would be larger than any model that it is part of.
@@ -99,23 +99,26 @@ def conditions(instances: Instances) -> Iterator[tuple[ex.Expression | None, Ins
         for transition, _ in instance.transitions:
             if isinstance(transition, robosc.TauTransition) and transition.guard is not None:
                 yield instances.expanded(transition.guard, instance), instance
-    found: list[
-        Statement[robosc.CommunicationRequirement]
-        | Statement[robosc.ProvideStatement]
-        | Statement[robosc.StateInvariant]
-    ] = [
-        *instances.statements(robosc.CommunicationRequirement),
-        *(statement for port in instances.ports() for statement in instances.provided(port)),
-        *instances.statements(robosc.StateInvariant),
-    ]
+    for condition, within in _stated(instances):
+        if condition is not None:
+            yield instances.expanded(condition, within), within
+
+
+def _stated(instances: Instances) -> Iterator[tuple[ex.Expression | None, Instance | None]]:
+    """What is said in requirements, properties and statements that provide data."""
     for automaton in instances.statements(robosc.AutomatonRequirement):
-        for state in automaton.element.states:
-            for guarded in state.transitions:
-                if guarded.guard is not None:
-                    yield instances.expanded(guarded.guard, automaton.within), automaton.within
-    for statement in found:
-        if statement.element.condition is not None:
-            yield instances.expanded(statement.element.condition, statement.within), statement.within
+        transitions = (transition for state in automaton.element.states for transition in state.transitions)
+        yield from ((transition.guard, automaton.within) for transition in transitions)
+    for claimed in instances.statements(robosc.Property):
+        yield claimed.element.condition, claimed.within
+        if isinstance(claimed.element, robosc.ReachabilityProperty):
+            yield claimed.element.origin, claimed.within
+    for required in instances.statements(robosc.CommunicationRequirement):
+        yield required.element.condition, required.within
+    for provided in (statement for port in instances.ports() for statement in instances.provided(port)):
+        yield provided.element.condition, provided.within
+    for invariant in instances.statements(robosc.StateInvariant):
+        yield invariant.element.condition, invariant.within
 
 
 def all_assignments(instances: Instances) -> Iterator[Assigned]:

@@ -45,6 +45,8 @@ UNRESERVED = {
     "ms",
     "never",
     "s",
+    "property",
+    "reachable",
     "since",
     "then",
     "without",

@@ -48,6 +48,7 @@ def properties(system: GuardedSystem) -> list[Callable[[], Verdict]]:
         partial(input_enabledness, system),
         *(partial(requirement_holds, system, requirement) for requirement in system.model.requirements),
         *(partial(invariant_holds, system, invariant) for invariant in system.model.invariants),
+        *(partial(claim_holds, system, claimed) for claimed in system.model.properties),
         partial(no_dead_events, system),
         partial(maximal_permissiveness, system),
         partial(finite_response, system),
@@ -143,15 +144,33 @@ def requirement_holds(system: GuardedSystem, requirement: sct.Requirement) -> Ve
     return _nowhere(requirement_name(requirement), system, evidence, broken, explanation, last=lambda one: one.event)
 
 
-def invariant_holds(system: GuardedSystem, invariant: sct.StateInvariant) -> Verdict:
+def invariant_holds(system: GuardedSystem, invariant: sct.StateInvariant | sct.InvariantProperty) -> Verdict:
     """The condition of an invariant holds in every reachable state."""
 
-    def explanation(_: sct.StateInvariant, path: Path) -> str:
+    def explanation(_: object, path: Path) -> str:
         return f"it is violated where `{system.where(path.states[-1], referenced(invariant.condition))}`"
 
     evidence = f"{system.size}, asks for `{RobotPrinter()(invariant.condition)}`"
-    broken = {invariant: system.controlled & system.violations[invariant]}
+    broken = {invariant: system.controlled & ~system.encoding.holds(invariant.condition)}
     return _nowhere(requirement_name(invariant), system, evidence, broken, explanation)
+
+
+def claim_holds(system: GuardedSystem, claimed: sct.Property) -> Verdict:
+    """What a property of the model claims, which synthesis did not see to."""
+    if isinstance(claimed, sct.InvariantProperty):
+        return invariant_holds(system, claimed)
+    assert isinstance(claimed, sct.ReachabilityProperty)
+    states = system.controlled
+    start, goal = states & system.encoding.holds(claimed.origin), states & system.encoding.holds(claimed.condition)
+    stuck = {claimed: start & ~coreachable(system.diagrams, steps(system.moves), goal, states)}
+    asked = RobotPrinter()(claimed.condition)
+
+    def explanation(_: object, path: Path) -> str:
+        read = [*referenced(claimed.origin), *referenced(claimed.condition)]
+        return f"from `{system.where(path.states[-1], read)}` no state with `{asked}` can be reached"
+
+    origin = counted(system.encoding.count(start), "state")
+    return _nowhere(requirement_name(claimed), system, f"from {origin} to `{asked}`", stuck, explanation)
 
 
 def no_dead_events(system: GuardedSystem) -> Verdict:

@@ -75,6 +75,10 @@ def _requirements(base: rsc.Base) -> Iterator[Finding]:
         yield from _boolean(invariant.condition, f"the condition behind `{invariant.kind.name}`", _REQUIREMENT)
     for count in statements(rsc.CountRequirement, base):
         yield from _constant(count.bound, INTEGER, "the number behind `at most`")
+    for claimed in statements(rsc.Property, base):
+        yield from _boolean(claimed.condition, "the condition of a property", _REQUIREMENT)
+        if isinstance(claimed, rsc.ReachabilityProperty):
+            yield from _boolean(claimed.origin, "the condition behind `from`", _REQUIREMENT)
     for automaton in statements(rsc.AutomatonRequirement, base):
         for transition in (transition for state in automaton.states for transition in state.transitions):
             yield from _boolean(transition.guard, "the condition behind `if`", _REQUIREMENT)

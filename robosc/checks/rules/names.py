@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 def _components(base: rsc.Base) -> Iterator[tuple[str, list[Any]]]:
     named: list[Any] = [
         *of_kind((rsc.Component, rsc.NamedExpression), base.definitions),
-        *of_kind(rsc.Requirement, base.definitions),
+        *of_kind(rsc.StatedDefinition, base.definitions),
     ]
     yield f"`{base.name}`", named
 
@@ -48,6 +48,7 @@ _KINDS = {
     rsc.Function: "function",
     rsc.Variable: "variable",
     rsc.Requirement: "requirement",
+    rsc.Property: "property",
 }
 #: What has a name of its own: the rule, what it is in words, and among whom.
 _UNIQUE: tuple[tuple[str, str, Scopes], ...] = (
@@ -77,7 +78,7 @@ def unique_variable(base: rsc.Base) -> Iterator[Finding]:
         known = set()
         members: list[Any] = [
             *of_kind(rsc.NamedExpression, local.definitions),
-            *of_kind(rsc.Requirement, local.definitions),
+            *of_kind(rsc.StatedDefinition, local.definitions),
         ]
         for behaviour in of_kind(rsc.ComponentBehaviour, local.definitions):
             members += of_kind(rsc.AccessibleItem, behaviour.automaton.definitions if behaviour.automaton else ())

@@ -44,6 +44,8 @@ CLAUSES: dict[str, tuple[set[str], set[str]]] = {
     "CountRequirement": ({"since"}, set()),
     "RequirementTransition": ({"if", "goto"}, set()),
     "StateInvariant": (set(), {"never", "always"}),
+    "InvariantProperty": (set(), {"never", "always"}),
+    "ReachabilityProperty": ({"from"}, {"reachable"}),
     "ProvideStatement": ({"if"}, set()),
     "Conditional": ({"then", "else"}, set()),
     "Constant": (set(), {"="}),
