@@ -13,12 +13,14 @@ from robosc.cli.progress import progress
 from robosc.cli.reading import read_configuration, read_models, supervise_models
 from robosc.cli.report import Report
 from robosc.configuration import LOCATIONS
+from robosc.diagnostics import Diagnostic, Severity
 from robosc.files.writing import write
 from robosc.m2t.targets import TARGETS, Target, together
+from robosc.metamodel.places import place
 from robosc.synthesis.memory import bounded
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from robosc.configuration import Configuration
     from robosc.m2t.models import Models
@@ -91,6 +93,8 @@ def command(
         supervise_models(models, report, memory=megabytes << 20)
         for target in targets:
             report.add(target.findings(models, settings))
+        if with_tests:
+            report.add(_untested(models))
         report.stop_on_errors()
         folder = Path(output or f"build/{models.sct.name}")
         files = {}
@@ -107,6 +111,21 @@ def command(
     for written, texts in trees.items():
         resolved = written.resolve()
         say(f"{written}: {len(texts)} files, {sum(resolved / name in changed for name in texts)} written", err=True)
+
+
+def _untested(models: Models) -> Iterator[Diagnostic]:
+    """Which of two deadlines that fall together comes first, ROS does not say: a trace can't be played then."""
+    for plant in models.sct.plants:
+        for event in plant.events:
+            if event.timer is not None:
+                hint = "leave out --with-tests"
+                yield Diagnostic(
+                    *place(event.timer),
+                    Severity.ERROR,
+                    "ros-node",
+                    "a robot that waits for a time has no trace tests yet",
+                    hint,
+                )
 
 
 def _copies(

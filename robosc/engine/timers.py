@@ -19,6 +19,8 @@ class Timers:
         self._resolution = resolution
         timers = list(engine.executed.timers)
         number = {timer: position for position, timer in enumerate(timers)}
+        #: Whether the model has any.
+        self.exist = bool(timers)
         self._events = [timer.event.name for timer in timers]
         self._of = {event: position for position, event in enumerate(self._events)}
         self._length = [timer.milliseconds for timer in timers]

@@ -15,6 +15,7 @@ from robosc.metamodel import rosgraph, sct
 from robosc.semantics.messages import parts_with_headers, reads_elements
 from robosc.semantics.naming import Names
 from robosc.semantics.operators import PRECEDENCE
+from robosc.semantics.roles import Roles
 from robosc.semantics.typing import DOUBLE, ArrayType, infer
 from robosc.semantics.walks import parts
 
@@ -192,6 +193,8 @@ class Node:
         self._sent = Names()
         self.robot = graph.name
         self.prefix = self._names.c.prefix
+        #: How calls of the engine say what time it is; empty where the model has no times.
+        self.at = ", at()" if Roles(graph.model).timeouts else ""
         self.enumerations = [self._enumeration(enumeration) for enumeration in graph.enumerations]
         self.conversions = [self._conversion(conversion) for conversion in graph.conversions]
         self.components = [

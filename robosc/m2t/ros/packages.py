@@ -41,6 +41,7 @@ _HEADERS = {
     "robosc/hangup": {"ros2"},
     "robosc/json": set(),
     "robosc/watchdog": {"controller", "subscriptions"},
+    "robosc_ros{ros}/alarm": {"timed"},
     "robosc_ros{ros}/action_client": {"controller", "actions"},
     "robosc_ros{ros}/action_proxy": {"layer", "actions"},
     "robosc_ros{ros}/countdown": {"controller", "waits"},
@@ -163,6 +164,7 @@ class RosTarget:
             "gates": layer and layer.gates,
             "services": node.services,
             "subscriptions": node.subscriptions,
+            "timed": node.at,
             "topics": node.subscriptions or node.publishers,
             "waits": node.clients or node.subscriptions,
         }

@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from robosc.m2t.models import Models
-    from robosc.metamodel import sct
 
 RULE, LAYER_RULE = "ros-node", "layer-topic"
 
@@ -45,7 +44,7 @@ def preconditions(models: Models, configuration: Configuration, kind: str, ros: 
     if graph is None:
         message = "there is no ROS graph beside this model: generate from the .rscd or the .rosgraph.xmi"
         return [Diagnostic(models.sct.name, START, Severity.ERROR, RULE, message)]
-    found = [*engine_preconditions(models.sct), *_names(graph), *_types(graph), *_times(models.sct)]
+    found = [*engine_preconditions(models.sct), *_names(graph), *_types(graph)]
     if kind == "controller":
         name = configuration.package_name(graph)
         return [*found, *_package(graph, configuration, name), *_settings(graph, configuration)]
@@ -56,14 +55,6 @@ def preconditions(models: Models, configuration: Configuration, kind: str, ros: 
         *_controller(configuration, ros),
         *_unused(configuration),
     ]
-
-
-def _times(model: sct.SupervisoryControlModel) -> Iterator[Diagnostic]:
-    for plant in model.plants:
-        for event in plant.events:
-            if event.timer is not None:
-                hint = "simulate it, or generate the supervisor in C: `--to supervisor`"
-                yield _error(event.timer, "a ROS node can't wait for a time yet", hint)
 
 
 def _package(graph: rosgraph.RosGraph, configuration: Configuration, name: str) -> Iterator[Diagnostic]:

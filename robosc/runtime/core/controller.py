@@ -17,6 +17,7 @@ from robosc.runtime.core.event_log import nested
 from robosc.runtime.core.monitors import GraphMonitor, Watchdog
 from robosc.runtime.core.node_data import NotFiniteError, bounded, fill
 from robosc.runtime.core.settings import SafeMessages
+from robosc.runtime.core.times import RESOLUTION_MS
 from robosc.semantics.messages import parts_with_headers
 from robosc.semantics.operators import UnreadableError
 from robosc.semantics.parameters import topic_words, watchdog
@@ -72,6 +73,7 @@ class Controller(EventHandler):
             settings.number("events_per_tick"),
             settings.number("reactions_per_tick"),
             bool(settings.parameters["react_immediately"]),
+            RESOLUTION_MS,
         )
         super().__init__(graph, settings, port, event_loop, loop)
         self._node = port
@@ -121,6 +123,7 @@ class Controller(EventHandler):
     def start(self) -> None:
         """Publishes its definition and begins to act: the first tick comes after one period."""
         self._reports.publish_definition()
+        self._times.start()
         self._monitor.start()
         if self._graph.publishers and not self._safe.on_shutdown:
             if self._watchdog_stops:
@@ -145,7 +148,8 @@ class Controller(EventHandler):
 
     def tick(self) -> None:
         """One period of the control loop is over."""
-        self._control.tick()
+        with self._times:
+            self._control.tick()
         self._reports.publish_state(self._port.now())
 
     def stop(self) -> None:
@@ -205,9 +209,10 @@ class Controller(EventHandler):
 
     @contextmanager
     def _batch(self) -> Iterator[None]:
-        self._control.begin()
-        yield
-        self._control.end()
+        with self._times:
+            self._control.begin()
+            yield
+            self._control.end()
 
     def _note_received(self, subscription: rosgraph.Subscription) -> None:
         if subscription in self._watchdogs:

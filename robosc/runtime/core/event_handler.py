@@ -10,6 +10,7 @@ from robosc.metamodel import engine
 from robosc.runtime.core.event_log import EventLog, ReceivedData
 from robosc.runtime.core.node_data import NodeData
 from robosc.runtime.core.reports import StateReporter, Throttle
+from robosc.runtime.core.times import Times
 from robosc.semantics.messages import receptions
 from robosc.semantics.operators import UnreadableError
 from robosc.semantics.roles import event_name
@@ -47,6 +48,7 @@ class EventHandler:
         hooks = Hooks(self._before, self._after, self._report_livelock)
         self._control = ControlLoop(graph.model, loop, hooks)
         self._data = NodeData(graph, self._control.engine)
+        self._times = Times(self._control.timers, event_loop, self._expire)
         self._reports = StateReporter(graph, self._control.engine, self._data, port, settings.configuration)
         self._warn = Throttle(port.warn, event_loop.clock)
         self._events = {event_name(event): event for plant in graph.model.plants for event in plant.events}
@@ -94,8 +96,18 @@ class EventHandler:
     @contextmanager
     def _batch(self) -> Iterator[None]:
         """What happens inside happens with nothing in between; what it makes possible follows."""
-        yield
-        self._control.settle()
+        with self._times:
+            yield
+            self._control.settle()
+
+    def _expire(self) -> None:
+        """Some time may be up."""
+        with self._times:
+            while self._control.expire() is not None:
+                self._follow_up()
+
+    def _follow_up(self) -> None:
+        """Does what a time that was up made possible, if the control loop has not."""
 
     def receive(self, subscription: rosgraph.Subscription, message: Message) -> None:
         """A message on a topic: a batch of events. One that can't be read counts as not received."""

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from robosc.engine import Settings as LoopSettings
 from robosc.metamodel import engine
 from robosc.runtime.core.event_handler import EventHandler
 from robosc.runtime.core.event_log import Json, json_text
+from robosc.runtime.core.times import RESOLUTION_MS
 from robosc.semantics.edges import edges_from, edges_of
 from robosc.semantics.roles import event_name, plant_of
 
@@ -28,7 +30,7 @@ class Layer(EventHandler):
     """
 
     def __init__(self, graph: rosgraph.RosGraph, settings: Settings, port: Port, event_loop: EventLoop) -> None:
-        super().__init__(graph, settings, port, event_loop)
+        super().__init__(graph, settings, port, event_loop, LoopSettings(resolution_ms=RESOLUTION_MS))
         self._period = settings.seconds("period_ms")
         self._outgoing = self._of_role(engine.Role.trigger, engine.Role.cancel)
         self._data_events = self._of_role(engine.Role.data)
@@ -40,7 +42,9 @@ class Layer(EventHandler):
     def start(self) -> None:
         """Publishes its definition, and its state from now on."""
         self._reports.publish_definition()
-        self._control.settle()
+        self._times.start()
+        with self._times:
+            self._control.settle()
         self._publish_state()
 
     def _publish_state(self) -> None:
@@ -51,9 +55,10 @@ class Layer(EventHandler):
 
     def passes(self, sending: rosgraph.Sending) -> bool:
         """Whether what the controller sends may go on; its event has then happened. Else it is reported as blocked."""
-        if self._control.perform(event_name(sending.event)):
-            self._control.settle()
-            return True
+        with self._times:
+            if self._control.perform(event_name(sending.event)):
+                self._control.settle()
+                return True
         reason, because = self._reason(sending.event)
         self._report_blocked(sending.event, reason, because)
         return False
@@ -96,6 +101,9 @@ class Layer(EventHandler):
         self._port.warn(f"{name} is blocked: {reason} {json_text(because)}")
 
     # What happens
+
+    def _follow_up(self) -> None:
+        self._control.settle()
 
     def _after(self, name: str) -> None:
         if self._events[name] not in self._data_events:  # the controller chooses the data

@@ -1,0 +1,66 @@
+"""How late a time of a model is up over a real ROS, under the load of a sensor; prints a line for each kind of node.
+
+    python benchmarks/expiry.py [--ros 1] [--nodes compiled] [--times 200] [--hz 100] [--keep FOLDER]
+
+Measured is from a press of a button to the beep 200 ms after it, so with the way of two messages; `early` is to be 0.
+"""
+
+from __future__ import annotations
+
+import argparse
+import statistics
+import sys
+import tempfile
+from pathlib import Path
+
+ROOT = Path(__file__).parent.parent
+sys.path.insert(0, str(ROOT))
+
+from benchmarks.performance_page import KINDS  # noqa: E402
+from tests.ros.expiries import DURATION, PACKAGE, expiries  # noqa: E402
+from tests.ros.installations import find_ros1, find_ros2  # noqa: E402
+from tests.ros.running import Runner, find_rclpy, ros1_modules, ros2_modules  # noqa: E402
+from tests.ros.workspaces import ROS1_PACKAGES, ROS2_PACKAGES, Workspace, build  # noqa: E402
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--ros", type=int, nargs="+", choices=[1, 2], default=[1, 2])
+    parser.add_argument("--nodes", nargs="+", choices=["compiled", "run"], default=["compiled", "run"])
+    parser.add_argument("--times", type=int, default=200)
+    parser.add_argument("--hz", type=float, default=100.0)
+    parser.add_argument("--keep", type=Path, help="a folder for what is built")
+    options = parser.parse_args()
+    with tempfile.TemporaryDirectory() as name:
+        scratch = Path(name)
+        folder = options.keep.resolve() if options.keep else scratch / "built"
+        for kind in KINDS:
+            if kind.ros in options.ros and kind.nodes in options.nodes:
+                nodes = _prepared(kind.ros, kind.nodes, folder)
+                if isinstance(nodes, str):
+                    print(f"{kind.title}: left out: {nodes}")
+                    continue
+                found = expiries(nodes, scratch / kind.key, options.times, options.hz)
+                late = sorted(1000 * (seconds - DURATION) for seconds in found)
+                print(
+                    f"{kind.title}: {len(late)} times, median {statistics.median(late):.1f} ms late, at worst"
+                    f" {late[-1]:.1f} ms; early: {sum(one < 0 for one in late)}"
+                )
+
+
+def _prepared(version: int, kind: str, folder: Path) -> Workspace | Runner | str:
+    """What nodes of a kind are started with, or why there are none."""
+    found = find_rclpy() if (version, kind) == (2, "run") else {1: find_ros1, 2: find_ros2}[version]()
+    if found.ros is None:
+        return ", ".join(found.missing)
+    if kind == "run":
+        modules = folder / f"run-ros{version}"
+        made = {1: ros1_modules, 2: ros2_modules}[version](found.ros, modules)
+        return Runner(found.ros, sys.executable if version == 1 else found.ros.python, Path(made))
+    packages = [package for package in {1: ROS1_PACKAGES, 2: ROS2_PACKAGES}[version] if package.name == PACKAGE]
+    place = folder / f"compiled-ros{version}"
+    return Workspace(found.ros, place, build(found.ros, place, packages, []))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,58 @@
+"""The times of a model on the clock of a node, and the one timer that waits for the next of them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from robosc.engine.timers import Timers
+    from robosc.runtime.core.event_loop import EventLoop, Timer
+
+#: The clock is read in whole milliseconds, rounded down.
+RESOLUTION_MS = 1
+
+
+class Times:
+    """Within a `with` block the control loop acts: it knows what time it is, and afterwards is called when it wants.
+
+    `expire` is what is then called. A clock that stands at 0 has not begun; its first other time starts all times.
+    """
+
+    def __init__(self, timers: Timers, event_loop: EventLoop, expire: Callable[[], None]) -> None:
+        self._timers = timers
+        self._event_loop = event_loop
+        self._expire = expire
+        self._alarm: Timer | None = None
+        self._up = 0
+        self._begun = False
+
+    def start(self) -> None:
+        """Starts all times: the node begins to work."""
+        self._begun = False
+        with self:
+            pass
+
+    def __enter__(self) -> None:
+        if not self._timers.exist:
+            return
+        self._timers.at(int(self._event_loop.clock() * 1000))
+        if not self._begun:
+            self._timers.restart()
+            self._begun = self._timers.now != 0
+
+    def __exit__(self, *_: object) -> None:
+        wait = self._timers.wait
+        if wait is None:
+            return
+        up = self._timers.now + wait
+        if self._alarm is None or up < self._up:
+            if self._alarm is not None:
+                self._alarm.cancel()
+            self._up = up
+            self._alarm = self._event_loop.call_later(wait / 1000, self._ring)
+
+    def _ring(self) -> None:
+        self._alarm = None
+        self._expire()
