@@ -257,13 +257,16 @@ class Observer:
         if not here.satisfiable():
             return Hindrance(edge, None)
         relation = self._system.relations[edge.event]
-        enabled = here & relation.enabled
+        own = relation.taken([edge])
+        enabled = here & relation.enabled & own
+        if not (here & own).satisfiable():
+            return Hindrance(edge, Forbidden.BY_PLANTS, plants=(edge.target.eContainer(),))
         if not enabled.satisfiable():
             return Hindrance(edge, Forbidden.BY_PLANTS, plants=never_ready(relation, here))
         if not (enabled & relation.requirement).satisfiable():
             return Hindrance(edge, Forbidden.BY_REQUIREMENTS, requirements=forbidding(relation, enabled))
         return Hindrance(
-            edge, Forbidden.BY_SYNTHESIS, counterexample=self._counterexample(self._permissions[edge.event], here)
+            edge, Forbidden.BY_SYNTHESIS, counterexample=self._counterexample(self._permissions[edge.event], here & own)
         )
 
     def _example(self, states: Diagram) -> Example:

@@ -18,8 +18,8 @@ from robosc.semantics.cone_of_influence import (
     accesses,
     conditions,
     cone_of_influence,
-    read_type,
 )
+from robosc.semantics.inputs import Computed, Data
 from robosc.semantics.operators import COMPARISONS
 from robosc.semantics.typing import (
     BOOLEAN,
@@ -32,13 +32,14 @@ from robosc.semantics.typing import (
     type_of,
     value_type,
 )
-from robosc.semantics.walks import fold, operands, parts
+from robosc.semantics.walks import fold, operands
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterator, Mapping
 
-    from robosc.semantics.cone_of_influence import Assigned
-    from robosc.semantics.instances import Instance, Instances
+    from robosc.semantics.cone_of_influence import Assigned, Reading
+    from robosc.semantics.inputs import Told
+    from robosc.semantics.instances import Instance, Instances, InstanceVariable
 
 
 @dataclass(frozen=True)
@@ -70,12 +71,20 @@ def supervised_faults(base: rsc.Base, search: Search) -> Iterator[Finding]:
             of_libraries = {fault.element for library in reachable(base) for fault in _faults(library, search)}
         if fault.element in of_libraries:
             continue
-        unit = unit_of(fault.element)
+        unit = _unit(fault, base)
         place = fault.element if unit is base else _reference(base, fault.reason, result)
         if (place, fault.element) not in reported:
             reported.add((place, fault.element))
             hint = fault.hint if unit is base else f"in library `{unit.name}`, {fault.hint}"
             yield Finding(place, fault.message, hint)
+
+
+def _unit(fault: Fault, base: rsc.Base) -> rsc.Base:
+    """The robot or library in whose text the element stands; what is written out has the place of the original."""
+    unit = unit_of(fault.element)
+    if isinstance(unit, rsc.Base):
+        return unit
+    return base if fault.reason.within is None else fault.reason.within.unit
 
 
 def can_be_needed(variable: rsc.Variable) -> bool:
@@ -84,16 +93,17 @@ def can_be_needed(variable: rsc.Variable) -> bool:
     return found in {BOOLEAN, INTEGER, UNKNOWN} or isinstance(found, EnumType)
 
 
-def data_reads(result: ConeOfInfluence) -> Iterator[tuple[Assigned, rsc.Access]]:
-    """Every reading of an event's data that a needed variable is computed from.
+def readings(result: ConeOfInfluence) -> Iterator[Reading]:
+    """Every reading of an event's data by what the supervisor computes.
 
-    Only where the variable itself is fine, and gets a value of its type.
+    Of variables only where these are fine themselves, and get a value of their type.
     """
-    for assigned in result.computations:
-        if assigned.variable is not None and can_be_needed(assigned.variable.variable) and _fits(assigned):
-            for access in accesses(assigned.value):
-                if access.value and isinstance(assigned.transition, rsc.ResultTransition):
-                    yield assigned, access
+    unfit = {
+        assigned.value
+        for assigned in result.computations
+        if assigned.variable is not None and not (can_be_needed(assigned.variable.variable) and _fits(assigned))
+    }
+    return (reading for reading in result.readings if reading.whole not in unfit)
 
 
 def _fits(assigned: Assigned) -> bool:
@@ -135,21 +145,30 @@ _PRODUCT = _Limit(
 )
 
 
+class _Where(NamedTuple):
+    """What an expression's text means: whose it is, the variable that it is assigned to, and which parts are inputs."""
+
+    within: Instance | None
+    variable: InstanceVariable | None
+    inputs: Mapping[ex.Expression, Told | None]
+
+
 def table_faults(instances: Instances, result: ConeOfInfluence) -> Iterator[Fault]:
     """Each comparison of doubles and each product that the supervisor computes from too many valuations."""
-    for expression, within, assigned in _computed(instances, result):
-        yield from _in_expression(instances, expression, within, assigned)
+    for expression, where in _computed(instances, result):
+        yield from _in_expression(instances, expression, where)
 
 
-def _computed(
-    instances: Instances, result: ConeOfInfluence
-) -> Iterator[tuple[ex.Expression | None, Instance | None, Assigned | None]]:
-    """What the supervisor computes, with the instance whose text it is and where it is assigned."""
-    for condition, within in conditions(instances):
-        yield condition, within, None
+def _computed(instances: Instances, result: ConeOfInfluence) -> Iterator[tuple[ex.Expression, _Where]]:
+    """What the supervisor computes, with what its text means."""
+    inputs: dict[ex.Expression | None, dict[ex.Expression, Told | None]] = {}
+    for reading in result.readings:
+        inputs.setdefault(reading.whole, {})[reading.part] = reading.told
+    for condition in conditions(instances):
+        yield condition.expression, _Where(condition.within, None, inputs.get(condition.expression, {}))
     for assigned in result.computations:
-        if assigned.variable is not None and can_be_needed(assigned.variable.variable):
-            yield assigned.value, assigned.instance, assigned
+        if assigned.variable is not None and can_be_needed(assigned.variable.variable) and assigned.value is not None:
+            yield assigned.value, _Where(assigned.instance, assigned.variable, inputs.get(assigned.value, {}))
 
 
 def function_faults(instances: Instances, result: ConeOfInfluence) -> Iterator[Fault]:
@@ -157,15 +176,14 @@ def function_faults(instances: Instances, result: ConeOfInfluence) -> Iterator[F
 
     What reads a double, a string or an array has a finding of its own.
     """
-    for expression, within, assigned in _computed(instances, result):
-        value = value_type(assigned.assignment) if assigned else None
-        types, cases = Types(value), dict[ex.Expression | None, int]()
+    for expression, where in _computed(instances, result):
+        types, cases = Types(value_type(expression)), dict[ex.Expression | None, int]()
         fold(_cases, expression, memo=cases)
-        for part in parts(expression):
+        for part in _supervised_parts(expression, where):
             read = next(accesses(part), None) if isinstance(part, ex.FunctionCall) else None
             if read is None or not isinstance(part, ex.FunctionCall) or part.function == "mod":
                 continue
-            reason = Reason(read, within, assigned.variable if assigned else None)
+            reason = Reason(read, where.within, where.variable)
             kinds = {types(access) for access in accesses(part)}
             if not kinds <= {BOOLEAN, INTEGER} and not any(isinstance(kind, EnumType) for kind in kinds):
                 continue
@@ -177,6 +195,16 @@ def function_faults(instances: Instances, result: ConeOfInfluence) -> Iterator[F
                 yield Fault(part, reason, message, "let a variable remember a part of it")
 
 
+def _supervised_parts(expression: ex.Expression, where: _Where) -> Iterator[ex.Expression]:
+    """The parts of an expression that the supervisor computes: not those that the node does for it."""
+    pending = [expression]
+    while pending:
+        part = pending.pop()
+        if not isinstance(where.inputs.get(part), Computed):
+            yield part
+            pending += reversed(operands(part))
+
+
 def _cases(expression: ex.Expression | None, inside: list[int]) -> int:
     """How large an expression is when functions are written out by cases."""
     size = 1 + sum(inside)
@@ -185,44 +213,37 @@ def _cases(expression: ex.Expression | None, inside: list[int]) -> int:
     )
 
 
-def _in_expression(
-    instances: Instances, expression: ex.Expression | None, within: Instance | None, assigned: Assigned | None
-) -> Iterator[Fault]:
+def _in_expression(instances: Instances, expression: ex.Expression | None, where: _Where) -> Iterator[Fault]:
     types = Types(value_type(expression) if expression else None)
     reads: dict[ex.Expression | None, bool] = {}
     fold(lambda part, inside: isinstance(part, rsc.Access) or any(inside), expression, memo=reads)
     pending = [expression]
     while pending:
         part = pending.pop()
+        if part is not None and isinstance(where.inputs.get(part), Computed):
+            continue
         if isinstance(part, COMPARISONS) and DOUBLE in {types(part.left), types(part.right)}:
-            yield from _too_many(instances, part, _COMPARISON, within, assigned)
+            yield from _too_many(instances, part, _COMPARISON, where)
         elif isinstance(part, ex.Multiplication) and reads[part.left] and reads[part.right]:
-            yield from _too_many(instances, part, _PRODUCT, within, assigned)
+            yield from _too_many(instances, part, _PRODUCT, where)
         else:
             pending += reversed(operands(part))
 
 
-def _too_many(
-    instances: Instances,
-    expression: ex.BinaryExpression,
-    limit: _Limit,
-    within: Instance | None,
-    assigned: Assigned | None,
-) -> Iterator[Fault]:
+def _too_many(instances: Instances, expression: ex.BinaryExpression, limit: _Limit, where: _Where) -> Iterator[Fault]:
     ranges: dict[object, int] = {}
     reads = list(accesses(expression))
     for access in reads:
-        variable = instances.variable(access, within)
+        variable, data = instances.variable(access, where.within), where.inputs.get(access)
         if variable is not None:
             ranges[variable] = _size(variable.type)
-        elif access.value and assigned is not None:
-            path = tuple(segment.property for segment in access.segments if isinstance(segment, rsc.PropertySegment))
-            ranges[path] = _size(read_type(assigned, access))
+        elif isinstance(data, Data):
+            ranges[data] = _size(data.type)
     count = math.prod(ranges.values())
     if count > limit.most:
         yield Fault(
             expression,
-            Reason(reads[0], within, assigned.variable if assigned else None),
+            Reason(reads[0], where.within, where.variable),
             f"{limit.what} depends on {count} combinations of integer values, expected at most {limit.most}",
             limit.repair,
         )

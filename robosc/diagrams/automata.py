@@ -13,7 +13,7 @@ from robosc.semantics.durations import timer_text
 from robosc.semantics.edges import edges_from
 from robosc.semantics.instances import Instances
 from robosc.semantics.naming import written
-from robosc.semantics.printing import RoboscPrinter, SctPrinter
+from robosc.semantics.printing import Printed, RoboscPrinter, SctPrinter
 from robosc.semantics.roles import event_name, plant_of
 
 if TYPE_CHECKING:
@@ -111,11 +111,13 @@ class _Component(RoboscPrinter):
                 word = "to" if kind == "request" else "from"
                 first = f"on {kind} {word} {self.communication(transition.communicationType)}"
             case robosc.TauTransition():
-                first = "transition" if transition.guard is None else f"transition if {self(transition.guard)}"
+                first = "transition"
             case robosc.TimedTransition():
                 first = f"after {self(transition.duration)} {transition.unit}"
                 if transition.without:
                     first += f" without {', '.join(map(self.communication, transition.without))}"
+        if isinstance(transition, robosc.GuardedTransition) and transition.guard is not None:
+            first += f" if {self(transition.guard)}"
         return (first, *self.assignments(transition.assignments))
 
     def assignments(self, assignments: Sequence[robosc.Assignment]) -> list[str]:
@@ -131,14 +133,14 @@ class _Component(RoboscPrinter):
         others = sum(other.communication.name == port.communication.name for other in self.instances.ports())
         return name if port.instance is self.instance or others == 1 else f"{written(port.instance.name)}.{name}"
 
-    def atom(self, expression: ex.Expression) -> str:
+    def write(self, expression: ex.Expression, given: Sequence[Printed]) -> Printed:
         """A name of the component itself without the component."""
-        text = super().atom(expression)
+        made = super().write(expression, given)
         if isinstance(expression, robosc.Access) and expression.component is not None:
             owner = self.instances.instance(expression.component, self.instance)
             if owner is self.instance:
-                return text.removeprefix(f"{written(expression.component.name)}.")
-        return text
+                return made._replace(text=made.text.removeprefix(f"{written(expression.component.name)}."))
+        return made
 
 
 class _Plant(SctPrinter):

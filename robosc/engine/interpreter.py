@@ -130,9 +130,9 @@ class Engine:
         return self._cells[self._layout.position[variable.name]]
 
     def condition(self, condition: ex.Expression) -> Callable[[], bool]:
-        """A function that says whether a condition of the engine model holds in the present state."""
+        """A function that says whether a condition of the engine model holds in the present state, with the inputs."""
         function = self._compile(condition)
-        return lambda: bool(function(self._cells, ()))
+        return lambda: bool(function(self._cells, self._inputs))
 
     def _all(self, guard: engine.Guard) -> list[Function]:
         return [self._compile(term.condition) for term in guard.terms]

@@ -168,7 +168,7 @@ def _word_hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) 
     if not token.text.removeprefix("^").isascii():
         return "a name is made of the letters a to z and A to Z, of digits and of `_`"
     if token.text == "if" and tokens[block.first].is_keyword("on"):
-        return "a transition with an event has no condition; use a variable, or a `transition if` from the next state"
+        return "the condition of a transition stands before `do` and `goto`, as in `on … if … do … goto …`"
     goes_on = tokens[index + 1].kind is not Kind.WORD or is_reserved(tokens[index + 1].text)
     if index < block.after and "UnreservedName" in wanted and is_reserved(token.text) and goes_on:
         return Repair(f"write `^{token.text}` where a keyword is used as a name", f"^{token.text}")

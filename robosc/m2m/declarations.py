@@ -9,9 +9,11 @@ from robosc.metamodel import robosc
 from robosc.semantics.evaluation import Value, literal, saturate
 from robosc.semantics.expansion import constant_value
 from robosc.semantics.naming import Names
+from robosc.semantics.typing import EnumType
 
 if TYPE_CHECKING:
     from robosc.metamodel import rosgraph, sct
+    from robosc.semantics.inputs import Computed
     from robosc.semantics.instances import InstanceVariable
 
 #: The type that becomes of a basic type without bounds, and the value of a variable without initial one.
@@ -47,6 +49,14 @@ class Declarations:
         if type(declared) in _BASIC:
             return _BASIC[type(declared)][0]()
         return ex.EnumerationType(enumeration=self.enumeration(_enum(declared)))
+
+    def computed(self, told: Computed) -> ex.Type:
+        """The type of what is computed of data; an integer has bounds (rule `integer-range`)."""
+        if isinstance(told.type, EnumType):
+            return ex.EnumerationType(enumeration=self.enumeration(told.type.definition))
+        if told.bounds is None:
+            return ex.BooleanType()
+        return ex.IntegerType(minimum=told.bounds[0], maximum=told.bounds[1])
 
     def enumeration(self, enum: robosc.EnumDataType) -> ex.Enumeration:
         """The enumeration of an enum."""

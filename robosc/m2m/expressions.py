@@ -9,13 +9,12 @@ from robosc.m2m.tabulation import TooLargeError, tabulate
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc, rosgraph, sct
 from robosc.metamodel.places import place
-from robosc.semantics.communication import event_of
-from robosc.semantics.cone_of_influence import Data, accesses, property_path
+from robosc.semantics.cone_of_influence import accesses, read_data
 from robosc.semantics.evaluation import Value, evaluate, literal
 from robosc.semantics.naming import Names
 from robosc.semantics.operators import COMPARISONS, FUNCTIONS, Rule, operator_of
 from robosc.semantics.typing import DOUBLE, Types
-from robosc.semantics.walks import copied, fold, with_operands
+from robosc.semantics.walks import copied, fold, operands, with_operands
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -86,17 +85,23 @@ class SctExpressions(_Expressions):
         super().__init__(trace, trace.declarations, {})
 
     def __call__(
-        self, expression: ex.Expression, within: Instance | None, transition: robosc.Transition | None = None
+        self,
+        expression: ex.Expression,
+        within: Instance | None,
+        transition: robosc.Transition | None = None,
+        assigned: InstanceVariable | None = None,
     ) -> ex.Expression:
-        """A condition, or what a transition assigns, whose event's data it may read.
+        """A condition, or what a transition assigns to a variable; it may read the data of the transition's event.
 
         `within` is the instance whose text it is. Raises ModelError where a comparison of doubles has too many cases.
         """
+        written = self._trace.instances.expanded(expression, within)
+        inputs = self._inputs(written, within, transition, assigned)
 
         def translated(original: ex.Expression, operands: list[ex.Expression]) -> ex.Expression:
+            if original in inputs:
+                return sct.InputReference(input=inputs[original])
             match original:
-                case robosc.Access(value=True):
-                    return self._input(original, within, transition)
                 case robosc.Access():
                     return self._reference(original, within)
                 case ex.Equation() | ex.Inequation() if isinstance(original.left, ex.StringLiteral):
@@ -112,19 +117,18 @@ class SctExpressions(_Expressions):
             made = with_operands(original, operands)
             return _table(made, original) if isinstance(made, COMPARISONS) and self._some_double(operands) else made
 
-        return fold(translated, self._trace.instances.expanded(expression, within))
+        return fold(translated, written, lambda part: () if part in inputs else operands(part))
 
-    def _input(
-        self, access: robosc.Access, within: Instance | None, transition: robosc.Transition | None
-    ) -> sct.InputReference:
-        assert isinstance(transition, robosc.ResultTransition)
-        port = self._trace.instances.port(transition.communicationType, within)
-        event = event_of(transition.communicationType, transition.resultType)
-        path = property_path(access)
-        assert port is not None
-        assert event is not None
-        assert path is not None
-        return sct.InputReference(input=self._trace.inputs[Data(port, event, path)])
+    def _inputs(
+        self,
+        expression: ex.Expression,
+        within: Instance | None,
+        transition: robosc.Transition | None,
+        assigned: InstanceVariable | None,
+    ) -> dict[ex.Expression, sct.Input]:
+        """The parts of an expression that are inputs."""
+        readings = read_data(self._trace.instances, expression, within, transition, assigned)
+        return {reading.part: self._trace.inputs[reading.told] for reading in readings if reading.told is not None}
 
 
 class NodeExpressions(_Expressions):

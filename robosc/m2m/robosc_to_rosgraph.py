@@ -10,9 +10,12 @@ from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc, rosgraph, sct
 from robosc.ros_types import RosTypes
 from robosc.semantics.communication import data_type, event_of, events
+from robosc.semantics.cone_of_influence import guard_of
+from robosc.semantics.inputs import Data
 from robosc.semantics.instances import bound_arguments
+from robosc.semantics.messages import reads_elements
 from robosc.semantics.naming import Names
-from robosc.semantics.printing import RoboscPrinter
+from robosc.semantics.printing import RoboscPrinter, conjunction
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -200,10 +203,16 @@ class _Transformation:
             source=port.communication.source,
         )
         value = self.value_of(port, event)
-        for data, declared in self.trace.inputs.items():
-            if data.port == port and data.event == event:
-                path = robosc.Access(value=True, segments=[robosc.PropertySegment(property=part) for part in data.path])
-                assigned = self.expressions(path, port.instance, value)
+        for told, declared in self.trace.inputs.items():
+            if told.port == port and told.event == event:
+                read: ex.Expression
+                if isinstance(told, Data):
+                    read = robosc.Access(
+                        value=True, segments=[robosc.PropertySegment(property=part) for part in told.path]
+                    )
+                else:
+                    read = told.expression
+                assigned = self.expressions(read, port.instance, value)
                 reception.inputs.append(rosgraph.InputAssignment(input=declared, value=assigned))
         return reception
 
@@ -278,25 +287,42 @@ class _Transformation:
     # What events change in the node
 
     def reactions(self, instance: Instance) -> None:
+        tried: dict[tuple[sct.Event, robosc.State | None], list[robosc.Transition]] = {}
         for transition, state in instance.transitions:
-            assigned = self.instances.assignments(transition, instance)
-            assignments = {owned: assignment for owned, assignment in assigned.items() if owned in self.variables}
-            if not assignments:
-                continue
-            places = self.trace.behaviours[instance].locations
+            places, event = self.trace.behaviours[instance].locations, self.trace.event_of(transition, instance)
+            before = tried.setdefault((event, state), [])
             reaction = rosgraph.Reaction(
-                event=self.trace.event_of(transition, instance),
+                event=event,
                 locations=list(places) if state is None else [self.trace.locations[instance, state]],
+                guard=self.first(transition, before, instance),
                 source=transition.source,
             )
+            before.append(transition)
             data = self.data(transition, instance)
-            for owned, assignment in assignments.items():
-                variable = self.variables[owned]
+            for owned, assignment in self.instances.assignments(transition, instance).items():
                 value = self.expressions(assignment.value, instance, data)
-                reaction.assignments.append(
-                    rosgraph.NodeAssignment(variable=variable, value=value, source=assignment.source)
-                )
-            self.graph.reactions.append(reaction)
+                if owned in self.variables:
+                    variable = self.variables[owned]
+                    reaction.assignments.append(
+                        rosgraph.NodeAssignment(variable=variable, value=value, source=assignment.source)
+                    )
+                elif reads_elements(value):
+                    reaction.needs.append(value)
+            reads = reaction.guard is not None and reads_elements(reaction.guard)
+            if reaction.assignments or reaction.needs or reads:
+                self.graph.reactions.append(reaction)
+
+    def first(
+        self, transition: robosc.Transition, others: Sequence[robosc.Transition], instance: Instance
+    ) -> ex.Expression | None:
+        """That a transition of an event is the first whose guard holds; a silent one happens only where it does."""
+        if not isinstance(transition, robosc.ResultTransition):
+            return None
+        data = self.data(transition, instance)
+        found = [guard for guard in map(guard_of, [*others, transition]) if guard is not None]
+        guards = [self.expressions(guard, instance, data) for guard in found]
+        own = [] if transition.guard is None else [guards.pop()]
+        return conjunction([*(ex.Negation(operand=guard) for guard in guards), *own])
 
     def data(self, transition: robosc.Transition, instance: Instance) -> Carried | None:
         """What `value` means in a transition; None where its event brings no data."""

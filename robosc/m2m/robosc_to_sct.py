@@ -10,15 +10,16 @@ from robosc.m2m.requirement_automata import RequirementAutomaton
 from robosc.m2m.trace import Trace
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc, sct
-from robosc.semantics.communication import CONTROLLABLE, data_type, events
-from robosc.semantics.cone_of_influence import cone_of_influence
+from robosc.semantics.communication import CONTROLLABLE, events
+from robosc.semantics.cone_of_influence import cone_of_influence, guard_of
 from robosc.semantics.durations import milliseconds
+from robosc.semantics.inputs import Data
 from robosc.semantics.instances import Instance, Instances, InstanceVariable, PortInstance, Statement
 from robosc.semantics.naming import Names
 from robosc.semantics.printing import RoboscPrinter, conjunction, disjunction
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from robosc.metamodel.places import Place
 
@@ -73,6 +74,7 @@ class _Transformation:
         self.expressions = SctExpressions(self.trace)
         self.print = RoboscPrinter()
         self.plant_names = Names()
+        self.told = self.trace.cone.data
 
     def run(self) -> tuple[sct.SupervisoryControlModel, Trace]:
         # Targets first, then what refers to them: a guard may name any component's state.
@@ -132,17 +134,21 @@ class _Transformation:
     def inputs(self, plant: sct.Plant, port: PortInstance) -> None:
         """Algorithm 1, for what is in the cone of influence."""
         names = Names()
-        for data in self.trace.cone.data:
-            if data.port == port:
-                name = "_".join([f"i_{data.event.kind.name}", *(part.name for part in data.path)])
-                whole = data_type(port.communication, data.event)
-                declared = data.path[-1].type if data.path else whole
-                assert declared is not None
-                declared = port.instance.data_type(declared)
-                made = sct.Input(name=names.fresh(name), type=self.declarations.type(declared))
+        for told in self.told:
+            if told.port == port:
+                made = sct.Input()
+                if isinstance(told, Data):
+                    parts = [part.name for part in told.path]
+                    assert told.type is not None
+                    made.type = self.declarations.type(told.type)
+                else:
+                    parts = [f"c{1 + sum(given.text is not None for given in plant.inputs)}"]
+                    made.type = self.declarations.computed(told)
+                    made.text = told.text
+                made.name = names.fresh("_".join([f"i_{told.event.kind.name}", *parts]))
                 plant.inputs.append(made)
-                self.trace.event(port, data.event.kind).inputs.append(made)
-                self.trace.inputs[data] = made
+                self.trace.event(port, told.event.kind).inputs.append(made)
+                self.trace.inputs[told] = made
 
     # Behaviour
 
@@ -186,24 +192,32 @@ class _Transformation:
         mentioned = [event for event in reacted if event.kind in _NEVER_BLOCKED]
         for state in instance.states:
             location = self.trace.locations[instance, state]
+            tried: dict[sct.Event, list[robosc.Transition]] = {event: [] for event in mentioned}
             for transition in [*state.transitions, *everywhere]:
-                self.edge(location, transition, instance)
-            present = {edge.event for edge in location.edges}
+                before = tried.setdefault(self.trace.event_of(transition, instance), [])
+                self.edge(location, transition, instance, before)
+                before.append(transition)
             for event in mentioned:
-                if event not in present:
-                    _edge(location, event, location)
+                if all(guard_of(transition) is not None for transition in tried[event]):
+                    _edge(location, event, location).guard = self.none_of(tried[event], instance)
         self.timers(instance)
 
-    def edge(self, location: sct.Location, transition: robosc.Transition, instance: Instance) -> None:
+    def edge(
+        self,
+        location: sct.Location,
+        transition: robosc.Transition,
+        instance: Instance,
+        others: Sequence[robosc.Transition],
+    ) -> None:
+        """The edge of a transition that is taken where the guards of `others`, which are tried before, do not hold."""
         target = location if transition.target is None else self.trace.locations[instance, transition.target]
         edge = _edge(location, self.trace.event_of(transition, instance), target)
         edge.source = transition.source
         self.trace.origins[edge] = transition
-        if isinstance(transition, robosc.TauTransition) and transition.guard is not None:
-            edge.guard = self.expressions(transition.guard, instance)
+        edge.guard = self.first(transition, others, instance)
         for owned, assignment in self.instances.assignments(transition, instance).items():
             if owned in self.trace.variables:
-                value = self.expressions(assignment.value, instance, transition)
+                value = self.expressions(assignment.value, instance, transition, owned)
                 variable = self.trace.variables[owned]
                 edge.updates.append(sct.Update(variable=variable, value=value, source=assignment.source))
 
@@ -230,6 +244,22 @@ class _Transformation:
                     without=list(dict.fromkeys(without)),
                     source=transition.source,
                 )
+
+    def first(
+        self, transition: robosc.Transition, others: Sequence[robosc.Transition], instance: Instance
+    ) -> ex.Expression | None:
+        """That a transition is the first whose guard holds."""
+        guard = guard_of(transition)
+        if guard is None:
+            return self.none_of(others, instance)
+        own = self.expressions(guard, instance, transition)
+        return conjunction(filter(None, (self.none_of(others, instance), own)))
+
+    def none_of(self, transitions: Sequence[robosc.Transition], instance: Instance) -> ex.Expression | None:
+        """That no guard of these holds; None where there are none."""
+        guards = ((guard_of(transition), transition) for transition in transitions)
+        found = [self.expressions(guard, instance, transition) for guard, transition in guards if guard is not None]
+        return conjunction(ex.Negation(operand=guard) for guard in found)
 
     # Provided data
 

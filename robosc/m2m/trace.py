@@ -12,7 +12,8 @@ if TYPE_CHECKING:
     from robosc.m2m.declarations import Declarations
     from robosc.metamodel import expression as ex
     from robosc.metamodel import sct
-    from robosc.semantics.cone_of_influence import ConeOfInfluence, Data
+    from robosc.semantics.cone_of_influence import ConeOfInfluence
+    from robosc.semantics.inputs import Told
     from robosc.semantics.instances import Instance, Instances, InstanceVariable, PortInstance, Statement
 
 
@@ -26,7 +27,7 @@ class Trace:
     declarations: Declarations
     plants: dict[PortInstance, sct.Plant] = field(default_factory=dict)
     events: dict[tuple[PortInstance, str], sct.Event] = field(default_factory=dict)
-    inputs: dict[Data, sct.Input] = field(default_factory=dict)
+    inputs: dict[Told, sct.Input] = field(default_factory=dict)
     behaviours: dict[Instance, sct.Plant] = field(default_factory=dict)
     locations: dict[tuple[Instance, robosc.State], sct.Location] = field(default_factory=dict)
     own: dict[tuple[Instance, robosc.Transition], sct.Event] = field(default_factory=dict)

@@ -182,11 +182,16 @@ class Transition(AutomatonDefinition):
     target: State | None
     def __init__(self, *, assignments: Iterable[Assignment] = ..., target: State | None = ..., source: Place | None = ...) -> None: ...
 
-class ResultTransition(Transition):
+class GuardedTransition(Transition):
+    """A transition that is taken only where its guard holds."""
+    guard: expression.Expression | None
+    def __init__(self, *, guard: expression.Expression | None = ..., assignments: Iterable[Assignment] = ..., target: State | None = ..., source: Place | None = ...) -> None: ...
+
+class ResultTransition(GuardedTransition):
     """Happens with communication."""
     resultType: ResultType
     communicationType: CommunicationReference
-    def __init__(self, *, resultType: ResultType | None = ..., communicationType: CommunicationReference | None = ..., assignments: Iterable[Assignment] = ..., target: State | None = ..., source: Place | None = ...) -> None: ...
+    def __init__(self, *, resultType: ResultType | None = ..., communicationType: CommunicationReference | None = ..., guard: expression.Expression | None = ..., assignments: Iterable[Assignment] = ..., target: State | None = ..., source: Place | None = ...) -> None: ...
 
 class ResultType:
     """The events of a communication that a component can react to (thesis table 5.1)."""
@@ -197,9 +202,8 @@ class ResultType:
     feedback: ClassVar[ResultType]
     cancel: ClassVar[ResultType]
 
-class TauTransition(Transition):
+class TauTransition(GuardedTransition):
     """Happens silently, as soon as its guard holds."""
-    guard: expression.Expression | None
     def __init__(self, *, guard: expression.Expression | None = ..., assignments: Iterable[Assignment] = ..., target: State | None = ..., source: Place | None = ...) -> None: ...
 
 class TimedTransition(Transition):

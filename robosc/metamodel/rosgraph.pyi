@@ -122,11 +122,13 @@ class ActionClient(expression.Located):
     def __init__(self, *, identifier: str | None = ..., interface: Interface | None = ..., request: Sending | None = ..., feedback: Reception | None = ..., response: Reception | None = ..., error: sct.Event | None = ..., cancel: sct.Event | None = ..., reset: sct.Event | None = ..., source: Place | None = ...) -> None: ...
 
 class Reaction(expression.Located):
-    """What an event changes in the node, when a component is in one of the locations. Values are read as they were before the event."""
+    """What an event reads and changes in the node, when a component is in one of the locations and the guard holds. Values are read as they were before the event."""
     event: sct.Event
     locations: MutableSequence[sct.Location]
+    guard: expression.Expression | None
+    needs: MutableSequence[expression.Expression]
     assignments: MutableSequence[NodeAssignment]
-    def __init__(self, *, event: sct.Event | None = ..., locations: Iterable[sct.Location] = ..., assignments: Iterable[NodeAssignment] = ..., source: Place | None = ...) -> None: ...
+    def __init__(self, *, event: sct.Event | None = ..., locations: Iterable[sct.Location] = ..., guard: expression.Expression | None = ..., needs: Iterable[expression.Expression] = ..., assignments: Iterable[NodeAssignment] = ..., source: Place | None = ...) -> None: ...
 
 class NodeAssignment(expression.Located):
     """Gives a variable of the node a value."""

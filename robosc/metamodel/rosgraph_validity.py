@@ -13,7 +13,7 @@ from robosc.metamodel import rosgraph, sct
 from robosc.metamodel.model_checks import demand, fitting_operands, typed
 from robosc.metamodel.reflection import tree
 from robosc.semantics.messages import EACH, path_of
-from robosc.semantics.typing import declared_type
+from robosc.semantics.typing import BOOLEAN, declared_type
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -88,6 +88,7 @@ def _received_shapes(graph: rosgraph.RosGraph, _model: Model) -> Iterator[Fault]
     sources += [[reception] for client in graph.actionClients for reception in (client.feedback, client.response)]
     reactions: dict[Any, list[Any]] = defaultdict(list)
     for reaction in graph.reactions:
+        reactions[reaction.event] += [*([reaction.guard] if reaction.guard else []), *reaction.needs]
         reactions[reaction.event] += [assignment.value for assignment in reaction.assignments]
     read_anywhere = set()
     for receptions in sources:
@@ -124,10 +125,6 @@ def _path(access: rosgraph.WireAccess) -> list[str | int]:
 _BASIC_FIELD = demand(
     lambda field: field.type is None or isinstance(field.type, _BASIC), "{0.type.eClass.name} is no type of a field"
 )
-_NO_ELEMENT = demand(
-    lambda assignment: not any(isinstance(step, rosgraph.IndexStep) for _, step in tree(assignment.value)),
-    "an input is no element of an array, which need not be there",
-)
 _DATA = demand(
     lambda provided: provided.location.eContainer().kind == sct.PlantKind.data,
     "'{0.location.name}' is no location of a data plant",
@@ -147,14 +144,14 @@ CHECKS: Checks = {
     rosgraph.RosGraph: [_received_shapes],
     rosgraph.NodeVariable: [typed("initial", lambda variable: declared_type(variable.type))],
     rosgraph.FieldAssignment: [typed("value", lambda field: declared_type(field.type)), _BASIC_FIELD],
-    rosgraph.InputAssignment: [typed("value", lambda assignment: declared_type(assignment.input.type)), _NO_ELEMENT],
+    rosgraph.InputAssignment: [typed("value", lambda assignment: declared_type(assignment.input.type))],
     rosgraph.NodeAssignment: [typed("value", lambda assignment: declared_type(assignment.variable.type))],
     rosgraph.ConversionRule: [typed("condition")],
     rosgraph.Conversion: [_literals, _converted_shape],
     rosgraph.Reception: [_inputs],
     rosgraph.Sending: [_sent_shape],
     rosgraph.ProvidedData: [_DATA],
-    rosgraph.Reaction: [_ONE_PLANT],
+    rosgraph.Reaction: [_ONE_PLANT, typed("guard", lambda _: BOOLEAN)],
     rosgraph.Subscription: [_interface(rosgraph.InterfaceKind.message)],
     rosgraph.Publisher: [_interface(rosgraph.InterfaceKind.message)],
     rosgraph.ServiceClient: [_interface(rosgraph.InterfaceKind.service)],

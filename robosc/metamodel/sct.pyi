@@ -17,7 +17,7 @@ class SupervisoryControlModel(expression.NamedElement):
     def __init__(self, *, enumerations: Iterable[expression.Enumeration] = ..., plants: Iterable[Plant] = ..., requirements: Iterable[Requirement] = ..., invariants: Iterable[StateInvariant] = ..., properties: Iterable[Property] = ..., supervisor: Supervisor | None = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class Plant(expression.NamedElement):
-    """An automaton with variables. From each location, at most one edge has a given event."""
+    """An automaton with variables. Of the edges of a location with one event, the guards exclude each other."""
     kind: PlantKind
     origin: str | None
     topic: str | None
@@ -68,9 +68,10 @@ class Timer(expression.Located):
     def __init__(self, *, milliseconds: int | None = ..., location: Location | None = ..., entries: Iterable[Edge] = ..., without: Iterable[Event] = ..., source: Place | None = ...) -> None: ...
 
 class Input(expression.NamedElement):
-    """Data that comes with an event. Only updates on edges of an event that names the input read it."""
+    """Data that comes with an event. Only guards and updates of edges of an event that names the input read it."""
     type: expression.Type
-    def __init__(self, *, type: expression.Type | None = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
+    text: str | None
+    def __init__(self, *, type: expression.Type | None = ..., text: str | None = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class DiscreteVariable(expression.NamedElement):
     """A variable of a plant."""

@@ -13,7 +13,7 @@ from robosc.semantics.edges import edges_of
 from robosc.semantics.typing import declared_type
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
 
     from robosc.metamodel.model_checks import Checks, Fault, Model
 
@@ -54,15 +54,23 @@ def _initial_value(variable: sct.DiscreteVariable, _model: Model) -> Iterator[Fa
 
 
 def _one_edge(plant: sct.Plant, _model: Model) -> Iterator[Fault]:
-    """A location has one edge for an event, counting those that the plant has in every location."""
-    for edge in repeated(plant.edges, lambda edge: edge.event):
-        yield edge, f"plant '{plant.name}' has in every location two edges for '{edge.event.name}'"
+    """Of several edges for an event that a location has, or each of a plant's, all have guards."""
+    for edge in _unguarded(plant.edges):
+        yield edge, f"plant '{plant.name}' has in every location two edges for '{edge.event.name}', one without guard"
     everywhere = {edge.event for edge in plant.edges}
     for location in plant.locations:
-        again = set(repeated(location.edges, lambda edge: edge.event))
+        again = set(_unguarded(location.edges))
         for edge in location.edges:
-            if edge in again or edge.event in everywhere:
+            if edge in again:
+                yield edge, f"location '{location.name}' has two edges for '{edge.event.name}', one without guard"
+            elif edge.event in everywhere:
                 yield edge, f"location '{location.name}' has two edges for '{edge.event.name}'"
+
+
+def _unguarded(edges: Iterable[sct.Edge]) -> list[sct.Edge]:
+    """Of the edges with one event that are several, those of which one has no guard, but for the first."""
+    lone = {edge.event for edge in edges if edge.guard is None}
+    return [edge for edge in repeated(edges, lambda edge: edge.event) if edge.event in lone]
 
 
 def _carried(event: sct.Event, _model: Model) -> Iterator[Fault]:
@@ -86,14 +94,14 @@ def _used(model: sct.SupervisoryControlModel, _model: Model) -> Iterator[Fault]:
 
 
 def _read(reference: sct.InputReference, _model: Model) -> Iterator[Fault]:
-    """An input is read in updates on edges of an event that names it, and nowhere else."""
+    """An input is read in guards and updates of edges of an event that names it, and nowhere else."""
     user = reference.eContainer()
-    while isinstance(user, ex.Expression):
+    while isinstance(user, ex.Expression | sct.Update):
         user = user.eContainer()
-    if not isinstance(user, sct.Update):
-        yield reference, "an input is read in updates only"
-    elif reference.input not in user.eContainer().event.inputs:
-        yield reference, f"'{user.eContainer().event.name}' does not carry the input '{reference.input.name}'"
+    if not isinstance(user, sct.Edge):
+        yield reference, "an input is read in guards and updates of edges only"
+    elif reference.input not in user.event.inputs:
+        yield reference, f"'{user.event.name}' does not carry the input '{reference.input.name}'"
 
 
 def _guards(supervisor: sct.Supervisor, model: Model) -> Iterator[Fault]:

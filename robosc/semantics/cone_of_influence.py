@@ -7,26 +7,21 @@ from typing import TYPE_CHECKING
 
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc
-from robosc.semantics.communication import PortEvent, data_type, event_of
+from robosc.semantics.communication import data_type, event_of
+from robosc.semantics.inputs import inputs_in
+from robosc.semantics.typing import declared_type
 from robosc.semantics.walks import parts
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from robosc.semantics.instances import Instance, Instances, InstanceVariable, PortInstance
+    from robosc.semantics.inputs import Told
+    from robosc.semantics.instances import Instance, Instances, InstanceVariable
+    from robosc.semantics.typing import Type
 
 #: A comparison of doubles is tabulated over the integers that it is computed from, up to so many valuations: a larger
 #: table would be larger than any model that it is part of.
 LARGEST_TABLE = 1 << 16
-
-
-@dataclass(frozen=True)
-class Data:
-    """A part of what an event of a port carries: the properties on the way from the whole to it; none: the whole."""
-
-    port: PortInstance
-    event: PortEvent
-    path: tuple[robosc.ObjectProperty, ...]
 
 
 @dataclass(frozen=True)
@@ -56,15 +51,35 @@ class Reason:
 
 
 @dataclass(frozen=True)
+class Reading:
+    """A part of a whole expression that reads the data of an event, and the input that it is; None: it can't be one."""
+
+    whole: ex.Expression
+    part: ex.Expression
+    told: Told | None
+    reason: Reason
+    value: Type
+
+
+@dataclass(frozen=True)
 class ConeOfInfluence:
     """What the supervisor needs, each with the first reason, in the order in which it was found.
 
-    `computations` are the assignments that it performs.
+    `readings` are those of data, `computations` the assignments that it performs.
     """
 
     variables: dict[InstanceVariable, Reason]
-    data: dict[Data, Reason]
+    readings: list[Reading]
     computations: list[Assigned]
+
+    @property
+    def data(self) -> dict[Told, Reading]:
+        """What it is told, each with where it is read first."""
+        found: dict[Told, Reading] = {}
+        for reading in self.readings:
+            if reading.told is not None:
+                found.setdefault(reading.told, reading)
+        return found
 
 
 def cone_of_influence(instances: Instances) -> ConeOfInfluence:
@@ -73,7 +88,7 @@ def cone_of_influence(instances: Instances) -> ConeOfInfluence:
     for assigned in all_assignments(instances):
         if assigned.variable is not None:
             assignments.setdefault(assigned.variable, []).append(assigned)
-    result = ConeOfInfluence({}, {}, [])
+    result = ConeOfInfluence({}, [], [])
     queue: list[InstanceVariable] = []
 
     def read(expression: ex.Expression | None, within: Instance | None, computed: InstanceVariable | None) -> None:
@@ -83,25 +98,46 @@ def cone_of_influence(instances: Instances) -> ConeOfInfluence:
                 result.variables[variable] = Reason(access, within, computed)
                 queue.append(variable)
 
-    for condition, within in conditions(instances):
-        read(condition, within, None)
+    for condition in conditions(instances):
+        read(condition.expression, condition.within, None)
+        result.readings.extend(read_data(instances, condition.expression, condition.within, condition.transition))
     while queue:
         for assigned in assignments.get(queue.pop(0), ()):
             result.computations.append(assigned)
             read(assigned.value, assigned.instance, assigned.variable)
-            _read_data(instances, assigned, result)
+            result.readings.extend(
+                read_data(instances, assigned.value, assigned.instance, assigned.transition, assigned.variable)
+            )
     return result
 
 
-def conditions(instances: Instances) -> Iterator[tuple[ex.Expression | None, Instance | None]]:
-    """Every expression that the supervisor itself evaluates, written out, with the instance whose text it is."""
+@dataclass(frozen=True)
+class Evaluated:
+    """An expression that the supervisor itself evaluates, written out, where it stands.
+
+    `within` is the instance whose text it is, None: the robot's, and `transition` the one that it guards.
+    """
+
+    expression: ex.Expression
+    within: Instance | None
+    transition: robosc.Transition | None = None
+
+
+def guard_of(transition: robosc.Transition) -> ex.Expression | None:
+    """What must hold for a transition to be taken; None where nothing must."""
+    return transition.guard if isinstance(transition, robosc.GuardedTransition) else None
+
+
+def conditions(instances: Instances) -> Iterator[Evaluated]:
+    """Every guard and condition."""
     for instance in instances:
         for transition, _ in instance.transitions:
-            if isinstance(transition, robosc.TauTransition) and transition.guard is not None:
-                yield instances.expanded(transition.guard, instance), instance
+            guard = guard_of(transition)
+            if guard is not None:
+                yield Evaluated(instances.expanded(guard, instance), instance, transition)
     for condition, within in _stated(instances):
         if condition is not None:
-            yield instances.expanded(condition, within), within
+            yield Evaluated(instances.expanded(condition, within), within)
 
 
 def _stated(instances: Instances) -> Iterator[tuple[ex.Expression | None, Instance | None]]:
@@ -137,38 +173,32 @@ def accesses(expression: ex.Expression | None) -> Iterator[robosc.Access]:
     return (part for part in parts(expression) if isinstance(part, robosc.Access))
 
 
-def property_path(access: robosc.Access) -> tuple[robosc.ObjectProperty, ...] | None:
-    """The properties that an access to `value` follows; None where it reads an array or is not resolved."""
-    segments = list(access.segments)
-    if not all(isinstance(segment, robosc.PropertySegment) and segment.property is not None for segment in segments):
-        return None
-    return tuple(segment.property for segment in segments if isinstance(segment, robosc.PropertySegment))
+def read_data(
+    instances: Instances,
+    expression: ex.Expression | None,
+    within: Instance | None,
+    transition: robosc.Transition | None,
+    variable: InstanceVariable | None = None,
+) -> Iterator[Reading]:
+    """What a written out expression reads of the data of its transition's event.
 
-
-def read_type(assigned: Assigned, access: robosc.Access) -> robosc.DataType | None:
-    """The declared type of what an assignment reads of its event's data; None where that is not known."""
-    segments = list(access.segments)
-    if not segments:
-        transition = assigned.transition
-        if not isinstance(transition, robosc.ResultTransition) or transition.communicationType is None:
-            return None
-        event = event_of(transition.communicationType, transition.resultType)
-        carried = event if event is not None and not event.is_sent else None
-        return data_type(transition.communicationType.communicationType, carried)
-    last = segments[-1]
-    return last.property.type if isinstance(last, robosc.PropertySegment) and last.property else None
-
-
-def _read_data(instances: Instances, assigned: Assigned, result: ConeOfInfluence) -> None:
-    transition = assigned.transition
-    if not isinstance(transition, robosc.ResultTransition):
+    `variable` is what it is assigned to.
+    """
+    if expression is None or not isinstance(transition, robosc.ResultTransition):
         return
-    port = instances.port(transition.communicationType, assigned.instance)
+    port = instances.port(transition.communicationType, within)
     event = event_of(transition.communicationType, transition.resultType)
-    if port is None or event is None:
+    if port is None or event is None or event.is_sent:
         return
-    for access in accesses(assigned.value):
-        path = property_path(access)
-        if access.value and path is not None:
-            data = Data(port, event, path)
-            result.data.setdefault(data, Reason(access, assigned.instance, assigned.variable))
+    bounds = None if variable is None else _bounds(variable.type)
+    value = declared_type(data_type(port.communication, event))
+    for part, told in inputs_in(expression, port, event, bounds):
+        access = next(access for access in accesses(part) if access.value)
+        yield Reading(expression, part, told, Reason(access, within, variable), value)
+
+
+def _bounds(declared: robosc.DataType) -> tuple[int, int] | None:
+    """The range of an integer that has one."""
+    if not isinstance(declared, robosc.IntegerDataType) or declared.minimum is None or declared.maximum is None:
+        return None
+    return declared.minimum, declared.maximum

@@ -1,8 +1,8 @@
 """Which data of messages a node reads, and which headers it fills: one answer for all nodes, run and generated.
 
-Read is only what the transitions need that an event takes in the present state: what its reactions there assign. Where
-any of that can't be read, the event happens for no component. Inputs of the supervisor always can: no element of an
-array is one (rule `variable-type`, and what makes a rosgraph model valid).
+Read is only what the transitions need that are tried in the present state: guards up to the first that holds, and what
+is assigned there. Where any of that can't be read, the event happens for no component. An input of the supervisor that
+can't be read and that no transition needs has its first value.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, TypeAlias
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph
 from robosc.metamodel.reflection import tree
+from robosc.semantics.evaluation import Value, saturate
 from robosc.semantics.operators import operator_of
 
 if TYPE_CHECKING:
@@ -68,6 +69,16 @@ def reads_elements(expression: ex.Expression) -> bool:
 def _is_partial(part: ex.Located) -> bool:
     row = operator_of(part) if isinstance(part, ex.FunctionCall) else None
     return row is not None and row.is_partial
+
+
+def first_value(kind: ex.Type) -> Value:
+    """The value of an input before any data has come: `false`, the first literal, zero or the integer next to it."""
+    match kind:
+        case ex.EnumerationType():
+            return kind.enumeration.literals[0]
+        case ex.IntegerType():
+            return saturate(0, kind.minimum, kind.maximum)
+    return False
 
 
 def path_of(access: rosgraph.WireAccess) -> Path:

@@ -168,6 +168,12 @@ class SctPrinter(Printer):
 class RobotPrinter(SctPrinter):
     """Prints an expression of an sct model as the robot model does: states and variables with their component."""
 
+    def atom(self, expression: ex.Expression) -> str:
+        """What the node computes of data as the model writes it."""
+        if isinstance(expression, sct.InputReference) and expression.input.text is not None:
+            return f"({expression.input.text})"
+        return super().atom(expression)
+
     def owner(self, plant: sct.Plant) -> str:
         """The component."""
         return plant.origin or plant.name

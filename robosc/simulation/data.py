@@ -48,7 +48,8 @@ class EventData:
 
     Basic data is the value itself, an object has fields, an array is a list or an object from index to element; in the
     place of data that an enumeration is made of there may be the name of a literal. What is left out is as ROS leaves
-    it: 0, false, the literal of `otherwise`. Without a ROS graph data goes to inputs by their names.
+    it: 0, false, the literal of `otherwise`. What the node computes of data may stand there by its text, as in
+     `{"where": {"value.range < 0.5": true}}`. Without a ROS graph data goes to inputs by their names.
     """
 
     def __init__(self, engine: Engine, graph: rosgraph.RosGraph | None) -> None:
@@ -64,9 +65,10 @@ class EventData:
     def inputs(self, event: str, data: Mapping[str, Any]) -> dict[str, Value]:
         """Values of the event's inputs by their names. Raises DataError, KeyError for an unknown event."""
         declared = self._events[event]
-        unknown = sorted(set(data) - {"value"})
+        unknown = sorted(set(data) - {"value", "where"})
         if unknown:
             raise DataError(f'"{unknown[0]}" is no data of an event: write {{"value": ...}}')
+        computed = _computed(declared, data.get("where", {}))
         if data and not declared.inputs:
             return {}  # the node keeps it, or nobody does
         value = data.get("value", _ABSENT)
@@ -74,7 +76,8 @@ class EventData:
         for given in declared.inputs:
             domain = Domain(given.type)
             try:
-                found[given.name] = domain.shown(domain.internal(self._value(given, value)))
+                told = computed[given.text] if given.text in computed else self._value(given, value)
+                found[given.name] = domain.shown(domain.internal(told))
             except ValueError as error:
                 raise DataError(f"{_label(given)}: {error}") from None
         return found
@@ -84,17 +87,26 @@ class EventData:
         reception = self._receptions.get(event)
         if self._node is None or reception is None or "value" not in data:
             return None
-        fault = past_end(self._node.read_now(reception.event), data["value"])
-        return None if fault is None else Unreadable(str(fault), self._errors.get(event))
+        for reaction in self._node.reactions(reception.event):
+            guard, value = reaction.guard, data["value"]
+            fault = None if guard is None else past_end([guard], value)
+            if fault is None and (guard is None or self._node.value(guard, (_whole(value, guard), "value"))):
+                fault = past_end([*reaction.needs, *(assigned.value for assigned in reaction.assignments)], value)
+            if fault is not None:
+                return Unreadable(str(fault), self._errors.get(event))
+        return None
 
     def shaped(self, event: str, values: Mapping[str, Value]) -> dict[str, Any]:
         """Data with which the event's inputs have these values, by their names."""
-        paths = {self._path(given): values[given.name] for given in self._events[event].inputs}
+        inputs = self._events[event].inputs
+        where = {given.text: values[given.name] for given in inputs if given.text is not None}
+        paths = {self._path(given): values[given.name] for given in inputs if given.text is None}
+        shown: dict[str, Any] = {"where": where} if where else {}
         if not paths:
-            return {}
+            return shown
         if len(paths) == 1 and len(next(iter(paths))) < 2:
-            return {"value": next(iter(paths.values()))}
-        return {"value": nested(paths)}
+            return {"value": next(iter(paths.values())), **shown}
+        return {"value": nested(paths), **shown}
 
     def _path(self, given: sct.Input) -> tuple[str, ...]:
         """The fields on the way to an input in the data of its event."""
@@ -103,6 +115,10 @@ class EventData:
 
     def _value(self, given: sct.Input, data: Any) -> Value:
         assignment = self._assignments.get(given)
+        if given.text is not None:
+            if assignment is None or self._node is None or data is _ABSENT:
+                return _default(given.type)
+            return self._node.input(assignment, (_whole(data, assignment.value), "value"))  # type: ignore[no-any-return]
         found = _fields(data, _words(given)) if assignment is None else _reached(data, _access(assignment))
         source = None if assignment is None else assignment.value
         if self._node is None or not isinstance(source, rosgraph.ConversionCall):
@@ -188,6 +204,24 @@ def _basic(data: Any, kind: ex.Type | None, place: str) -> Any:
     if not isinstance(data, plain) or (isinstance(data, bool) and name in {"an integer", "a number"}):
         raise DataError(f"{place} is {json.dumps(data)}, expected {name}")
     return as_double(data) if isinstance(kind, ex.DoubleType) else data
+
+
+def _computed(event: sct.Event, where: Any) -> Mapping[str | None, Value]:
+    """What a script says of what the node computes of data, by the text of the model. Raises DataError."""
+    texts = [given.text for given in event.inputs if given.text is not None]
+    if not isinstance(where, dict) or not set(where) <= set(texts):
+        expected = f"the texts {', '.join(map(repr, texts))}" if texts else "no `where`"
+        raise DataError(f'"where" is {json.dumps(where)}, expected an object with {expected}')
+    return where
+
+
+def _whole(data: Any, read: ex.Expression) -> Any:
+    """The data with its fields: a lone value stands for the only field on the way to it."""
+    accesses = (part for _, part in tree(read) if isinstance(part, rosgraph.WireAccess) and part.quantifier is None)
+    access = next(accesses, None)
+    if access is None or isinstance(data, dict | list) or len(access.steps) != 1:
+        return data
+    return {_field(access.steps[0]): data}
 
 
 def _access(assignment: rosgraph.InputAssignment) -> rosgraph.WireAccess:

@@ -68,7 +68,7 @@ class EventRelation:
         self._edges = edges
         changed = [element for edges in self._edges for element in _changed(edges)]
         self.changed = tuple(element for element in changed if encoding.layout.domains[element].size > 1)
-        self.enabled_by = {edges[0].target.eContainer(): self._enabled(edges) for edges in self._edges}
+        self.enabled_by = {edges[0].target.eContainer(): self.taken(edges) for edges in self._edges}
         self.enabled = encoding.diagrams.all_of(self.enabled_by.values())
         self.asked = {requirement: encoding.permits(requirement) for requirement in requirements}
         self.requirement = encoding.diagrams.all_of(self.asked.values())
@@ -135,8 +135,7 @@ class EventRelation:
             return None
         domains = self._encoding.layout.domains
         diagrams = self._encoding.diagrams
-        inputs = diagrams.cube(level for parameter in self.event.inputs for level in domains[parameter].levels)
-        relation = and_exists(self.with_inputs(), condition, inputs)
+        relation = and_exists(self.with_inputs(), condition, self._inputs)
         present = [level for element in self.changed for level in domains[element].levels]
         following = [level for element in self.changed for level in domains[element].next_levels]
         return Step(
@@ -152,9 +151,19 @@ class EventRelation:
             else (),
         )
 
-    def _enabled(self, edges: Sequence[sct.Edge]) -> Diagram:
+    @property
+    def _inputs(self) -> Diagram:
+        """The variables of its inputs."""
+        domains = self._encoding.layout.domains
+        return self._encoding.diagrams.cube(
+            level for parameter in self.event.inputs for level in domains[parameter].levels
+        )
+
+    def taken(self, edges: Sequence[sct.Edge]) -> Diagram:
+        """Where one of these edges of a plant can be taken with some data."""
         encoding = self._encoding
-        return encoding.diagrams.any_of(encoding.source(edge) & encoding.holds(edge.guard) for edge in edges)
+        enabled = encoding.diagrams.any_of(encoding.source(edge) & encoding.holds(edge.guard) for edge in edges)
+        return enabled.exists(self._inputs) if any(edge.guard is not None for edge in edges) else enabled
 
     def _moves(self, edges: Sequence[sct.Edge]) -> Diagram:
         """One plant's part in the event."""

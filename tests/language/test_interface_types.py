@@ -214,7 +214,7 @@ def test_needed_integers_without_range(tmp_path: Path, interfaces: RosTypes) -> 
             incoming message go with type: none
             behaviour {
               variable n: integer(0..9)
-              on response from count do n := value.data
+              on response from count do n := if value.data > n then 9 else n
               initial marked state idle { }
             }
           }

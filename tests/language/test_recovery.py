@@ -100,7 +100,7 @@ FAULTS = [
     ("goto driving\n      }", "goto driving\n", "state", "the `{` in line 22 is not closed"),
     ("goto waiting\n      }", "goto waiting\n      } }", "}", "one too many"),
     ("on response from scan", "on respons from scan", "respons", "did you mean `response`?"),
-    ("from scan do", "from scan if true do", "if", "a transition with an event has no condition"),
+    ("from scan do", "from scan do near := true if true do", "if", "stands before `do` and `goto`"),
     ("goto driving", "goto", "", "expected a name"),
     ("response: boolean", "respnse: boolean", "respnse", "did you mean `response`?"),
     ("feedback: double", "", "links", "expected `feedback`"),

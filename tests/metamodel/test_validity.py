@@ -118,7 +118,8 @@ def _part_no_boolean(given: Any) -> None:
 
 def _input_in_guard(given: Any) -> None:
     p, _ = _plants(given)
-    p.locations[0].edges[0].guard = ex.Negation(operand=sct.InputReference(input=p.inputs[0]))
+    p.locations[0].edges[0].guard = sct.LocationReference(location=p.locations[0])
+    p.variables[1].initial = sct.InputReference(input=p.inputs[0])
 
 
 def _input_of_another_event(given: Any) -> None:
@@ -228,7 +229,7 @@ BROKEN: list[tuple[Callable[[Any], None], list[str]]] = [
     (_name_no_identifier, ["'name' is to be an identifier, which '2nd' is not"]),
     (_two_initial, ["plant 'p' has 2 initial locations; it starts in exactly one"]),
     (_none_initial, ["plant 'p' has no initial locations; it starts in exactly one"]),
-    (_second_edge, ["location 'one' has two edges for 'c'"]),
+    (_second_edge, ["location 'one' has two edges for 'c', one without guard"]),
     (_unused_event, ["no plant has an edge for the event 'u_error'"]),
     (_foreign_target, ["the target 'one' is another plant's location"]),
     (_foreign_update, ["the variable 'x' is another plant's"]),
@@ -237,7 +238,7 @@ BROKEN: list[tuple[Callable[[Any], None], list[str]]] = [
     (_guard_no_boolean, ["this is of integer, but boolean is wanted"]),
     (_condition_no_boolean, ["this is of integer, but boolean is wanted"]),
     (_part_no_boolean, ["this is of integer, but boolean is wanted"]),
-    (_input_in_guard, ["an input is read in updates only"]),
+    (_input_in_guard, ["an input is read in guards and updates of edges only", "an initial value is a literal"]),
     (_input_of_another_event, ["'c' does not carry the input 'i'"]),
     (_carried_from_elsewhere, ["the input 'i' is another plant's"]),
     (_unbounded, ["both bounds of an integer are given in an sct model"]),
@@ -386,11 +387,7 @@ GRAPHS: list[tuple[str, Any, str]] = [
         "x;",
         "'name' is to be an identifier, which 'x;' is not",
     ),
-    (
-        "subscriptions[0].receptions[0].inputs[0].value.steps",
-        [rosgraph.FieldStep(name="flags"), rosgraph.IndexStep(index=0)],
-        "an input is no element of an array, which need not be there",
-    ),
+    ("reactions[0].guard", ex.IntegerLiteral(value=1), "this is of integer, but boolean is wanted"),
     ("reactions[0].assignments[0].value.steps[1].index", -1, "an index counts from 0"),
     (
         "publishers[0].sendings[0].alternatives[0].fields[0].type",

@@ -11,7 +11,8 @@ from robosc.analysis.wording import in_words, listed, name, what_is, words
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 from robosc.semantics.edges import edges_from
-from robosc.semantics.printing import RobotPrinter
+from robosc.semantics.printing import RobotPrinter, disjunction
+from robosc.semantics.walks import copied
 from robosc.synthesis.decoding import pick, text, value
 from robosc.synthesis.encoding import referenced
 
@@ -88,18 +89,23 @@ class Obstacles:
     def _here(self, plant: sct.Plant) -> sct.Location:
         return plant.locations[self._codes[plant]]
 
-    def _edge(self, plant: sct.Plant) -> sct.Edge | None:
-        return next((edge for edge in edges_from(self._here(plant)) if edge.event is self._event), None)
+    def _edges(self, plant: sct.Plant) -> list[sct.Edge]:
+        return edges_from(self._here(plant), self._event)
+
+    def _guard(self, plant: sct.Plant) -> ex.Expression | None:
+        """What the plant's edges for the event ask for here, any of them; None where one asks for nothing."""
+        guards = [edge.guard for edge in self._edges(plant)]
+        return None if None in guards else disjunction(copied(guard) for guard in guards if guard is not None)
 
     def _plant(self, plant: sct.Plant) -> Note:
         here = self._here(plant)
-        edge = self._edge(plant)
-        if edge is not None and edge.guard is not None:
-            parts = tuple(dict.fromkeys(map(self._said, self._failing(edge.guard, wanted=True))))
-            asked = f"{self._transition(plant)} asks for `{self._print(edge.guard)}`"
+        guard = self._guard(plant)
+        if guard is not None:
+            parts = tuple(dict.fromkeys(map(self._said, self._failing(guard, wanted=True))))
+            asked = f"{self._transition(plant)} asks for `{self._print(guard)}`"
             if plant.kind == sct.PlantKind.data:
                 return Note(self._event, asked, parts)
-            return Note(edge, f"`{name(plant)}` is in `{here.name}`, where {asked}", parts)
+            return Note(self._edges(plant)[0], f"`{name(plant)}` is in `{here.name}`, where {asked}", parts)
         if plant.kind in _CALLS and here.name in _PHASES:
             return Note(plant, f"`{name(plant)}` is in `{here.name}`: it {_PHASES[here.name]}")
         others = [
@@ -162,7 +168,9 @@ class Obstacles:
         by = in_words(steps, self._system.model)
         found = []
         for plant in relation.enabled_by:
-            edge = next(edge for edge in edges_from(self._here(plant)) if edge.event is relation.event)
+            possible = edges_from(self._here(plant), relation.event)
+            reached = plant.locations[after[plant]]
+            edge = next((edge for edge in possible if edge.target is reached), possible[0])
             changed = [element for element in (plant, *plant.variables) if self._codes[element] != after[element]]
             found += [(element, _change(element, edge, self._here(plant), after, by)) for element in changed]
         return [note for element, note in found if element in self._in_the_way] or [note for _, note in found]
@@ -174,8 +182,7 @@ class Obstacles:
         relation = self._system.relations[self._event]
         for plant, where in relation.enabled_by.items():
             if not self._system.is_in(self._codes, where):
-                edge = self._edge(plant)
-                found.update([plant] if edge is None else referenced(edge.guard))
+                found.update(referenced(self._guard(plant)) if self._edges(plant) else [plant])
         for requirement, where in relation.asked.items():
             if not self._system.is_in(self._codes, where):
                 found.update(element for part, _ in self._parts(requirement) for element in referenced(part))

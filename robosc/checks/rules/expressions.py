@@ -134,16 +134,17 @@ def _provide(statement: rsc.ProvideStatement) -> Iterator[Finding]:
 
 
 def _transition(transition: rsc.Transition) -> Iterator[Finding]:
-    place = _SILENT
-    if isinstance(transition, rsc.TauTransition):
-        yield from _boolean(transition.guard, "a guard", _GUARD)
-    elif isinstance(transition, rsc.TimedTransition):
+    place = guarded = _SILENT
+    if isinstance(transition, rsc.ResultTransition):
+        without = f"the event `{transition.resultType}` carries no data to a component"
+        place = guarded = Place(value_type_in(transition), without)
+    if isinstance(transition, rsc.TimedTransition):
         place = _TIMED
         yield from _duration(transition.duration)
     elif sends_message(transition):
         place = Place(UNKNOWN)  # That nothing can be assigned there is the matter of `assignment-on-message-to-node`.
-    elif isinstance(transition, rsc.ResultTransition):
-        place = Place(value_type_in(transition), f"the event `{transition.resultType}` carries no data to a component")
+    if isinstance(transition, rsc.GuardedTransition):
+        yield from _boolean(transition.guard, "a guard", guarded)
     for assignment in transition.assignments:
         variable = assigned_variable(assignment)
         check = ExpressionCheck(place)

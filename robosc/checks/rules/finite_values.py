@@ -15,12 +15,13 @@ from robosc.checks.definitions import (
     variables,
 )
 from robosc.checks.rule import Finding, rule
-from robosc.checks.supervised import Fault, data_reads, function_faults, supervised_faults, table_faults
+from robosc.checks.supervised import Fault, function_faults, readings, supervised_faults, table_faults
 from robosc.metamodel import robosc as rsc
 from robosc.semantics.communication import sent_type
-from robosc.semantics.cone_of_influence import ConeOfInfluence, Reason, accesses, read_type
+from robosc.semantics.cone_of_influence import ConeOfInfluence, accesses
 from robosc.semantics.evaluation import evaluate
 from robosc.semantics.expansion import constant_value
+from robosc.semantics.inputs import Computed, Data, property_path
 from robosc.semantics.instances import MOST
 from robosc.semantics.printing import RoboscPrinter
 from robosc.semantics.typing import (
@@ -33,13 +34,13 @@ from robosc.semantics.typing import (
     access_types,
     declared_type,
     infer,
-    value_type,
 )
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from robosc.metamodel import expression as ex
+    from robosc.semantics.cone_of_influence import Reading
     from robosc.semantics.instances import Instances
 
 
@@ -73,21 +74,26 @@ def _without_domain(_: Instances, result: ConeOfInfluence) -> Iterator[Fault]:
                 " or an enum: its states are finitely many",
                 _enum_repair(str(found)),
             )
-    for assigned, access in data_reads(result):
-        types = access_types(access, value_type(access))
+    for reading in readings(result):
+        access = reading.reason.access
+        types = access_types(access, reading.value)
         is_array = any(isinstance(kind, ArrayType) for kind in types)
-        if is_array or types[-1] in {DOUBLE, STRING}:
-            assert assigned.variable is not None
+        if reading.told is None and (is_array or types[-1] in {DOUBLE, STRING}):
             kind = "array data" if is_array else f"a {types[-1]}"
             yield Fault(
                 access,
-                Reason(access, assigned.instance, assigned.variable),
-                f"`{assigned.variable.variable.name}`, which the supervisor needs, is computed from {kind},"
-                f" `{RoboscPrinter()(access)}`, expected booleans, integers with a range or enums",
+                reading.reason,
+                f"{_needed(reading)} is computed from {kind}, `{RoboscPrinter()(access)}`, and from what changes beside"
+                " it, expected data that is compared with literals, constants and other data only",
                 _enum_repair(
                     types[0].definition.name if isinstance(types[0], ObjectType) and is_array else str(types[-1])
                 ),
             )
+
+
+def _needed(reading: Reading) -> str:
+    variable = reading.reason.variable
+    return "this guard" if variable is None else f"`{variable.variable.name}`, which the supervisor needs,"
 
 
 def _enum_repair(base: str) -> str:
@@ -131,21 +137,30 @@ def _without_range(_: Instances, result: ConeOfInfluence) -> Iterator[Fault]:
                 " many",
                 f"write a range, such as `variable {owned.variable.name}: integer(0..100)`",
             )
-    for assigned, access in data_reads(result):
-        declared = read_type(assigned, access)
+    for reading in readings(result):
+        told = reading.told
+        if not isinstance(told, Computed) or told.type != INTEGER or told.bounds is not None:
+            continue
+        element: ex.Located = reading.part
+        hint = "compare it with a literal, or assign it as it is to a variable, whose range it takes"
+        path = property_path(reading.part) if isinstance(reading.part, rsc.Access) else None
+        declared = None if path is None else Data(told.port, told.event, path).type
         if _is_unbounded(declared):
-            assert assigned.variable is not None
             assert declared is not None
             field = declared.eContainer()
-            yield Fault(
-                field if isinstance(field, rsc.ObjectProperty) else declared,
-                Reason(access, assigned.instance, assigned.variable),
-                f"`{field.name}` carries an integer without range to the supervisor, which needs"
-                f" `{assigned.variable.variable.name}`, expected a range: its inputs have finitely many values",
+            element = field if isinstance(field, rsc.ObjectProperty) else declared
+            hint = (
                 "write a range, such as `integer(0..100)`: what lies outside becomes the nearest bound"
                 if not isinstance(field.eContainer().eContainer(), rsc.InterfaceTypeReference)
-                else f"ROS defines it: declare an object in its place, with a `{field.name}: integer(0..100)`",
+                else f"ROS defines it: declare an object in its place, with a `{field.name}: integer(0..100)`"
             )
+        yield Fault(
+            element,
+            reading.reason,
+            f"`{told.text}` is an integer without range, and {_needed(reading)} is computed from it"
+            " and others, expected a range: the supervisor's inputs have finitely many values",
+            hint,
+        )
 
 
 def _is_unbounded(declared: rsc.DataType | None) -> bool:

@@ -68,7 +68,10 @@ def _silences(transition: rsc.TimedTransition) -> Iterator[Finding]:
 
 @rule("nondeterminism")
 def nondeterminism(base: rsc.Base) -> Iterator[Finding]:
-    """A state reacts to an event in one way; the transitions that all states have are among its own."""
+    """A state reacts to an event in one way: of several transitions the first whose condition holds is taken.
+
+    Those that all states have are no alternatives to those of a state.
+    """
     yield from repeated_events(base)
     for component, behaviour in behaviours(base):
         automaton = behaviour.automaton
@@ -88,25 +91,43 @@ def _repeated(
     component: rsc.Component,
     reported: set[rsc.Transition],
 ) -> Iterator[Finding]:
-    """Each transition on an event that an earlier one is on, given in the order of the text, once."""
-    firsts: dict[_Event, tuple[rsc.Transition, rsc.State | None]] = {}
+    """Each transition that an earlier one leaves no case of its event to, given in the order of the text, once."""
+    firsts: dict[_Event, tuple[rsc.ResultTransition, rsc.State | None]] = {}
     for second, state in transitions:
         event = _event(second)
         if event is None:
             continue
-        first, other = firsts.setdefault(event, (second, state))
-        if first is not second and second not in reported:
-            reported.add(second)
-            where = state or other
-            place = f"state `{component.name}.{where.name}`" if where else f"every state of `{component.name}`"
-            yield Finding(
-                second,
-                f"{place} reacts to the {event[2]} of `{event[1].name}` already{on_line(first)}, expected one"
-                " transition for it",
-                "leave one of the two out, or join them: a second step can be a `transition if …` of the next state"
-                if state is other
-                else "leave one of the two out: a transition outside the states is one of every state",
-            )
+        assert isinstance(second, rsc.ResultTransition)
+        first, other = firsts.get(event, (second, state))
+        if first.guard is not None and state is other:
+            firsts[event] = second, state
+        else:
+            firsts.setdefault(event, (second, state))
+            if first is not second and second not in reported:
+                reported.add(second)
+                yield Finding(second, *_never_taken(component, event, (first, other), state))
+
+
+def _never_taken(
+    component: rsc.Component,
+    event: _Event,
+    first: tuple[rsc.ResultTransition, rsc.State | None],
+    state: rsc.State | None,
+) -> tuple[str, str]:
+    """What is wrong with a transition beside an earlier one, and how to mend it."""
+    taken, other = first
+    where = state or other
+    place = f"state `{component.name}.{where.name}`" if where else f"every state of `{component.name}`"
+    says = f"{place} reacts to the {event[2]} of `{event[1].name}` already{on_line(taken)}, "
+    if state is not other:
+        return (
+            f"{says}expected one transition for it",
+            "leave one of the two out: a transition outside the states is one of every state",
+        )
+    return (
+        f"{says}whatever holds, so that this transition is never taken",
+        "leave one of the two out, or give the earlier one a condition: `on … if … goto …`",
+    )
 
 
 def _event(transition: rsc.Transition) -> _Event | None:

@@ -34,7 +34,7 @@ CLAUSES: dict[str, tuple[set[str], set[str]]] = {
     "Message": _COMMUNICATION,
     "Service": _COMMUNICATION,
     "Action": _COMMUNICATION,
-    "ResultTransition": ({"do", "goto"}, set()),
+    "ResultTransition": ({"if", "do", "goto"}, set()),
     "TauTransition": ({"if", "do", "goto"}, set()),
     "TimedTransition": ({"without", "do", "goto"}, set()),
     "EnumTransformationRule": ({"->"}, set()),

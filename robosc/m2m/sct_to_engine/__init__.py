@@ -139,8 +139,8 @@ def _stays(edges: EdgeTable, event: sct.Event, plant: sct.Plant, lower: Lowering
     """Where an event would leave its plant in its location."""
     taken = edges[event].get(plant, {})
     if None in taken:
-        return lower.within(plant, [taken[None].target])
-    loops = [location for location, edge in taken.items() if edge.target is location]
+        return lower.within(plant, [edge.target for edge in taken[None]])
+    loops = [location for location, leaving in taken.items() if all(edge.target is location for edge in leaving)]
     return lower.within(plant, loops)
 
 
@@ -179,7 +179,7 @@ def _effect(effect: EffectTerms) -> engine.Effect:
             continue
         cases = [
             engine.Case(
-                condition=None if condition is None else build_expression(condition),
+                condition=None if condition is None else build_expression(condition, None, effect.copied),
                 assignments=assignments(values),
             )
             for condition, values in step.cases

@@ -14,8 +14,8 @@ from robosc.semantics.roles import Roles, event_name, plant_of, provide_numbers
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-#: The edges of one event in one plant by the location that they start from; by None the one that all locations have.
-Edges = dict[sct.Location | None, sct.Edge]
+#: The edges of one event in one plant by the location that they start from; by None those that all locations have.
+Edges = dict[sct.Location | None, list[sct.Edge]]
 #: The edges of each event in each plant that takes part in it, in the order of the plants.
 EdgeTable = dict[sct.Event, dict[sct.Plant, Edges]]
 
@@ -43,7 +43,11 @@ def collect_edges(model: sct.SupervisoryControlModel) -> EdgeTable:
     """The edges of each event."""
     table: EdgeTable = {event: {} for plant in model.plants for event in plant.events}
     for event, by_plant in edges_by_event(model.plants).items():
-        table[event] = {plant: {origin(edge): edge for edge in edges} for plant, edges in by_plant.items()}
+        for plant, edges in by_plant.items():
+            found: Edges = {}
+            for edge in edges:
+                found.setdefault(origin(edge), []).append(edge)
+            table[event][plant] = found
     return table
 
 
@@ -127,10 +131,11 @@ def _description(event: sct.Event, edges: Edges, number: int | None) -> str:
     sentence = _OF_KIND.get((event.kind, plant.kind)) or _SENTENCES[event.kind]
     steps = dict.fromkeys(
         f"{location.name} to {edge.target.name}"
-        for origin, edge in edges.items()
+        for origin, leaving in edges.items()
+        for edge in leaving
         for location in (plant.locations if origin is None else [origin])
     )
-    guard = next((edge.guard for edge in edges.values()), None)
+    guard = next((edge.guard for leaving in edges.values() for edge in leaving), None)
     data = f"with the data of `provide` {number}" + (f", if {RobotPrinter()(guard)}" if guard else "")
     return sentence.format(
         what=plant.origin or plant.name,

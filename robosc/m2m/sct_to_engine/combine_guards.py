@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 from robosc.metamodel import engine, sct
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from robosc.m2m.sct_to_engine.collect_events import Edges, EdgeTable
     from robosc.m2m.sct_to_engine.lower_expressions import Lowering
     from robosc.m2m.sct_to_engine.terms import Term
@@ -50,12 +52,35 @@ def combine_guards(
 def _possible(plant: sct.Plant, edges: Edges, lower: Lowering) -> Term:
     """That a plant has an edge for an event from where it is: locations with the same guard together."""
     if None in edges:
-        return lower(edges[None].guard)
+        return _one_of(edges[None], lower)
     by_guard: dict[Term, list[sct.Location | None]] = {}
-    for location, edge in edges.items():
-        by_guard.setdefault(lower(edge.guard), []).append(location)
+    for location, leaving in edges.items():
+        by_guard.setdefault(_one_of(leaving, lower), []).append(location)
     alternatives = [
         lower.terms.junction(engine.And, [lower.within(plant, locations), guard])
         for guard, locations in by_guard.items()
     ]
     return lower.terms.junction(engine.Or, alternatives)
+
+
+def _one_of(edges: Sequence[sct.Edge], lower: Lowering) -> Term:
+    """That a guard of these holds: of each what those before it leave open, so that none remains where all is covered.
+
+    Raises ValueError where it depends on the data of the event: that comes when the event is happening already.
+    """
+    terms = lower.terms
+    alternatives: dict[Term, None] = {}
+    denied: set[Term] = set()
+    for guard in (lower(edge.guard) for edge in edges):
+        parts = guard.operands if guard.operator is engine.And else (guard,)
+        left = terms.junction(engine.And, [part for part in parts if part not in denied])
+        found = left.operands if left.operator is engine.Or else (left,)
+        alternatives |= dict.fromkeys(found)
+        opposites = terms.complements(term for part in found for term in part.below())
+        denied |= {opposites[part] for part in found}
+    whole = terms.junction(engine.Or, alternatives)
+    if any(isinstance(read, engine.Input) for read in whole.reads()):
+        raise ValueError(
+            f"for some data of '{edges[0].event.name}' there is no edge in '{edges[0].target.eContainer().name}'"
+        )
+    return whole

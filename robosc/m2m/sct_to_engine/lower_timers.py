@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.m2m.sct_to_engine.build_expressions import build_expression
+from robosc.m2m.sct_to_engine.merge_effects import one_taken
 from robosc.metamodel import engine, sct
 from robosc.semantics.roles import plant_of
 
@@ -13,6 +14,7 @@ if TYPE_CHECKING:
 
     from robosc.m2m.sct_to_engine.collect_events import Edges, EdgeTable
     from robosc.m2m.sct_to_engine.lower_expressions import Lowering
+    from robosc.m2m.sct_to_engine.terms import Term
 
 
 def lower_timers(model: engine.EngineModel, edges: EdgeTable, lower: Lowering) -> None:
@@ -55,28 +57,38 @@ def _restarts(
 
     Where it is on no edge of the plant (`taken` is None), the plant stays where it is.
     """
-    ways: dict[sct.Location | None, tuple[sct.Location, sct.Edge | None]]
-    ways = {origin: (edge.target, edge) for origin, edge in taken.items()} if taken else _staying(plant)
-    cases: dict[tuple[bool, tuple[engine.Timer, ...]], list[sct.Location | None]] = {}
-    for origin, (target, edge) in ways.items():
-        here = timers.get(target, ())
-        entering = target is not origin or any(edge in timed.entries for timed, _ in here)
-        starts = tuple(made for timed, made in here if entering or event in timed.without)
-        leaving = entering and origin in timers
-        if leaving or starts:
-            cases.setdefault((leaving, starts), []).append(origin)
+    if taken is None:
+        return _staying(event, plant, timers, lower)
+    cases: dict[tuple[bool, tuple[engine.Timer, ...]], list[sct.Edge]] = {}
+    for location, leaving in taken.items():
+        for edge in leaving:
+            here = timers.get(edge.target, ())
+            entering = edge.target is not location or any(edge in timed.entries for timed, _ in here)
+            starts = tuple(made for timed, made in here if entering or event in timed.without)
+            left = entering and location in timers
+            if left or starts:
+                cases.setdefault((left, starts), []).append(edge)
     found = []
-    for (leaving, starts), origins in cases.items():
-        condition = lower.within(plant, origins, list(ways))
-        found.append(
-            engine.Restart(
-                condition=None if condition.constant == 1 else build_expression(condition),
-                left=plant if leaving else None,
-                starts=starts,
-            )
-        )
+    for (left, starts), edges in cases.items():
+        found.append(_restart(one_taken(plant, edges, taken, lower), plant if left else None, starts))
     return found
 
 
-def _staying(plant: sct.Plant) -> dict[sct.Location | None, tuple[sct.Location, sct.Edge | None]]:
-    return {location: (location, None) for location in plant.locations}
+def _staying(
+    event: sct.Event,
+    plant: sct.Plant,
+    timers: Mapping[sct.Location, Sequence[tuple[sct.Timer, engine.Timer]]],
+    lower: Lowering,
+) -> list[engine.Restart]:
+    """What an event starts anew in a plant that takes no part in it."""
+    cases: dict[tuple[engine.Timer, ...], list[sct.Location]] = {}
+    for location in plant.locations:
+        starts = tuple(made for timed, made in timers.get(location, ()) if event in timed.without)
+        if starts:
+            cases.setdefault(starts, []).append(location)
+    return [_restart(lower.within(plant, locations), None, starts) for starts, locations in cases.items()]
+
+
+def _restart(condition: Term, left: sct.Plant | None, starts: Sequence[engine.Timer]) -> engine.Restart:
+    holds = None if condition.constant == 1 else build_expression(condition)
+    return engine.Restart(condition=holds, left=left, starts=starts)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from robosc.metamodel import engine, sct
 from robosc.semantics.domains import Interval
+from robosc.semantics.edges import origin
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
@@ -34,8 +35,9 @@ class StepTerms:
         return {variable for _, values in self.cases for variable in values}
 
     def reads(self) -> set[engine.Declaration]:
-        """What the values depend on."""
-        return {read for _, values in self.cases for value in values.values() for read in value.reads()}
+        """What the values and the choice among the cases depend on."""
+        terms = [term for condition, values in self.cases for term in (condition, *values.values())]
+        return {read for term in terms if term is not None for read in term.reads()}
 
 
 @dataclass(frozen=True)
@@ -54,24 +56,24 @@ def merge_effects(edges: Mapping[sct.Plant, Edges], lower: Lowering) -> EffectTe
     """
     steps = _ordered([step for plant, taken in edges.items() for step in _updates(plant, taken, lower)])
     moves = [step for plant, taken in edges.items() for step in _moves(plant, taken, lower)]
-    return EffectTerms([*steps, *moves], _read_late(steps))
+    return EffectTerms([*steps, *moves], _read_late([*steps, *moves]))
 
 
 def _updates(plant: sct.Plant, edges: Edges, lower: Lowering) -> list[StepTerms]:
     """Updates that are the same on all edges, one by one; else by location."""
-    groups: dict[tuple[tuple[engine.StateVariable, Term], ...], list[sct.Location | None]] = {}
-    for location, edge in edges.items():
+    groups: dict[tuple[tuple[engine.StateVariable, Term], ...], list[sct.Edge]] = {}
+    for edge in _all(edges):
         values: Values = {}
         for update in edge.updates:
             variable = lower.variables[update.variable]
             value = lower.terms.saturation(lower(update.value), Interval(variable.minimum, variable.maximum))
             if value is not lower.terms.reference(variable):
                 values[variable] = value
-        groups.setdefault(tuple(values.items()), []).append(location)
+        groups.setdefault(tuple(values.items()), []).append(edge)
     if len(groups) == 1:
         return [StepTerms([(None, {variable: value})]) for values in groups for variable, value in values]
-    cases = [(locations, _in_order(dict(values))) for values, locations in groups.items()]
-    return _by_location(plant, cases, list(edges), lower)
+    cases = [(taken, _in_order(dict(values))) for values, taken in groups.items()]
+    return _by_edge(plant, cases, edges, lower)
 
 
 def _in_order(values: Values) -> Values:
@@ -84,29 +86,44 @@ def _moves(plant: sct.Plant, edges: Edges, lower: Lowering) -> list[StepTerms]:
     variable = lower.variables.get(plant)
     if variable is None:
         return []
-    targets: dict[sct.Location, list[sct.Location | None]] = {}
-    for location, edge in edges.items():
-        targets.setdefault(edge.target, []).append(location)
-    cases: list[tuple[list[sct.Location | None], Values]] = [
-        ([*locations], {} if locations == [target] else {variable: lower.terms.place(plant, target)})
-        for target, locations in targets.items()
+    targets: dict[sct.Location, list[sct.Edge]] = {}
+    for edge in _all(edges):
+        targets.setdefault(edge.target, []).append(edge)
+    cases: list[tuple[list[sct.Edge], Values]] = [
+        (taken, {} if {*map(origin, taken)} == {target} else {variable: lower.terms.place(plant, target)})
+        for target, taken in targets.items()
     ]
     if len(cases) == 1:
         return [StepTerms([(None, values)]) for _, values in cases if values]
-    return _by_location(plant, cases, list(edges), lower)
+    return _by_edge(plant, cases, edges, lower)
 
 
-def _by_location(
+def _all(edges: Edges) -> list[sct.Edge]:
+    return [edge for leaving in edges.values() for edge in leaving]
+
+
+def one_taken(plant: sct.Plant, chosen: Sequence[sct.Edge], edges: Edges, lower: Lowering) -> Term:
+    """That one of these edges of a plant is taken; where one is the only one of its location its guard holds."""
+    lone = [origin(edge) for edge in chosen if len(edges[origin(edge)]) == 1]
+    parts = [lower.within(plant, lone, list(edges))] if lone else []
+    for edge in chosen:
+        if len(edges[origin(edge)]) > 1:
+            here = lower.within(plant, [origin(edge)], list(edges))
+            parts.append(lower.terms.junction(engine.And, [here, lower(edge.guard)]))
+    return lower.terms.junction(engine.Or, parts)
+
+
+def _by_edge(
     plant: sct.Plant,
-    cases: Sequence[tuple[Sequence[sct.Location | None], Values]],
-    possible: Sequence[sct.Location | None],
+    cases: Sequence[tuple[Sequence[sct.Edge], Values]],
+    edges: Edges,
     lower: Lowering,
 ) -> list[StepTerms]:
     """A step with the cases that change something; the last needs no condition where all do."""
-    acting = [(locations, values) for locations, values in cases if values]
+    acting = [(chosen, values) for chosen, values in cases if values]
     others = len(acting) == len(cases)
     found: list[tuple[Term | None, Values]] = [
-        (lower.within(plant, locations, possible), values) for locations, values in acting
+        (one_taken(plant, chosen, edges, lower), values) for chosen, values in acting
     ]
     if others:
         found[-1] = None, acting[-1][1]
@@ -152,12 +169,17 @@ def _read_late(steps: Sequence[StepTerms]) -> list[engine.StateVariable]:
     late: dict[engine.StateVariable, None] = {}
     written: set[engine.StateVariable] = set()
     for step in steps:
-        for _, values in step.cases:
+        for condition, values in step.cases:
             here = set(written)
+            if condition is not None:
+                late |= _variables(condition, here)
             for variable, value in values.items():
-                late |= dict.fromkeys(
-                    read for read in value.reads() if isinstance(read, engine.StateVariable) and read in here
-                )
+                late |= _variables(value, here)
                 here.add(variable)
         written |= step.writes()
     return list(late)
+
+
+def _variables(term: Term, written: Collection[engine.StateVariable]) -> dict[engine.StateVariable, None]:
+    """Those of the variables that a term reads."""
+    return dict.fromkeys(read for read in term.reads() if isinstance(read, engine.StateVariable) and read in written)

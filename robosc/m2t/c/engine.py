@@ -227,6 +227,7 @@ class _Preparation:
             return [f"if ({self._printer(restart.condition)}) {{", *(f"    {line}" for line in done), "}"]
 
         restarts = [restart for event in self._model.events for restart in event.restarts]
+        in_restarts = [node for restart in restarts for _, node in tree(restart)]
         return {
             "now": ", uint32_t now" if timers else "",
             "timers": [
@@ -242,7 +243,8 @@ class _Preparation:
             "timeouts": len(self._model.events) - len(timers),
             "starting": any(timer.initial for timer in timers) or any(restart.starts for restart in restarts),
             "leaving": any(restart.left is not None for restart in restarts),
-            "restarts_read_state": any(restart.condition is not None for restart in restarts),
+            "restarts_read_state": any(isinstance(node, engine.VariableReference) for node in in_restarts),
+            "restarts_read_inputs": any(isinstance(node, engine.InputReference) for node in in_restarts),
             "restarts": _merged(
                 [
                     (

@@ -111,10 +111,10 @@ class LayerNode:
 
     def _missing(self, plant: sct.Plant, event: sct.Event) -> list[Reason]:
         """That a plant which takes part in the event can't, with its location."""
-        edges = {location: edge for location in plant.locations for edge in edges_from(location) if edge.event == event}
-        if not edges or (len(edges) == len(plant.locations) and not any(edge.guard for edge in edges.values())):
+        edges = [(location, edge) for location in plant.locations for edge in edges_from(location, event)]
+        if not edges or (len(edges) == len(plant.locations) and not any(edge.guard for _, edge in edges)):
             return []
-        possible = " || ".join(self._taken(location, edge) for location, edge in edges.items())
+        possible = " || ".join(self._taken(location, edge) for location, edge in edges)
         origin = plant.origin or plant.name
         if len(plant.locations) == 1:
             text = string_literal(f"{origin}.{plant.locations[0].name}")

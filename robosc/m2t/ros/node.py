@@ -12,7 +12,7 @@ from robosc.m2t.ros.expressions import CppPrinter
 from robosc.m2t.ros.names import CppNames, kept_for
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
-from robosc.semantics.messages import parts_with_headers, reads_elements
+from robosc.semantics.messages import first_value, parts_with_headers, reads_elements
 from robosc.semantics.naming import Names
 from robosc.semantics.operators import PRECEDENCE
 from robosc.semantics.roles import Roles
@@ -33,9 +33,10 @@ class Assignment:
 
 @dataclass(frozen=True)
 class Reaction:
-    """Assignments under a condition on the state before the event; None: always."""
+    """Assignments under a condition on the state before the event and its data; None: always. `needs` are only read."""
 
     condition: str | None
+    needs: list[str]
     assignments: list[Assignment]
 
 
@@ -297,10 +298,20 @@ class Node:
 
     def _input(self, assignment: rosgraph.InputAssignment) -> Assignment:
         kind = assignment.input.type
-        value = self._printer(assignment.value)
+        may_fail = reads_elements(assignment.value)
+        printer = CppPrinter(self._names, reader="element") if may_fail else self._printer
+        value = printer(assignment.value)
         if isinstance(kind, ex.IntegerType):
-            value = f"{self._printer.integer(assignment.value, kind)}.to<std::{type_name(kind)}>()"
+            value = f"{printer.integer(assignment.value, kind)}.to<std::{type_name(kind)}>()"
+        if may_fail:
+            value = f"read_or({self._first(kind)}, [&](ArrayReader& element) {{ return {value}; }})"
         return Assignment(f"supervisor_.inputs.{self._names.c.member(assignment.input)}", value)
+
+    def _first(self, kind: ex.Type) -> str:
+        value = first_value(kind)
+        if isinstance(value, ex.EnumerationLiteral):
+            return self._names.literal(value)
+        return f"std::{type_name(kind)}{{{value}}}" if isinstance(kind, ex.IntegerType) else str(value).lower()
 
     def _reactions(self, event: sct.Event) -> list[rosgraph.Reaction]:
         return [reaction for reaction in self._graph.reactions if reaction.event == event]
@@ -319,7 +330,9 @@ class Node:
             for assignment in assignments
             for part in parts(assignment.value)
         )
-        reads = any(reads_elements(assignment.value) for assignment in assignments)
+        guards = [reaction.guard for reaction in reactions if reaction.guard is not None]
+        values = [*guards, *(assignment.value for assignment in assignments)]
+        reads = any(map(reads_elements, values)) or any(reaction.needs for reaction in reactions)
         copy = ("next" if assignments else "") if reads else "old" if keeps_old else ""
         return EventHandler(
             self._names.c.enumerator(event),
@@ -333,11 +346,17 @@ class Node:
 
     def _merged(self, reactions: Sequence[rosgraph.Reaction], copy: str) -> list[Reaction]:
         """Reactions of one component that do the same become one."""
-        places: dict[tuple[sct.Plant, tuple[Assignment, ...]], list[sct.Location]] = {}
+        places: dict[tuple[sct.Plant, str | None, tuple[str, ...], tuple[Assignment, ...]], list[sct.Location]] = {}
         for reaction in reactions:
+            guard = None if reaction.guard is None else self._printer.tight(reaction.guard)
+            needs = tuple(map(self._printer, reaction.needs))
             assignments = tuple(self._assignment(assignment, copy) for assignment in reaction.assignments)
-            places.setdefault((reaction.locations[0].eContainer(), assignments), []).extend(reaction.locations)
-        return [Reaction(self._are_in(where), list(what)) for (_, what), where in places.items()]
+            key = reaction.locations[0].eContainer(), guard, needs, assignments
+            places.setdefault(key, []).extend(reaction.locations)
+        return [
+            Reaction(_both(self._are_in(where), guard), list(needs), list(assignments))
+            for (_, guard, needs, assignments), where in places.items()
+        ]
 
     def _are_in(self, locations: Sequence[sct.Location]) -> str | None:
         """That a plant is in one of these locations of its own; None where one always is."""
@@ -427,3 +446,10 @@ class Node:
 
     def _value(self, value: ex.Expression, kind: ex.Type) -> str:
         return self._printer.integer(value, kind) if isinstance(kind, ex.IntegerType) else self._printer(value)
+
+
+def _both(place: str | None, guard: str | None) -> str | None:
+    """That a plant is in a place and a guard holds, each None where it always is so."""
+    if place is None or guard is None:
+        return place or guard
+    return f"({place}) && {guard}" if "||" in place else f"{place} && {guard}"

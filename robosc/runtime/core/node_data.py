@@ -13,11 +13,10 @@ from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
 from robosc.ros_types.wire import INTEGER_RANGES
 from robosc.semantics.evaluation import Program, Value, as_double, saturate
+from robosc.semantics.messages import first_value
 from robosc.semantics.operators import UnreadableError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from robosc.engine import Engine
     from robosc.runtime.core.event_log import Json
     from robosc.runtime.core.port import ControllerPort, Message
@@ -84,27 +83,32 @@ class NodeData:
 
         Raises UnreadableError where one of them can't read what it needs: then the event must not happen.
         """
-        return Received(self._inputs(inputs, data), self._assigned(event, data))
+        variables = self._assigned(event, data)
+        return Received({given.input.name: self.input(given, data) for given in inputs}, variables)
 
-    def _inputs(self, inputs: Sequence[rosgraph.InputAssignment], data: Message) -> dict[str, Any]:
-        values = ((assigned.input.name, self.value(assigned.value, data)) for assigned in inputs)
-        return {name: value.name if isinstance(value, ex.EnumerationLiteral) else value for name, value in values}
+    def input(self, assigned: rosgraph.InputAssignment, data: Message) -> Any:
+        """The value of an input; its first one where it can't be read: no transition that is taken needs it then."""
+        try:
+            value = self.value(assigned.value, data)
+        except UnreadableError:
+            value = first_value(assigned.input.type)
+        return value.name if isinstance(value, ex.EnumerationLiteral) else value
 
     def _assigned(self, event: sct.Event, data: Message) -> dict[rosgraph.NodeVariable, Value]:
-        return {
-            assignment.variable: bounded(self.value(assignment.value, data), assignment.variable.type)
-            for assignment in self._assignments(event)
-        }
+        assigned: dict[rosgraph.NodeVariable, Value] = {}
+        for reaction in self.reactions(event):
+            if reaction.guard is None or self.value(reaction.guard, data):
+                for needed in reaction.needs:
+                    self.value(needed, data)
+                for assignment in reaction.assignments:
+                    assigned[assignment.variable] = bounded(
+                        self.value(assignment.value, data), assignment.variable.type
+                    )
+        return assigned
 
-    def _assignments(self, event: sct.Event) -> Iterator[rosgraph.NodeAssignment]:
-        """What the event assigns in the present state."""
-        for reaction in self._reactions.get(event, ()):
-            if any(map(self.is_in, reaction.locations)):
-                yield from reaction.assignments
-
-    def read_now(self, event: sct.Event) -> list[ex.Expression]:
-        """The values that the event gives to variables in the present state."""
-        return [assignment.value for assignment in self._assignments(event)]
+    def reactions(self, event: sct.Event) -> list[rosgraph.Reaction]:
+        """What may happen in the node with the event in the present state, where guards hold."""
+        return [reaction for reaction in self._reactions.get(event, ()) if any(map(self.is_in, reaction.locations))]
 
     def values_read(self, event: sct.Event) -> list[ex.Expression]:
         """All values that the event may give to variables."""

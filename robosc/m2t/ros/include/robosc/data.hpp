@@ -221,6 +221,14 @@ class ArrayReader {
   std::string fault_;
 };
 
+/// What `read` gives; `unread` where it can't be read.
+template <typename Value, typename Read>
+Value read_or(Value unread, Read read) {
+  ArrayReader reader;
+  const Value value = read(reader);
+  return reader.complete() ? value : unread;
+}
+
 }  // namespace v1
 }  // namespace robosc
 

@@ -1,0 +1,112 @@
+"""What the supervisor is told of the data of an event: finite data as it is, of other data what is computed of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, TypeAlias
+
+from robosc.metamodel import expression as ex
+from robosc.metamodel import robosc
+from robosc.semantics.communication import PortEvent, data_type
+from robosc.semantics.printing import RoboscPrinter
+from robosc.semantics.typing import BOOLEAN, INTEGER, EnumType, Types, declared_type
+from robosc.semantics.walks import fold, operands
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from robosc.semantics.instances import PortInstance
+    from robosc.semantics.typing import Type
+
+#: What an expression over the data of an event may read besides: it is the same in all states.
+_FIXED = (robosc.EnumValue, robosc.Constant, robosc.FormalParameter, robosc.ArrayElement)
+
+
+@dataclass(frozen=True)
+class Data:
+    """A part of what an event of a port carries: the properties on the way from the whole to it; none: the whole."""
+
+    port: PortInstance
+    event: PortEvent
+    path: tuple[robosc.ObjectProperty, ...]
+
+    @property
+    def type(self) -> robosc.DataType | None:
+        """Its declared type, the bounds of an integer known; None where that is not known."""
+        declared = self.path[-1].type if self.path else data_type(self.port.communication, self.event)
+        return None if declared is None else self.port.instance.data_type(declared)
+
+
+@dataclass(frozen=True)
+class Computed:
+    """What the node computes of data that has no finite domain, such as `value.range < 0.5`; equal texts are one.
+
+    `bounds` are those of an integer, where anything gives it some.
+    """
+
+    port: PortInstance
+    event: PortEvent
+    text: str
+    bounds: tuple[int, int] | None
+    expression: ex.Expression = field(compare=False)
+    type: Type = field(compare=False)
+
+
+Told: TypeAlias = "Data | Computed"
+
+
+def inputs_in(
+    expression: ex.Expression, port: PortInstance, event: PortEvent, bounds: tuple[int, int] | None = None
+) -> Iterator[tuple[ex.Expression, Told | None]]:
+    """The parts of a written out expression that become inputs, from left to right; None: the part can't be one.
+
+    `bounds` are those of the variable that the expression is assigned to.
+    """
+    types = Types(declared_type(data_type(port.communication, event)))
+    reads: dict[ex.Expression, tuple[bool, bool]] = {}
+    fold(lambda part, inside: _reads(part, inside, port, event), expression, memo=reads)
+    pending = [(expression, bounds)]
+    while pending:
+        part, limits = pending.pop()
+        fixed, beyond = reads[part]
+        # A condition and its negation are one input.
+        kind = types(part) if fixed and beyond and not isinstance(part, ex.Negation) else None
+        if kind in {BOOLEAN, INTEGER} or isinstance(kind, EnumType):
+            yield part, Computed(port, event, RoboscPrinter()(part), limits if kind == INTEGER else None, part, kind)
+        elif isinstance(part, robosc.Access) and part.value:
+            yield part, None if beyond else Data(port, event, property_path(part) or ())
+        else:
+            # The branches of a conditional are assigned where it is.
+            inside = operands(part)
+            kept = [None, limits, limits] if isinstance(part, ex.Conditional) else [None] * len(inside)
+            pending += reversed(list(zip(inside, kept, strict=True)))
+
+
+def _reads(
+    part: ex.Expression, inside: Sequence[tuple[bool, bool]], port: PortInstance, event: PortEvent
+) -> tuple[bool, bool]:
+    """Whether an expression reads data and nothing that changes, and whether it reads data without finite domain."""
+    if isinstance(part, robosc.Access):
+        # Inside are the indices.
+        fixed = all(index for index, _ in inside)
+        if not part.value:
+            return fixed and isinstance(part.item, _FIXED), False
+        path = property_path(part)
+        return fixed, path is None or not _is_finite(Data(port, event, path).type)
+    return all(fixed for fixed, _ in inside), any(beyond for _, beyond in inside)
+
+
+def _is_finite(declared: robosc.DataType | None) -> bool:
+    """Whether data of the type is an input itself: of what is not known, too, as that is reported elsewhere."""
+    if isinstance(declared, robosc.IntegerDataType):
+        return declared.minimum is not None and declared.maximum is not None
+    found = declared_type(declared)
+    return found == BOOLEAN or isinstance(found, EnumType)
+
+
+def property_path(access: robosc.Access) -> tuple[robosc.ObjectProperty, ...] | None:
+    """The properties that an access to `value` follows; None where it reads an array or is not resolved."""
+    segments = list(access.segments)
+    if not all(isinstance(segment, robosc.PropertySegment) and segment.property is not None for segment in segments):
+        return None
+    return tuple(segment.property for segment in segments if isinstance(segment, robosc.PropertySegment))

@@ -1,0 +1,39 @@
+"""Robots of the language's second edition, from their text to what the supervisor lets happen."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import robosc
+from robosc.diagnostics import ModelError, Severity
+from robosc.engine import Engine
+
+if TYPE_CHECKING:
+    from robosc.metamodel import sct
+
+
+def errors(text: str) -> list[tuple[str, int]]:
+    """The errors in a robot's text: rule and line, in order."""
+    try:
+        found = robosc.check(robosc.load(text=text))
+    except ModelError as error:
+        found = list(error.diagnostics)
+    return [(finding.rule, finding.span.line) for finding in found if finding.severity is Severity.ERROR]
+
+
+def supervised(text: str) -> sct.SupervisoryControlModel:
+    """The sct model of a robot without errors, with its supervisor."""
+    assert errors(text) == []
+    model = robosc.to_sct(robosc.load(text=text))
+    robosc.synthesize(model)
+    return model
+
+
+def running(text: str) -> Engine:
+    """A robot without errors in its initial state."""
+    return Engine(supervised(text))
+
+
+def requirements(text: str) -> list[str | None]:
+    """What its requirements say, as people read it."""
+    return [requirement.text for requirement in supervised(text).requirements]
