@@ -25,6 +25,8 @@ _CALLS = (sct.PlantKind.service, sct.PlantKind.action)
 #: What the counterexamples of all guards may cost: the way to them, in nodes looked at, and the steps of all traces.
 _EFFORT = 1_000_000
 _STEPS = 400
+#: What it may cost to count the states in which requirements matter, in nodes looked at.
+_WEIGHING = 20_000_000
 _FOLLOWS_THE_ROBOT = (sct.EventKind.tau, sct.EventKind.reset, sct.EventKind.cancel)
 
 
@@ -127,6 +129,18 @@ class UnreachableState:
 
 
 @dataclass(frozen=True)
+class Weight:
+    """A requirement of the text, as the requirements of the model that it became, and in how many states it matters.
+
+    Where it restricts what the controller does, these are the controlled states in which the plants allow what it
+    forbids. Else they are the states that it forbids, of those that can be reached under what restricts the controller.
+    """
+
+    requirements: tuple[sct.StatedRequirement, ...]
+    states: int
+
+
+@dataclass(frozen=True)
 class Observations:
     """All of them, each kind in the order of the model. `unrestricted_calls` are triggers of services and actions.
 
@@ -165,6 +179,22 @@ class Observer:
             tuple(self._unreachable_states()),
             dict(self._affordable_counterexamples()),
         )
+
+    def weights(self) -> Iterator[Weight]:
+        """In how many states each requirement matters, in the order of the model; nothing where that costs much."""
+        stated = self._system.stated()
+        if len(stated) * self._system.found.rounds[0].node_count() > _WEIGHING:
+            return
+        for requirements in stated:
+            states = self._system.diagrams.any_of(map(self._matters, requirements))
+            yield Weight(requirements, self._system.encoding.count(states))
+
+    def _matters(self, requirement: sct.StatedRequirement) -> Diagram:
+        if requirement in self._system.violations:
+            return self._system.found.rounds[0] & self._system.violations[requirement]
+        assert isinstance(requirement, sct.Requirement)
+        relation = self._system.relations[requirement.event]
+        return self._system.controlled & relation.enabled & ~relation.asked[requirement]
 
     def _never_enabled(self) -> Iterator[NeverEnabled]:
         controlled, uncontrolled = self._system.controlled, self._system.uncontrolled

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from robosc.analysis.blocking import Reason, reason_of_emptiness
 from robosc.analysis.findings import findings_of
-from robosc.analysis.observations import Observations, Observer
+from robosc.analysis.observations import Observations, Observer, Weight
 from robosc.analysis.system import SynthesizedSystem
 from robosc.analysis.wording import blocking, counterexample_in_words, forbid, in_words
 from robosc.diagnostics import Diagnostic, ModelError, Severity, has_errors
@@ -20,10 +20,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Diagnosis(Synthesis):
-    """The result of synthesis, with `observations` of the supervisor, or with the `reason` why it is empty."""
+    """The result of synthesis, with `observations` of the supervisor, or with the `reason` why it is empty.
+
+    `weights` say in how many states each requirement matters, where that was asked for and does not cost much.
+    """
 
     observations: Observations | None = None
     reason: Reason | None = None
+    weights: tuple[Weight, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -54,9 +58,13 @@ class EmptySupervisorError(ModelError):
 
 
 def diagnose(
-    model: sct.SupervisoryControlModel, *, memory: int = MEMORY, statistics: Statistics | None = None
+    model: sct.SupervisoryControlModel,
+    *,
+    memory: int = MEMORY,
+    statistics: Statistics | None = None,
+    weigh: bool = False,
 ) -> Diagnosis:
-    """Synthesizes the supervisor of a model, which stays as it is, and observes it.
+    """Synthesizes the supervisor of a model, which stays as it is, and observes it; `weigh` asks for the weights.
 
     `memory`, `statistics` and errors are those of `robosc.synthesis.synthesize`.
     """
@@ -68,22 +76,28 @@ def diagnose(
             system.uncontrolled = solution.uncontrolled
             if solution.synthesis.supervisor is None:
                 return Diagnosis(**found, reason=reason_of_emptiness(system))
-            return Diagnosis(**found, observations=Observer(system, solution.permissions).observations())
+            observer = Observer(system, solution.permissions)
+            weights = tuple(observer.weights()) if weigh else ()
+            return Diagnosis(**found, observations=observer.observations(), weights=weights)
 
     return solve(model, look, memory=memory, statistics=statistics)
 
 
 def supervise(
-    model: sct.SupervisoryControlModel, *, memory: int = MEMORY, statistics: Statistics | None = None
+    model: sct.SupervisoryControlModel,
+    *,
+    memory: int = MEMORY,
+    statistics: Statistics | None = None,
+    weigh: bool = False,
 ) -> Supervision:
     """Synthesizes the supervisor of a model, and makes it the model's own unless the findings have an error.
 
     Its guards say why synthesis added something, where that is told at reasonable cost.
 
-    `memory` and `statistics` are those of `robosc.synthesis.synthesize`. Raises EmptySupervisorError where there is no
-    supervisor, ModelError and MemoryError as it does.
+    `memory` and `statistics` are those of `robosc.synthesis.synthesize`, `weigh` is that of `diagnose`. Raises
+    EmptySupervisorError where there is no supervisor, ModelError and MemoryError as `synthesize` does.
     """
-    synthesis = diagnose(model, memory=memory, statistics=statistics)
+    synthesis = diagnose(model, memory=memory, statistics=statistics, weigh=weigh)
     if synthesis.observations is None:
         raise EmptySupervisorError(model, synthesis)
     found = findings_of(model, synthesis.observations)

@@ -195,6 +195,18 @@ class SynthesizedSystem(SupervisedSystem):
         step = next((step for relation, step in self.moves if relation.event is event), None)
         return enabled & step.preimage(self.controlled) if event.controllable and step is not None else enabled
 
+    def stated(self, first: Iterable[sct.StatedRequirement] = ()) -> list[tuple[sct.StatedRequirement, ...]]:
+        """The requirements by the place in the text that they come from, those of `first` before the others.
+
+        Those are not among them that say when an action is cancelled.
+        """
+        asked = (requirement for requirement in self.model.requirements if self.start_of(requirement.event) is None)
+        own: list[sct.StatedRequirement] = [*asked, *self.model.invariants]
+        by_place: dict[object, list[sct.StatedRequirement]] = {}
+        for requirement in dict.fromkeys([*(requirement for requirement in first if requirement in own), *own]):
+            by_place.setdefault(requirement.source or requirement, []).append(requirement)
+        return [tuple(requirements) for requirements in by_place.values()]
+
     def start_of(self, event: sct.Event) -> sct.Event | None:
         """The start of the action whose requirements say when `event` cancels it; None for any other event.
 

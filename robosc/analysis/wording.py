@@ -90,9 +90,10 @@ def change(event: sct.Event) -> str:
 
 def called(requirements: Sequence[sct.StatedRequirement]) -> str:
     """Requirements, each in its own words and with its line: "`requirement move needs Lidar.free` (line 12)"."""
-    named = [_called(requirement) for requirement in requirements[:_NAMED]]
-    if len(requirements) > _NAMED:
-        named.append(f"{len(requirements) - _NAMED} more")
+    told = list(dict.fromkeys(map(_called, requirements)))
+    named = told[:_NAMED]
+    if len(told) > _NAMED:
+        named.append(f"{len(told) - _NAMED} more")
     return listed(named)
 
 
@@ -118,7 +119,7 @@ def violates(named: str, requirements: Sequence[sct.StatedRequirement]) -> str:
 
 
 def _forbid(requirements: Sequence[sct.StatedRequirement]) -> str:
-    return "forbids" if len(requirements) == 1 else "forbid"
+    return "forbids" if len(set(map(_called, requirements))) == 1 else "forbid"
 
 
 def blocking(reason: Reason) -> str:

@@ -9,13 +9,15 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from robosc.analysis.supervise import EmptySupervisorError, supervise
-from robosc.analysis.wording import change
+from robosc.analysis.system import counted
+from robosc.analysis.wording import called, change
 from robosc.cli import put, say
 from robosc.cli.options import Paths, memory, model, paths
 from robosc.cli.progress import synthesizing
 from robosc.cli.reading import read_models
 from robosc.cli.report import Report
 from robosc.metamodel import sct
+from robosc.metamodel.places import place
 from robosc.semantics.printing import SctPrinter, conjunction
 from robosc.semantics.roles import SILENT, event_name
 from robosc.semantics.walks import copied
@@ -24,6 +26,8 @@ if sys.platform != "win32":
     import resource
 
 if TYPE_CHECKING:
+    from robosc.analysis.observations import Weight
+    from robosc.analysis.supervise import Diagnosis
     from robosc.synthesis import Statistics, Synthesis
 
 
@@ -37,8 +41,9 @@ def command(model: str, as_json: bool, megabytes: int, paths: Paths) -> None:
 
     MODEL is a .rscd file with a robot, or an .xmi file that `transform --to xmi` wrote. A guard says where the
     supervisor allows an event, beyond what the robot itself forbids; what no requirement asks for and synthesis had to
-    add is shown apart. --json lists all events, those for the data to send and those from the robot, too, and tells
-    what synthesis cost.
+    add is shown apart. Of each requirement it is said in how many states it matters: where it forbids what the robot
+    could do; of `never` and `always`, how many states they forbid. --json lists all events, those for the data to send
+    and those from the robot, too, and tells what synthesis cost.
 
     \b
     Examples:
@@ -51,7 +56,7 @@ def command(model: str, as_json: bool, megabytes: int, paths: Paths) -> None:
         plants = read_models(model, paths, report).sct
         try:
             with synthesizing() as statistics:
-                supervision = supervise(plants, memory=megabytes << 20, statistics=statistics)
+                supervision = supervise(plants, memory=megabytes << 20, statistics=statistics, weigh=True)
         except EmptySupervisorError as error:
             if as_json:
                 _show_json(plants, error.synthesis)
@@ -61,7 +66,7 @@ def command(model: str, as_json: bool, megabytes: int, paths: Paths) -> None:
         show(plants, supervision.synthesis)
 
 
-def _show_json(model: sct.SupervisoryControlModel, synthesis: Synthesis) -> None:
+def _show_json(model: sct.SupervisoryControlModel, synthesis: Diagnosis) -> None:
     guards = {guard.event: guard for guard in synthesis.supervisor.guards} if synthesis.supervisor else {}
     events = [event for plant in model.plants for event in plant.events] if synthesis.supervisor else []
     answer = {
@@ -69,12 +74,28 @@ def _show_json(model: sct.SupervisoryControlModel, synthesis: Synthesis) -> None
         "uncontrolled_states": synthesis.uncontrolled_states,
         "controlled_states": synthesis.controlled_states,
         "empty": synthesis.supervisor is None,
+        "requirements": [_weight(weight) for weight in synthesis.weights],
         "events": [_event(event, guards.get(event), synthesis) for event in events],
         "seconds": round(synthesis.seconds, 3),
         "bdd_nodes": synthesis.bdd_nodes,
         **_cost(synthesis.statistics),
     }
     put(json.dumps(answer, indent=2))
+
+
+def _weight(weight: Weight) -> dict[str, Any]:
+    """A requirement of the text, and in how many states it matters."""
+    first = weight.requirements[0]
+    file, span = place(first)
+    texts = list(dict.fromkeys(one.text for one in weight.requirements))
+    return {
+        "name": first.name,
+        "texts": texts,
+        "file": file,
+        "line": span.line,
+        "column": span.column,
+        "states": weight.states,
+    }
 
 
 def _cost(statistics: Statistics) -> dict[str, Any]:
@@ -111,7 +132,7 @@ def _event(event: sct.Event, guard: sct.EventGuard | None, synthesis: Synthesis)
     }
 
 
-def _show(model: sct.SupervisoryControlModel, synthesis: Synthesis) -> None:
+def _show(model: sct.SupervisoryControlModel, synthesis: Diagnosis) -> None:
     """What tells something: the choice among data to send restricts nothing that the robot does."""
     assert synthesis.supervisor is not None
     states = f"{synthesis.controlled_states} states, of {synthesis.uncontrolled_states} without requirements"
@@ -126,3 +147,9 @@ def _show(model: sct.SupervisoryControlModel, synthesis: Synthesis) -> None:
             say(f"    guard: {event['guard']}")
         if event["added_by_synthesis"]:
             say(f"    added by synthesis: {event['added_by_synthesis']}")
+    for weight in synthesis.weights:
+        say(f"\n{called(weight.requirements)}")
+        count = counted(weight.states, "state")
+        invariant = isinstance(weight.requirements[0], sct.StateInvariant)
+        matters = f"forbids {count}" if invariant else f"forbids something in {count}"
+        say(f"    {matters if weight.states else 'matters in no state'}")

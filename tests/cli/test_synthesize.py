@@ -29,6 +29,16 @@ def test_as_json(run: Run, door: Path) -> None:
         "empty": False,
         "rounds": 1,
         "attempts": 1,
+        "requirements": [
+            {
+                "name": None,
+                "texts": ["requirement open needs Leaf.closed"],
+                "file": str(door),
+                "line": 17,
+                "column": 3,
+                "states": 0,
+            }
+        ],
         "events": [
             {
                 "name": "message_open.c_trigger",
@@ -163,6 +173,8 @@ def test_as_text(run: Run, tmp_path: Path) -> None:
         "\nmessage_lock.c_trigger\n"
         "    guard: component_Leaf.closed\n"
         "    added by synthesis: component_Leaf.closed\n"
+        "\n`requirement close needs Lock.free` (line 29)\n"
+        "    matters in no state\n"
     )
 
 
@@ -199,6 +211,8 @@ def test_the_text_tells_what_the_robot_does(run: Run, tmp_path: Path) -> None:
         "    guard: true\n"
         "\nSensor changes by itself: night to day\n"
         "    guard: true\n"
+        "\n`requirement light needs Sensor.night` (line 16)\n"
+        "    forbids something in 4 states\n"
     )
     names = [event["name"] for event in json.loads(run("synthesize", file, "--json").stdout)["events"]]
     assert {"data_light.c_none", "component_Sensor.c_tau1"} <= {*names}

@@ -250,7 +250,7 @@ def loosenings(
 
     None where it does not even help to leave out all of them.
     """
-    texts = requirement_texts(system, first)
+    texts = system.stated(first)
     if not helps(system.without(frozenset(requirement for text in texts for requirement in text))):
         return None
     found = []
@@ -259,15 +259,3 @@ def loosenings(
         if helps(other):
             found.append(Loosening(text, system.encoding.count(other.controlled)))
     return tuple(found)
-
-
-def requirement_texts(
-    system: SynthesizedSystem, first: Iterable[sct.StatedRequirement] = ()
-) -> list[tuple[sct.StatedRequirement, ...]]:
-    """The requirements by the place in the text that they come from; not those that say when an action is cancelled."""
-    asked = (requirement for requirement in system.model.requirements if system.start_of(requirement.event) is None)
-    own: list[sct.StatedRequirement] = [*asked, *system.model.invariants]
-    by_place: dict[object, list[sct.StatedRequirement]] = {}
-    for requirement in dict.fromkeys([*(requirement for requirement in first if requirement in own), *own]):
-        by_place.setdefault(requirement.source or requirement, []).append(requirement)
-    return [tuple(requirements) for requirements in by_place.values()]
