@@ -13,7 +13,7 @@ from robosc.semantics.durations import timer_text
 from robosc.semantics.edges import edges_from
 from robosc.semantics.instances import Instances
 from robosc.semantics.naming import written
-from robosc.semantics.printing import Printed, RoboscPrinter, SctPrinter
+from robosc.semantics.printing import RoboscPrinter, SctPrinter
 from robosc.semantics.roles import event_name, plant_of
 
 if TYPE_CHECKING:
@@ -133,14 +133,10 @@ class _Component(RoboscPrinter):
         others = sum(other.communication.name == port.communication.name for other in self.instances.ports())
         return name if port.instance is self.instance or others == 1 else f"{written(port.instance.name)}.{name}"
 
-    def write(self, expression: ex.Expression, given: Sequence[Printed]) -> Printed:
-        """A name of the component itself without the component."""
-        made = super().write(expression, given)
-        if isinstance(expression, robosc.Access) and expression.component is not None:
-            owner = self.instances.instance(expression.component, self.instance)
-            if owner is self.instance:
-                return made._replace(text=made.text.removeprefix(f"{written(expression.component.name)}."))
-        return made
+    def owner(self, component: robosc.Component) -> str:
+        """A name of the component itself stands without the component."""
+        own = self.instances.instance(component, self.instance) is self.instance
+        return "" if own else super().owner(component)
 
 
 class _Plant(SctPrinter):

@@ -13,7 +13,7 @@ from robosc.semantics.cone_of_influence import accesses, read_data
 from robosc.semantics.evaluation import Value, evaluate, literal
 from robosc.semantics.naming import Names
 from robosc.semantics.operators import COMPARISONS, FUNCTIONS, Rule, operator_of
-from robosc.semantics.typing import DOUBLE, Types
+from robosc.semantics.typing import DOUBLE, ArrayType, ObjectType, Types, declared_type
 from robosc.semantics.walks import copied, fold, operands, with_operands
 
 if TYPE_CHECKING:
@@ -161,17 +161,20 @@ class NodeExpressions(_Expressions):
                 array, declaring = reached[element.eContainer().array]
                 assert isinstance(array, robosc.Array)
                 made, kind = self._wire(array.type, declaring, (), original, indices)
-                start = made.argument if isinstance(made, rosgraph.ConversionCall) else made
-                assert isinstance(start, rosgraph.WireAccess)
                 if element not in quantifiers:
                     quantifiers[element] = rosgraph.ArrayQuantifier(name=names.fresh(element.name))
-                start.quantifier = quantifiers[element]
+                _start(made).quantifier = quantifiers[element]
             elif original.value:
                 assert data is not None
                 declaring = data.within
                 made, kind = self._wire(data.type, declaring, data.fields, original, indices)
             else:
-                return self._reference(original, within)
+                owned = self._trace.instances.variable(original, within)
+                if owned is None or not isinstance(declared_type(owned.type), ArrayType | ObjectType):
+                    return self._reference(original, within)
+                declaring = owned.instance
+                made, kind = self._wire(owned.type, declaring, (), original, indices)
+                _start(made).variable = self._variables[owned]
             reached[original] = kind, declaring
             return made
 
@@ -226,6 +229,13 @@ def _by_cases(function: str, operands: Sequence[ex.Expression]) -> ex.Expression
     compared = ex.LessThan if function == "min" else ex.GreaterThan
     below = compared(left=copied(second), right=copied(first))
     return ex.Conditional(condition=below, then=second, otherwise=first)
+
+
+def _start(read: ex.Expression) -> rosgraph.WireAccess:
+    """What reads the data: itself, or what a conversion takes."""
+    access = read.argument if isinstance(read, rosgraph.ConversionCall) else read
+    assert isinstance(access, rosgraph.WireAccess)
+    return access
 
 
 def _table(comparison: ex.Expression, original: ex.Expression) -> ex.Expression:

@@ -13,9 +13,10 @@ from robosc.semantics.communication import data_type, event_of, events
 from robosc.semantics.cone_of_influence import guard_of
 from robosc.semantics.inputs import Data
 from robosc.semantics.instances import bound_arguments
-from robosc.semantics.messages import reads_elements
+from robosc.semantics.messages import EACH, holds_objects, is_structured, origins, reads_elements
 from robosc.semantics.naming import Names
 from robosc.semantics.printing import RoboscPrinter, conjunction
+from robosc.semantics.typing import ObjectType, declared_type
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -82,6 +83,7 @@ class _Transformation:
                 self.client(port)
         for instance in self.instances:
             self.reactions(instance)
+        self.types_of_kept_data()
         return self.graph
 
     # Data that the node keeps
@@ -90,10 +92,11 @@ class _Transformation:
         variable = rosgraph.NodeVariable(
             name=owned.variable.name,
             component=owned.instance.name,
-            type=self.declarations.type(owned.type),
-            initial=self.declarations.initial(owned),
+            type=self.node_type(owned.type),
             source=owned.variable.source,
         )
+        if not is_structured(variable.type):
+            variable.initial = self.declarations.initial(owned)
         self.variables[owned] = variable
         self.graph.variables.append(variable)
 
@@ -160,7 +163,8 @@ class _Transformation:
         for statement in self.instances.provided(port):
             given = statement.element
             alternative = rosgraph.ProvidedData(location=self.trace.provided[statement], source=given.source)
-            lone = () if isinstance(given.data, robosc.ObjectValue) else (self.field(port, event),)
+            is_object = isinstance(declared_type(port.instance.data_type(sent)), ObjectType)
+            lone = () if is_object else (self.field(port, event),)
             for field in self.fields(given.data, statement.within, lone, port.instance.data_type(sent)):
                 alternative.fields.append(field)
             sending.alternatives.append(alternative)
@@ -184,7 +188,7 @@ class _Transformation:
         return [
             rosgraph.FieldAssignment(
                 path=list(path),
-                type=self.declarations.type(declared),
+                type=self.node_type(declared),
                 value=self.converted(data, within, declared),
                 source=data.source,
             )
@@ -249,6 +253,12 @@ class _Transformation:
             call = rosgraph.ConversionCall(conversion=self.conversion(enum, arguments), argument=argument)
             return call, reached
         return rosgraph.WireAccess(steps=steps, type=self.wire_type(reached)), reached
+
+    def node_type(self, kind: robosc.DataType) -> ex.Type:
+        """The type of what the node keeps or sends."""
+        if isinstance(declared_type(kind), ObjectType):
+            return rosgraph.ObjectType()
+        return self.wire_type(kind) or self.declarations.type(kind)
 
     def wire_type(self, kind: robosc.DataType) -> ex.Type | None:
         """The type of a basic value or an array; None of an object."""
@@ -323,6 +333,13 @@ class _Transformation:
         guards = [self.expressions(guard, instance, data) for guard in found]
         own = [] if transition.guard is None else [guards.pop()]
         return conjunction([*(ex.Negation(operand=guard) for guard in guards), *own])
+
+    def types_of_kept_data(self) -> None:
+        """Objects and arrays of objects have the ROS type of what is stored in them, in one step or several."""
+        for variable, places in origins(self.graph).items():
+            if holds_objects(variable.type):
+                variable.reception, path = next(iter(places))
+                variable.path.extend("0" if step == EACH or step.isdigit() else step for step in path)
 
     def data(self, transition: robosc.Transition, instance: Instance) -> Carried | None:
         """What `value` means in a transition; None where its event brings no data."""

@@ -38,8 +38,10 @@ class NodeVariable(expression.NamedElement):
     """A variable of a component that the supervisor does not need."""
     component: str
     type: expression.Type
-    initial: expression.Expression
-    def __init__(self, *, component: str | None = ..., type: expression.Type | None = ..., initial: expression.Expression | None = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
+    initial: expression.Expression | None
+    reception: Reception | None
+    path: MutableSequence[str]
+    def __init__(self, *, component: str | None = ..., type: expression.Type | None = ..., initial: expression.Expression | None = ..., reception: Reception | None = ..., path: Iterable[str] = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class Conversion(expression.NamedElement):
     """Turns data into a literal of an enumeration; the first rule that matches decides. A rule that reads past the end of an array does not match."""
@@ -146,7 +148,8 @@ class WireAccess(expression.Expression):
     steps: MutableSequence[WireStep]
     type: expression.Type | None
     quantifier: ArrayQuantifier | None
-    def __init__(self, *, steps: Iterable[WireStep] = ..., type: expression.Type | None = ..., quantifier: ArrayQuantifier | None = ..., source: Place | None = ...) -> None: ...
+    variable: NodeVariable | None
+    def __init__(self, *, steps: Iterable[WireStep] = ..., type: expression.Type | None = ..., quantifier: ArrayQuantifier | None = ..., variable: NodeVariable | None = ..., source: Place | None = ...) -> None: ...
 
 class WireStep(expression.Located):
     """One step into ROS data."""
@@ -198,3 +201,7 @@ class ArrayType(expression.Type):
     """An array."""
     element: expression.Type | None
     def __init__(self, *, element: expression.Type | None = ..., source: Place | None = ...) -> None: ...
+
+class ObjectType(expression.Type):
+    """An object, as ROS has it."""
+    def __init__(self, *, source: Place | None = ...) -> None: ...

@@ -12,7 +12,7 @@ from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
 from robosc.metamodel.model_checks import demand, fitting_operands, typed
 from robosc.metamodel.reflection import tree
-from robosc.semantics.messages import EACH, path_of
+from robosc.semantics.messages import EACH, path_of, source_of
 from robosc.semantics.typing import BOOLEAN, declared_type
 
 if TYPE_CHECKING:
@@ -79,7 +79,8 @@ def _sent_shape(sending: rosgraph.Sending, _model: Model) -> Iterator[Fault]:
     shape = _Shape()
     for alternative in sending.alternatives:
         for field in alternative.fields:
-            yield from shape.add(field, list(field.path), field.type)
+            kind = None if isinstance(field.type, rosgraph.ObjectType) else field.type
+            yield from shape.add(field, list(field.path), kind)
 
 
 def _received_shapes(graph: rosgraph.RosGraph, _model: Model) -> Iterator[Fault]:
@@ -115,7 +116,8 @@ def _received(shape: _Shape, access: rosgraph.WireAccess) -> Iterator[Fault]:
 
 def _reads(values: Iterable[ex.Expression]) -> Iterator[rosgraph.WireAccess]:
     for value in values:
-        yield from (access for _, access in tree(value) if isinstance(access, rosgraph.WireAccess))
+        found = (access for _, access in tree(value) if isinstance(access, rosgraph.WireAccess))
+        yield from (access for access in found if source_of(access) is None)
 
 
 def _path(access: rosgraph.WireAccess) -> list[str | int]:
@@ -124,6 +126,10 @@ def _path(access: rosgraph.WireAccess) -> list[str | int]:
 
 _BASIC_FIELD = demand(
     lambda field: field.type is None or isinstance(field.type, _BASIC), "{0.type.eClass.name} is no type of a field"
+)
+_FIELD = demand(
+    lambda field: field.type is None or isinstance(field.type, (*_BASIC, rosgraph.ObjectType)),
+    "{0.type.eClass.name} is no type of a field",
 )
 _DATA = demand(
     lambda provided: provided.location.eContainer().kind == sct.PlantKind.data,
@@ -134,8 +140,11 @@ _ONE_PLANT = demand(
     "the locations are of several plants",
 )
 _WHOLE = demand(
-    lambda access: access.type is not None or isinstance(access.eContainer(), rosgraph.ConversionCall),
-    "only what a conversion takes may be without a type",
+    lambda access: (
+        access.type is not None
+        or isinstance(access.eContainer(), rosgraph.ConversionCall | rosgraph.NodeAssignment | rosgraph.FieldAssignment)
+    ),
+    "only what a conversion takes, and what is stored or sent as a whole, may be without a type",
 )
 
 CHECKS: Checks = {
@@ -143,7 +152,7 @@ CHECKS: Checks = {
     object: [_own_event],
     rosgraph.RosGraph: [_received_shapes],
     rosgraph.NodeVariable: [typed("initial", lambda variable: declared_type(variable.type))],
-    rosgraph.FieldAssignment: [typed("value", lambda field: declared_type(field.type)), _BASIC_FIELD],
+    rosgraph.FieldAssignment: [typed("value", lambda field: declared_type(field.type)), _FIELD],
     rosgraph.InputAssignment: [typed("value", lambda assignment: declared_type(assignment.input.type))],
     rosgraph.NodeAssignment: [typed("value", lambda assignment: declared_type(assignment.variable.type))],
     rosgraph.ConversionRule: [typed("condition")],

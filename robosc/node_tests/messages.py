@@ -11,7 +11,7 @@ from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph
 from robosc.ros_types import DefinitionError, RosDistribution, Section
 from robosc.ros_types.wire import Basic, Nested, Sequence
-from robosc.semantics.messages import EACH
+from robosc.semantics.messages import EACH, Read, holds_objects
 from robosc.semantics.messages import reads as all_reads
 
 if TYPE_CHECKING:
@@ -24,7 +24,8 @@ LONGEST = 10_000
 _ELEMENTS = 3
 #: Names of fields and positions in arrays, from the outside inwards.
 Path = tuple[str, ...]
-Leaf = bool | int | float | str
+#: Basic data; of an object that is handed on nothing is known.
+Leaf = bool | int | float | str | dict[str, None]
 
 _DEFAULTS: dict[type[ex.Type], tuple[str, Leaf]] = {
     ex.BooleanType: ("bool", False),
@@ -42,13 +43,17 @@ class Field:
     wire: str | None
 
     @property
-    def default(self) -> Leaf | list[Leaf]:
+    def default(self) -> Any:
         """What ROS holds where nobody set it."""
+        if isinstance(self.type, rosgraph.ObjectType):
+            return SimpleNamespace(wire_types={})
         return [] if isinstance(self.type, rosgraph.ArrayType) else _DEFAULTS[type(self.type)][1]
 
     @property
     def wire_type(self) -> str:
         """The type in ROS, or the widest of its kind."""
+        if holds_objects(self.type):
+            return "object"
         if isinstance(self.type, rosgraph.ArrayType):
             assert self.type.element is not None
             return f"{self.wire or _DEFAULTS[type(self.type.element)][0]}[]"
@@ -73,15 +78,14 @@ def wire_type(distribution: RosDistribution, interface: rosgraph.Interface, sect
     return found.name if isinstance(found, Basic) else None
 
 
-def reads(values: Iterable[ex.Expression], prefix: Path = ()) -> Iterator[tuple[Path, ex.Type]]:
-    """All basic data in a message that expressions read, also through conversions; repeated where they repeat it."""
-    for value in values:
-        for general, read in all_reads([value]):
-            for path in _some(general):
-                if read.conversion is not None:
-                    yield from reads([rule.condition for rule in read.conversion.rules], prefix + path)
-                elif read.type is not None:
-                    yield prefix + path, read.type
+def data_read(reads: Iterable[tuple[Path, Read]], prefix: Path = ()) -> Iterator[tuple[Path, ex.Type]]:
+    """All data in a message that is read, also by conversions; repeated where it is read again."""
+    for general, read in reads:
+        for path in _some(general):
+            if read.conversion is not None:
+                yield from data_read(all_reads([rule.condition for rule in read.conversion.rules]), prefix + path)
+            else:
+                yield prefix + path, read.type or rosgraph.ObjectType()
 
 
 def _some(path: Path) -> Iterator[Path]:
@@ -98,7 +102,7 @@ def message(fields: Mapping[Path, Field], values: Mapping[Path, Leaf]) -> Any:
     if () in fields:
         return values.get((), fields[()].default)
     heads = list(dict.fromkeys(path[0] for path in fields))
-    if not all(head.isdigit() for head in heads):
+    if not heads or not all(head.isdigit() for head in heads):
         return SimpleNamespace(
             **{head: message(_below(head, fields), _below(head, values)) for head in heads},
             wire_types={path[0]: field.wire_type for path, field in fields.items() if len(path) == 1},

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph
 from robosc.metamodel.reflection import tree
-from robosc.node_tests.messages import Field, Leaf, Path, message, reads, wire_type
+from robosc.node_tests.messages import Field, Leaf, Path, data_read, message, wire_type
 from robosc.ros_types.wire import INTEGER_RANGES
 from robosc.semantics import messages
 from robosc.semantics.messages import reads_elements
@@ -80,6 +80,8 @@ class Values:
                 return [False, True]
             case ex.StringType():
                 return list(self._texts)
+            case rosgraph.ObjectType():
+                return [{}]
             case ex.DoubleType() if field.wire_type.startswith(("float", "double")):
                 precise = field.wire in ("float64", "double")
                 return [number for number in self._doubles if precise or _is_single(number)]
@@ -110,22 +112,25 @@ def incoming(
     distribution: RosDistribution,
     interface: rosgraph.Interface,
     part: Section,
-    receptions: Sequence[tuple[str, messages.Shown, Collection[ex.Expression]]],
+    receptions: Sequence[tuple[str, messages.Shown, Collection[ex.Expression], Collection[tuple[Path, messages.Read]]]],
 ) -> Incoming:
-    """What comes in as one message: for each event its name, what is shown of it, and the values that read it."""
+    """What comes in as one message: by event its name, what is shown of it, what reads it, what is read of it later."""
     fields: dict[Path, Field] = {}
     events = []
     unreadable = set()
-    for event, shown, values in receptions:
+    for event, shown, values, later in receptions:
         if any(map(reads_elements, values)):
             unreadable.add(event)
-        for path, kind in reads(values):
+        for path, kind in data_read([*messages.reads(values), *later]):
             fields.setdefault(path, Field(kind, wire_type(distribution, interface, part, path)))
         found = [
             Read(path, part.conversion if isinstance(part, messages.Read) else None) for path, part in shown.items()
         ]
         events.append((event, found))
-    return Incoming(events, fields, unreadable)
+    inner = {(), *(path[:length] for path in fields for length in range(len(path)))} - {
+        path for path, field in fields.items() if not isinstance(field.type, rosgraph.ObjectType)
+    }
+    return Incoming(events, {path: field for path, field in fields.items() if path not in inner}, unreadable)
 
 
 def find_samples(kind: Incoming, values: Values, data: NodeData, seed: int) -> None:

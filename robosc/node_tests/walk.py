@@ -19,6 +19,7 @@ from robosc.runtime.core.event_loop import EventLoop
 from robosc.runtime.core.node_data import NodeData
 from robosc.runtime.core.port import Outcome
 from robosc.runtime.core.settings import Settings
+from robosc.semantics.messages import kept_reads
 from robosc.semantics.parameters import controller_parameters
 from robosc.semantics.roles import event_name
 
@@ -90,6 +91,7 @@ class Walk:
         self._tick = 0
         self._failing_until = 0.0
         self._values = Values(graph)
+        self._later = list(kept_reads(graph))
         #: What each event that comes in shows, and the messages to choose from; the events of one topic share it.
         self.incoming: dict[sct.Event, Incoming] = self._known(seed)
         self._used: Counter[object] = Counter()
@@ -208,7 +210,8 @@ class Walk:
             described = []
             for reception in receptions:
                 values = [assigned.value for assigned in reception.inputs] + data.values_read(reception.event)
-                described.append((event_name(reception.event), ReceivedData(values).parts, values))
+                later = [(path, read) for kept, path, read in self._later if kept is reception]
+                described.append((event_name(reception.event), ReceivedData(values).parts, values, later))
             kind = incoming(self._distribution, interface, part, described)
             find_samples(kind, self._values, data, seed)
             known |= dict.fromkeys((reception.event for reception in receptions), kind)

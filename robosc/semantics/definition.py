@@ -9,6 +9,7 @@ from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
 from robosc.semantics.durations import timer_text
 from robosc.semantics.edges import edges_from
+from robosc.semantics.messages import is_structured
 from robosc.semantics.printing import RobotPrinter
 from robosc.semantics.roles import event_name
 
@@ -58,8 +59,14 @@ def _lines(value: Any) -> str:
     return "[\n" + ",\n".join(f"  {json.dumps(element)}" for element in value) + "]"
 
 
+def reported(graph: rosgraph.RosGraph, plant: sct.Plant) -> list[rosgraph.NodeVariable]:
+    """The variables of a component that reports show: no arrays and objects, which may be large."""
+    kept = [variable for variable in graph.variables if variable.component == plant.origin]
+    return [variable for variable in kept if not is_structured(variable.type)]
+
+
 def _component(plant: sct.Plant, graph: rosgraph.RosGraph) -> dict[str, Any]:
-    own = [variable for variable in graph.variables if variable.component == plant.origin]
+    own = reported(graph, plant)
     assigning = {(reaction.event, location) for reaction in graph.reactions for location in reaction.locations}
     return {
         "name": plant.origin or plant.name,

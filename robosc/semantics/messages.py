@@ -81,6 +81,23 @@ def first_value(kind: ex.Type) -> Value:
     return False
 
 
+def is_structured(kind: ex.Type) -> bool:
+    """Whether it is that of an array or an object: reports do not show what is kept of these."""
+    return isinstance(kind, rosgraph.ArrayType | rosgraph.ObjectType)
+
+
+def holds_objects(kind: ex.Type) -> bool:
+    """Whether it is that of an object or of an array of objects: the node hands these on as they came."""
+    return isinstance(kind, rosgraph.ObjectType) or (isinstance(kind, rosgraph.ArrayType) and kind.element is None)
+
+
+def source_of(access: rosgraph.WireAccess) -> rosgraph.NodeVariable | None:
+    """The variable that an access reads, an element of an array within; None: what came in."""
+    while access.quantifier is not None:
+        access = access.quantifier.array
+    return access.variable
+
+
 def path_of(access: rosgraph.WireAccess) -> Path:
     """The way that an access takes; EACH where it may read any element of an array."""
     path: list[str] = [*path_of(access.quantifier.array), EACH] if access.quantifier else []
@@ -95,6 +112,42 @@ def path_of(access: rosgraph.WireAccess) -> Path:
     return tuple(path)
 
 
+def origins(graph: rosgraph.RosGraph) -> dict[rosgraph.NodeVariable, dict[tuple[rosgraph.Reception, Path], None]]:
+    """Of which data, and where in there, each array and object is that the node keeps, in one step or several."""
+    known = {reception.event: reception for reception in receptions(graph)}
+    stored = [
+        (reaction.event, given.variable, given.value)
+        for reaction in graph.reactions
+        for given in reaction.assignments
+        if is_structured(given.variable.type) and isinstance(given.value, rosgraph.WireAccess)
+    ]
+    found: dict[rosgraph.NodeVariable, dict[tuple[rosgraph.Reception, Path], None]] = {}
+    changed = True
+    while changed:
+        changed = False
+        for event, variable, access in stored:
+            starts = found.get(access.variable, {}) if access.variable else {(known[event], ()): None}
+            places = {(reception, (*path, *path_of(access))): None for reception, path in starts}
+            changed = changed or not places.keys() <= found.get(variable, {}).keys()
+            found.setdefault(variable, {}).update(places)
+    return {variable: places for variable, places in found.items() if places}
+
+
+def kept_reads(graph: rosgraph.RosGraph) -> Iterator[tuple[rosgraph.Reception, Path, Read]]:
+    """What expressions read of data that the node has kept, as what is read where it came in."""
+    known = origins(graph)
+    for _, part in tree(graph):
+        if isinstance(part, rosgraph.WireAccess | rosgraph.ConversionCall):
+            access = part.argument if isinstance(part, rosgraph.ConversionCall) else part
+            variable = source_of(access)
+            conversion = part.conversion if isinstance(part, rosgraph.ConversionCall) else None
+            kind, inside = access.type, path_of(access)
+            if isinstance(kind, rosgraph.ArrayType) and conversion is None:
+                kind, inside = kind.element, (*inside, EACH)
+            for reception, path in known.get(variable, ()) if variable else ():
+                yield reception, (*path, *inside), Read(part, kind, conversion)
+
+
 def reads(values: Iterable[ex.Expression]) -> Iterator[tuple[Path, Read]]:
     """What expressions read of a message; of a conversion's argument that it converts it."""
     for value in values:
@@ -102,8 +155,9 @@ def reads(values: Iterable[ex.Expression]) -> Iterator[tuple[Path, Read]]:
         for _, part in tree(value):
             if isinstance(part, rosgraph.ConversionCall):
                 argument = part.argument
-                yield path_of(argument), Read(part, conversion=part.conversion)
-            elif isinstance(part, rosgraph.WireAccess) and part is not argument:
+                if source_of(argument) is None:
+                    yield path_of(argument), Read(part, conversion=part.conversion)
+            elif isinstance(part, rosgraph.WireAccess) and part is not argument and source_of(part) is None:
                 if isinstance(part.type, rosgraph.ArrayType):
                     yield (*path_of(part), EACH), Read(part, part.type.element)
                 else:
@@ -116,6 +170,10 @@ def shown(values: Iterable[ex.Expression]) -> Shown:
     for path, read in reads(values):
         if path not in found or not found[path].is_value:
             found[path] = read
+    objects = [path for path, read in found.items() if not read.is_value]
+    for path in objects:
+        if any(other[: len(path)] == path for other in found if other != path):
+            del found[path]  # something is read of it
     return _in_arrays(found)
 
 
@@ -132,8 +190,6 @@ def _in_arrays(found: dict[Path, Read]) -> Shown:
             rest = tuple(EACH if step.isdigit() else step for step in path[len(array) + 1 :])
             elements.setdefault(array, {}).setdefault(rest, read)
     for array, inside in elements.items():
-        if len(inside) > 1:
-            inside.pop((), None)  # an object of which something is read
         made[array] = _in_arrays(inside)
     return made
 

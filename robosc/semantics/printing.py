@@ -115,7 +115,7 @@ class RoboscPrinter(Printer):
                 component = expression.component
                 if isinstance(expression.item, robosc.RequirementState):
                     component = expression.item.eContainer()
-                owner = f"{written(component.name)}." if component else ""
+                owner = self.owner(component) if component else ""
                 indices = iter(texts)
                 return Printed(owner + name + "".join(_step(segment, indices) for segment in expression.segments))
             case robosc.ArrayQuantifier():
@@ -124,6 +124,10 @@ class RoboscPrinter(Printer):
             case robosc.ArrayLiteral():
                 return Printed(f"[{', '.join(texts)}]")
         return super().write(expression, given)
+
+    def owner(self, component: robosc.Component) -> str:
+        """What stands before the name of what a component has."""
+        return f"{written(component.name)}."
 
     def atom(self, expression: ex.Expression) -> str:
         """A literal."""

@@ -114,7 +114,7 @@ def declared_type(data_type: rsc.DataType | ex.Type | None) -> Type:
         if isinstance(definition, rsc.ObjectDataType):
             return ObjectType(definition)
         return EnumType(definition) if isinstance(definition, rsc.EnumDataType) else UNKNOWN
-    return UNKNOWN if data_type is None else _BASIC[type(data_type)]
+    return UNKNOWN if data_type is None else _BASIC.get(type(data_type), UNKNOWN)
 
 
 def event_data_type(communication: rsc.CommunicationType | None, result_type: rsc.ResultType | None) -> Type | None:

@@ -62,7 +62,9 @@ def types(base: rsc.Base) -> Iterator[Finding]:
         yield from _constant(identified.computedIdentifier, STRING, "an identifier")
     for declared in variables(base):
         check = ExpressionCheck(CONSTANT)
-        check.expect(declared.initial, _variable_type(declared), f"the initial value of `{declared.name}`")
+        kept = isinstance(declared_type(declared.type), ArrayType | ObjectType)
+        wanted = UNKNOWN if kept else _variable_type(declared)  # That these take none, `variable-type` says.
+        check.expect(declared.initial, wanted, f"the initial value of `{declared.name}`")
         yield from check.findings
     for _, transition in transitions(base):
         yield from _transition(transition)
@@ -168,7 +170,7 @@ def _duration(value: ex.Expression | None) -> Iterator[Finding]:
 def _variable_type(variable: rsc.Variable) -> Type:
     """What a variable holds; what no variable can hold is the matter of `variable-type`."""
     declared = declared_type(variable.type)
-    return UNKNOWN if declared == NONE or isinstance(declared, (ArrayType, ObjectType)) else declared
+    return UNKNOWN if declared == NONE else declared
 
 
 def _boolean(condition: ex.Expression | None, what: str, place: Place) -> Iterator[Finding]:

@@ -31,6 +31,7 @@ from robosc.semantics.typing import (
     STRING,
     ArrayType,
     ObjectType,
+    Type,
     access_types,
     declared_type,
     infer,
@@ -47,25 +48,57 @@ if TYPE_CHECKING:
 @rule("variable-type")
 def variable_type(base: rsc.Base) -> Iterator[Finding]:
     """A variable holds one value, and what the supervisor needs has finitely many values and comes from such data."""
+    stored = _stored(base)
     for variable in variables(base):
         found = declared_type(variable.type)
-        if found == NONE or isinstance(found, (ArrayType, ObjectType)):
-            what = "no value" if found == NONE else f"data of type {found}"
+        if found == NONE:
             yield Finding(
                 variable,
-                f"variable `{variable.name}` holds {what}, expected one boolean, integer, double, string or enum value",
-                "leave it out, or declare it boolean to remember that something happened"
-                if found == NONE
-                else "declare a variable for each part that is used, such as `do part := value.…`",
+                f"variable `{variable.name}` holds no value, expected data",
+                "leave it out, or declare it boolean to remember that something happened",
             )
+        elif isinstance(found, ArrayType | ObjectType):
+            starts = "an array starts empty" if isinstance(found, ArrayType) else "each field starts as a variable does"
+            if variable.initial is not None:
+                message = f"variable `{variable.name}` is {found} and takes no initial value: {starts}"
+                yield Finding(variable.initial, message, f"write `variable {variable.name}: …` without `=`")
+            if _has_objects(found) and variable not in stored:
+                message = f"variable `{variable.name}` is {found}, and no event stores anything in it"
+                yield Finding(
+                    variable, message, f"write `do {variable.name} := value` where it comes in, or leave it out"
+                )
     yield from supervised_faults(base, _without_domain)
     yield from supervised_faults(base, function_faults)
+
+
+def _has_objects(found: Type) -> bool:
+    return isinstance(found, ObjectType) or (isinstance(found, ArrayType) and _has_objects(found.element))
+
+
+def _stored(base: rsc.Base) -> set[rsc.Variable]:
+    """The variables in which data is stored that came in, in one step or several."""
+    assigned = [
+        (assigned_variable(assignment), assignment.value)
+        for _, transition in transitions(base)
+        for assignment in transition.assignments
+    ]
+    found: set[rsc.Variable] = set()
+    more = True
+    while more:
+        reached = {
+            variable
+            for variable, value in assigned
+            if variable is not None and any(access.value or access.item in found for access in accesses(value))
+        }
+        more = not reached <= found
+        found |= reached
+    return found
 
 
 def _without_domain(_: Instances, result: ConeOfInfluence) -> Iterator[Fault]:
     for owned, reason in result.variables.items():
         found = declared_type(owned.type)
-        if found in {DOUBLE, STRING}:
+        if found in {DOUBLE, STRING} or isinstance(found, ArrayType | ObjectType):
             name = f"{owned.instance.name}.{owned.variable.name}"
             yield Fault(
                 owned.variable,

@@ -155,6 +155,8 @@ class CppPrinter(Printer):
     def wire(self, access: rosgraph.WireAccess, indices: Sequence[str] = ()) -> str:
         """The place in the ROS data, not converted to a type of the model."""
         text = _element(access.quantifier) if access.quantifier else self._data
+        if access.variable is not None:
+            text = f"{self._node}.{self._names.variable(access.variable)}"
         rest = iter(indices)
         for step in access.steps:
             match step:

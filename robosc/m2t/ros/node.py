@@ -12,7 +12,8 @@ from robosc.m2t.ros.expressions import CppPrinter
 from robosc.m2t.ros.names import CppNames, kept_for
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
-from robosc.semantics.messages import first_value, parts_with_headers, reads_elements
+from robosc.semantics.definition import reported
+from robosc.semantics.messages import first_value, holds_objects, is_structured, parts_with_headers, reads_elements
 from robosc.semantics.naming import Names
 from robosc.semantics.operators import PRECEDENCE
 from robosc.semantics.roles import Roles
@@ -25,10 +26,16 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Assignment:
-    """`target = value`."""
+    """`target = value`, of arrays and objects by the function `store`."""
 
     target: str
     value: str
+    stores: bool = False
+
+    @property
+    def statement(self) -> str:
+        """The assignment, with a semicolon."""
+        return f"store({self.target}, {self.value});" if self.stores else f"{self.target} = {self.value};"
 
 
 @dataclass(frozen=True)
@@ -76,10 +83,10 @@ class Subscription:
 
 @dataclass(frozen=True)
 class Alternative:
-    """The data of one provide statement: names of fields and their values, under a condition on the state."""
+    """The data of one provide statement under a condition: what writes each field, its name, its value."""
 
     condition: str
-    fields: list[tuple[str, str]]
+    fields: list[tuple[str, str, str]]
 
 
 @dataclass(frozen=True)
@@ -170,11 +177,22 @@ class Conversion:
 
 @dataclass(frozen=True)
 class Variable:
-    """A variable of the node."""
+    """A variable of the node: its type and first value, or the part of ROS data that it has the type of."""
 
     name: str
     type: str
     initial: str
+    part: Part | None = None
+
+
+@dataclass(frozen=True)
+class Part:
+    """A part of what comes in: a message, or the `response` or `feedback` of a client, and the way into it."""
+
+    kind: str
+    interface: rosgraph.Interface
+    path: str
+    is_array: bool
 
 
 class Node:
@@ -198,6 +216,14 @@ class Node:
         self.at = ", at()" if Roles(graph.model).timeouts else ""
         self.enumerations = [self._enumeration(enumeration) for enumeration in graph.enumerations]
         self.conversions = [self._conversion(conversion) for conversion in graph.conversions]
+        self._carriers: dict[rosgraph.Reception, tuple[str, rosgraph.Interface]] = {}
+        for topic in graph.subscriptions:
+            self._carriers |= dict.fromkeys(topic.receptions, ("type", topic.interface))
+        clients: list[rosgraph.ServiceClient | rosgraph.ActionClient] = [*graph.serviceClients, *graph.actionClients]
+        for client in clients:
+            self._carriers[client.response] = "response", client.interface
+        for action in graph.actionClients:
+            self._carriers[action.feedback] = "feedback", action.interface
         self.components = [
             (member, [self._variable(variable) for variable in kept_for(graph.variables, component)])
             for component, member in self._names.components.items()
@@ -217,7 +243,7 @@ class Node:
         internal = dict.fromkeys(reaction.event for reaction in graph.reactions if reaction.event not in outside)
         self.internal = [self._handler(event) for event in internal]
         self.reported = [
-            reports.component(plant, kept_for(graph.variables, plant.origin), self._names)
+            reports.component(plant, reported(graph, plant), self._names)
             for plant in graph.model.plants
             if plant.kind == sct.PlantKind.behaviour
         ]
@@ -246,10 +272,19 @@ class Node:
                 return "double"
             case ex.StringType():
                 return "std::string"
+            case rosgraph.ArrayType() if kind.element is not None:
+                return f"std::vector<{self._type(kind.element)}>"
         assert isinstance(kind, ex.EnumerationType)
         return self._names.enumeration(kind.enumeration) or f"std::{type_name(kind)}"
 
     def _variable(self, variable: rosgraph.NodeVariable) -> Variable:
+        name, kind = self._names.member(variable), variable.type
+        if variable.reception is not None and holds_objects(kind):
+            sort, interface = self._carriers[variable.reception]
+            path = "".join("[0]" if step == "0" else f".{step}" for step in variable.path)
+            return Variable(name, "", "", Part(sort, interface, path, isinstance(kind, rosgraph.ArrayType)))
+        if variable.initial is None:
+            return Variable(name, self._type(kind), "{}")
         return Variable(self._names.member(variable), self._type(variable.type), self._printer(variable.initial))
 
     def _enumeration(self, enumeration: ex.Enumeration) -> Enumeration:
@@ -326,7 +361,7 @@ class Node:
         assignments = [assignment for reaction in reactions for assignment in reaction.assignments]
         assigned = {assignment.variable for assignment in assignments}
         keeps_old = any(
-            isinstance(part, rosgraph.NodeVariableReference) and part.variable in assigned
+            isinstance(part, rosgraph.NodeVariableReference | rosgraph.WireAccess) and part.variable in assigned
             for assignment in assignments
             for part in parts(assignment.value)
         )
@@ -373,6 +408,7 @@ class Node:
         return Assignment(
             f"{'next' if copy == 'next' else 'data_'}.{self._names.variable(assignment.variable)}",
             printer.integer(assignment.value, kind) if isinstance(kind, ex.IntegerType) else printer(assignment.value),
+            is_structured(kind),
         )
 
     # What goes out
@@ -432,17 +468,20 @@ class Node:
     def _alternative(self, provided: rosgraph.ProvidedData) -> Alternative:
         return Alternative(
             self._names.is_in(provided.location),
-            [(".".join(field.path), self._field(field)) for field in provided.fields],
+            [self._written(field) for field in provided.fields],
         )
 
-    def _field(self, assignment: rosgraph.FieldAssignment) -> str:
-        value, kind = assignment.value, assignment.type
+    def _written(self, assignment: rosgraph.FieldAssignment) -> tuple[str, str, str]:
+        """What writes a field, its name, its value."""
+        name, value, kind = ".".join(assignment.path), assignment.value, assignment.type
+        if holds_objects(kind) and isinstance(value, rosgraph.WireAccess):
+            return "hand_on", name, self._printer(value)
         if isinstance(value, rosgraph.ArrayLiteral) and isinstance(kind, rosgraph.ArrayType):
             element = kind.element
             assert element is not None
             values = [self._value(part, element) for part in value.elements]
-            return f"std::initializer_list<{self._type(element)}>{{{', '.join(values)}}}"
-        return self._value(value, kind)
+            return "set_elements", name, f"std::initializer_list<{self._type(element)}>{{{', '.join(values)}}}"
+        return "set_elements" if is_structured(kind) else "set", name, self._value(value, kind)
 
     def _value(self, value: ex.Expression, kind: ex.Type) -> str:
         return self._printer.integer(value, kind) if isinstance(kind, ex.IntegerType) else self._printer(value)

@@ -66,7 +66,8 @@ def _value(path: Path, part: Read | Shown, printer: CppPrinter, names: CppNames)
     """What is shown of what stands at the end of a path."""
     if isinstance(part, Read):
         kind = ex.EnumerationType(enumeration=part.conversion.enumeration) if part.conversion else part.type
-        return _json(printer(part.reference), kind, names)
+        text = printer(part.reference)
+        return _json(text, kind, names) if part.is_value else f"(static_cast<void>({text}), Json::object())"
     steps: list[rosgraph.WireStep] = [
         rosgraph.IndexStep(index=int(step)) if step.isdigit() else rosgraph.FieldStep(name=step) for step in path
     ]

@@ -10,15 +10,16 @@ from typing import TYPE_CHECKING
 
 from robosc.configuration import NO_STOP, NO_STOP_ON_SILENCE
 from robosc.engine import Settings as LoopSettings
+from robosc.metamodel import rosgraph
 from robosc.ros_types import Section
 from robosc.runtime.core.clients import ActionClient, Answers, ServiceClient
 from robosc.runtime.core.event_handler import EventHandler
 from robosc.runtime.core.event_log import nested
 from robosc.runtime.core.monitors import GraphMonitor, Watchdog
-from robosc.runtime.core.node_data import NotFiniteError, bounded, fill
+from robosc.runtime.core.node_data import NotFiniteError, bounded, fill, hand_on
 from robosc.runtime.core.settings import SafeMessages
 from robosc.runtime.core.times import RESOLUTION_MS
-from robosc.semantics.messages import parts_with_headers
+from robosc.semantics.messages import holds_objects, parts_with_headers
 from robosc.semantics.operators import UnreadableError
 from robosc.semantics.parameters import topic_words, watchdog
 from robosc.semantics.roles import event_name, plant_of
@@ -26,7 +27,7 @@ from robosc.semantics.roles import event_name, plant_of
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
-    from robosc.metamodel import rosgraph, sct
+    from robosc.metamodel import sct
     from robosc.runtime.core.event_log import Json
     from robosc.runtime.core.event_loop import EventLoop, Timer
     from robosc.runtime.core.port import Client, ControllerPort, Message
@@ -268,12 +269,16 @@ class Controller(EventHandler):
             given = list(chosen.fields) if chosen is not None else []
             values = [bounded(self._data.value(field.value), field.type) for field in given]
             for field, value in zip(given, values, strict=True):
+                if isinstance(field.value, rosgraph.WireAccess) and holds_objects(field.type):
+                    hand_on(self._node, message, field.path, value)
+                    continue
                 fields[tuple(field.path)] = fill(self._node, message, field.path, value)
         except (NotFiniteError, UnreadableError) as fault:
             event = sender.sending.event
             word = plant_of(event).name.partition("_")[2]
-            why = f"its {fault} would not be finite" if isinstance(fault, NotFiniteError) else str(fault)
-            self._warn((event_name(event), str(fault)), f"{word} is withheld: {why}")
+            path = str(fault) if isinstance(fault, NotFiniteError) else ""
+            why = f"its {path} would not be finite" if path else str(fault)
+            self._warn((event_name(event), path), f"{word} is withheld: {why}")
             return False
         sender.message = message
         sender.logged = None

@@ -192,7 +192,8 @@ class ReceivedData:
         for path, part in self._found.items():
             with suppress(UnreadableError):
                 if isinstance(part, Read):
-                    values[path] = shown(data.value(part.reference, message))
+                    value = data.value(part.reference, message)
+                    values[path] = shown(value) if part.is_value else {}
                 else:
                     array = data.at(message, path or ("data",))
                     values[path] = [_inside(element, part, data) for element in array]

@@ -6,6 +6,7 @@ import math
 import re
 import struct
 from collections.abc import Iterable, Sequence
+from copy import deepcopy
 from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -26,6 +27,29 @@ LEAST, MOST = INTEGER_RANGES["int64"]
 _FLOATS = {"float32": "f", "float": "f", "float64": "d", "double": "d"}
 #: ROS 2 calls its `byte` an octet.
 _RANGES = {**INTEGER_RANGES, "octet": INTEGER_RANGES["uint8"]}
+
+
+class _Blank:
+    """An object that nothing was stored in: of its fields, too."""
+
+    def __getattr__(self, name: str) -> _Blank:
+        if name.startswith("__"):
+            raise AttributeError(name)
+        return self
+
+    def __len__(self) -> int:
+        return 0
+
+
+BLANK: Any = _Blank()
+#: What is read of it.
+_BLANK: dict[type[ex.Type], Any] = {
+    ex.BooleanType: False,
+    ex.IntegerType: 0,
+    ex.DoubleType: 0.0,
+    ex.StringType: "",
+    rosgraph.ArrayType: [],
+}
 
 
 class PastEndError(UnreadableError):
@@ -58,7 +82,13 @@ class NodeData:
         self._programs: dict[ex.Expression, Program[Value]] = {}
         self.variables: dict[rosgraph.NodeVariable, Value] = {}
         for variable in graph.variables:
-            self.variables[variable] = self.value(variable.initial)
+            self.variables[variable] = (
+                self.value(variable.initial)
+                if variable.initial is not None
+                else []
+                if isinstance(variable.type, rosgraph.ArrayType)
+                else BLANK
+            )
         self._reactions: dict[sct.Event, list[rosgraph.Reaction]] = {}
         for reaction in graph.reactions:
             self._reactions.setdefault(reaction.event, []).append(reaction)
@@ -145,7 +175,8 @@ class NodeData:
 
     def _reach(self, access: rosgraph.WireAccess, *given: Any) -> Any:
         """What an access reads of a message, or of an element, with these indices. Raises UnreadableError."""
-        rest = iter(given if access.quantifier else (given[-1], *given[:-1]))
+        start = given[-1] if access.variable is None else self.variables[access.variable]
+        rest = iter(given if access.quantifier else (start, *given[:-1]))
         reached = next(rest)
         for step in access.steps:
             match step:
@@ -180,6 +211,9 @@ class NodeData:
 
     def leaf(self, value: Any, kind: ex.Type | None) -> Value:
         """A value of ROS as one of the model: numpy's scalars and ROS 2's `byte` become plain numbers."""
+        if value is BLANK and kind is not None:
+            blank: Value = _BLANK[type(kind)]
+            return blank
         match kind:
             case rosgraph.ArrayType():
                 return [self.leaf(element, kind.element) for element in value]
@@ -230,6 +264,17 @@ def fill(port: ControllerPort, message: Message, path: Sequence[str], value: Val
     held: bool | int | float | str = _held(kind, value, path)
     setattr(owner, path[-1], bytes([held]) if kind == "octet" and isinstance(held, int) else held)
     return held
+
+
+def hand_on(port: ControllerPort, message: Message, path: Sequence[str], data: Any) -> None:
+    """Sets a field to an object, or to an array of objects, as it came in; no path: the whole message."""
+    owner = message
+    if data is BLANK:
+        return
+    for name in path[:-1]:
+        owner = getattr(owner, name)
+    for name in path[-1:] or port.wire_types(message):
+        setattr(owner, name, deepcopy(data if path else getattr(data, name)))
 
 
 def _fill_array(owner: Message, kind: str, values: Sequence[Value], path: Sequence[str]) -> Json:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from robosc.metamodel import rosgraph, sct
 from robosc.runtime.core.event_log import Json, json_text, shown
-from robosc.semantics.definition import TRANSITIONS_KEPT, definition_text
+from robosc.semantics.definition import TRANSITIONS_KEPT, definition_text, reported
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Hashable, Sequence
@@ -35,7 +35,7 @@ class StateReporter:
         self._listeners = 0
         self._transitions: deque[str] = deque(maxlen=TRANSITIONS_KEPT)
         self._components: list[tuple[str, sct.Plant, Sequence[rosgraph.NodeVariable]]] = [
-            (plant.origin or plant.name, plant, [own for own in graph.variables if own.component == plant.origin])
+            (plant.origin or plant.name, plant, reported(graph, plant))
             for plant in graph.model.plants
             if plant.kind == sct.PlantKind.behaviour
         ]

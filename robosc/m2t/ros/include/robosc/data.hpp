@@ -10,6 +10,7 @@
 #include <limits>
 #include <string>
 #include <type_traits>
+#include <utility>
 
 namespace robosc {
 inline namespace v1 {
@@ -144,6 +145,18 @@ Integer number_of(const Array& array, Condition holds) {
   std::int64_t count = 0;
   for (const auto& element : array) count += holds(element) ? 1 : 0;
   return count;
+}
+
+/// Keeps data as it came, or element by element where it is an array of another kind.
+template <typename Kept, typename Data>
+void store(Kept& kept, const Data& data) {
+  if constexpr (std::is_assignable_v<Kept&, const Data&>) {
+    kept = data;
+  } else {
+    Kept made;
+    for (const auto& element : data) made.push_back(static_cast<typename Kept::value_type>(element));
+    kept = std::move(made);
+  }
 }
 
 /// Reads elements of arrays and rounds numbers, and remembers the first that can't be.

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <initializer_list>
 #include <limits>
 #include <string>
 #include <type_traits>
@@ -23,25 +22,31 @@ class FieldWriter {
   explicit FieldWriter(bool noted) : noted_(noted) {}
 
   /// Sets the elements of an array; one of a fixed length keeps the elements behind them.
-  template <typename Array, typename Element>
-  void set(const char* path, Array& array, std::initializer_list<Element> values) {
+  template <typename Array, typename Values>
+  void set_elements(const char* path, Array& array, const Values& values) {
     reserve(array, values.size(), 0);
     Json list = Json::array();
     auto field = array.begin();
     for (auto value = values.begin(); value != values.end() && field != array.end(); ++value, ++field) {
-      if constexpr (std::is_same_v<Element, Integer> || std::is_same_v<Element, double>) {
-        fill(path, *field, *value);
-        if constexpr (std::is_floating_point_v<std::decay_t<decltype(*field)>>) {
-          list.add(static_cast<double>(*field));
-        } else {
-          list.add(Integer(*field));
-        }
+      using Element = std::decay_t<decltype(*value)>;
+      if constexpr (std::is_floating_point_v<Element>) {
+        fill(path, *field, static_cast<double>(*value));
+        list.add(number(*field));
+      } else if constexpr (std::is_same_v<Element, Integer> || (std::is_integral_v<Element> && sizeof(Element) > 1)) {
+        fill(path, *field, Integer(*value));
+        list.add(number(*field));
       } else {
         *field = *value;
-        list.add(*value);
+        list.add(static_cast<const Element&>(*value));
       }
     }
     note(path, list);
+  }
+
+  /// Sets a field, or the whole data, to what came in; it is not noted.
+  template <typename Field, typename Data>
+  void hand_on(const char*, Field& field, const Data& data) {
+    store(field, data);
   }
 
   template <typename Field, typename Value>
@@ -68,6 +73,15 @@ class FieldWriter {
   }
 
  private:
+  template <typename Number>
+  static auto number(Number value) {
+    if constexpr (std::is_floating_point_v<Number>) {
+      return static_cast<double>(value);
+    } else {
+      return Integer(value);
+    }
+  }
+
   template <typename Array>
   static auto reserve(Array& array, std::size_t size, int) -> decltype(array.resize(size)) {
     array.resize(std::min(size, array.max_size()));

@@ -1,0 +1,128 @@
+"""Variables that are arrays and objects hold what an event brought, and provided data passes it on."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.runtime.fake import Record, World
+
+KEPT = Path(__file__).parent / "kept.rscd"
+
+
+@pytest.fixture
+def world(tmp_path: Path) -> World:
+    made = World(KEPT, tmp_path / "events.jsonl")
+    made.port.types = {"name": "string", "poses": "kept_msgs/Pose[]", "speeds": "float64[]", "tags": "int32[]"}
+    made.start()
+    made.port.said.clear()
+    return made
+
+
+def pose(x: float, *tags: int) -> Record:
+    return Record(x=x, tags=list(tags))
+
+
+def hear_route(world: World, *xs: float, name: str = "first", speeds: tuple[float, ...] = ()) -> None:
+    world.hear("route", name=name, poses=[pose(x, 7) for x in xs], speeds=list(speeds))
+
+
+def sent(world: World, topic: str) -> list[dict[str, Any]]:
+    world.port.sent.clear()
+    world.wait(0.3)
+    return [plain(fields) for name, fields in world.port.sent if name == topic]
+
+
+def plain(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {name: plain(inner) for name, inner in value.items()}
+    if isinstance(value, list):
+        return [plain(inner) for inner in value]
+    return value.plain() if isinstance(value, Record) else value
+
+
+def variables(world: World) -> dict[str, Any]:
+    world.wait(0.1)
+    told = [json.loads(text) for what, text in world.port.told if what == "state"]
+    found: dict[str, Any] = told[-1]["components"]["Mission"]["variables"]
+    return found
+
+
+def test_provided_data_passes_on_the_whole_or_parts(world: World) -> None:
+    """Provided data may pass them on, whole or in parts: `provide go with { pose: Mission.route[Mission.next] }`."""
+    hear_route(world, 1.0, 2.0, 3.0, speeds=(0.5, 1.5))
+    world.hear("next", data=2)
+    (go, *_) = sent(world, "/go")
+    assert go == {
+        "pose": {"x": 3.0, "tags": [7]},
+        "rest": [{"x": 2.0, "tags": [7]}, {"x": 3.0, "tags": [7]}],
+        "speeds": [0.5, 1.5],
+        "tags": [7],
+        "name": "first",
+    }
+    (again, *_) = sent(world, "/again")
+    assert again["name"] == "first"
+    assert [found["x"] for found in again["poses"]] == [1.0, 2.0, 3.0]
+
+
+def test_arrays_start_empty_and_objects_field_by_field(world: World) -> None:
+    """Arrays start empty, objects field by field as a variable of the field's type."""
+    world.wait(0.3)
+    assert {text for text in world.port.said if "withheld" in text} == {
+        "go is withheld: there is no element 0 in an array of 0"
+    }
+    assert sent(world, "/go") == []
+    # Nothing was stored: nothing is set.
+    assert sent(world, "/again")[0] == {}
+    world.hear("next", data=0)
+    assert variables(world) == {"number": 0, "far": False, "long": 0}
+
+
+def test_an_index_past_the_end_withholds_the_command(world: World) -> None:
+    """Provided data that can't be read: the command is withheld and reported."""
+    hear_route(world, 1.0, 2.0, 3.0)
+    assert sent(world, "/go")
+    for number, fault in [
+        (3, "there is no element 3 in an array of 3"),
+        (-1, "there is no element -1 in an array of 3"),
+    ]:
+        world.hear("next", data=number)
+        world.wait(6)
+        assert sent(world, "/go") == []
+        assert [text for text in world.port.said if "withheld" in text][-1] == f"go is withheld: {fault}"
+
+
+def test_expressions_read_what_is_kept(world: World) -> None:
+    hear_route(world, 1.0, 6.0, speeds=(0.5,))
+    world.hear("next", data=1)
+    assert variables(world) == {"number": 1, "far": True, "long": 5}
+
+
+def test_assignments_read_the_values_from_before(world: World) -> None:
+    hear_route(world, 1.0, 2.0, 3.0)
+    world.wait(0.1)
+    world.port.calls[-1].answered(
+        Record(route=Record(name="planned", poses=[pose(5.0), pose(6.0), pose(7.0)], speeds=[]))
+    )
+    assert sent(world, "/again")[0]["name"] == "planned"
+    # `poses` got what `whole` was before.
+    assert sent(world, "/go")[0]["pose"]["x"] == 1.0
+
+
+def test_nothing_of_an_event_that_cannot_be_read_is_stored(world: World) -> None:
+    """The event happens for no component and nothing of it is stored."""
+    hear_route(world, 1.0, 2.0, 3.0)
+    hear_route(world, name="empty")
+    assert world.port.said[-1] == "/route: there is no element 0 in an array of 0"
+    assert sent(world, "/again")[0]["name"] == "first"
+
+
+def test_the_log_shows_how_long_an_array_is_and_what_is_read_of_it(world: World) -> None:
+    hear_route(world, 1.0, 2.0, speeds=(0.5,))
+    world.controller._log.flush()
+    lines = [json.loads(line) for line in world.log.read_text().splitlines()]
+    (line,) = [line for line in lines if line["event"] == "message_route.u_response"]
+    assert line["data"] == {"value": {"poses": [{}, {}], "speeds": [0.5]}}
