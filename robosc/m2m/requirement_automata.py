@@ -17,8 +17,11 @@ from robosc.semantics.communication import meant
 from robosc.semantics.expansion import constant_value
 from robosc.semantics.instances import MOST
 from robosc.semantics.printing import conjunction, disjunction
+from robosc.semantics.walks import copied
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from robosc.m2m.expressions import SctExpressions
     from robosc.m2m.trace import Trace
     from robosc.semantics.instances import Instance, Statement
@@ -116,19 +119,42 @@ class RequirementAutomaton:
             allowed: list[ex.Expression] = []
             always = True
             for state, location in here.items():
-                taken = next((one for one in state.transitions if self._event(one.event) is event), None)
-                target = location if taken is None or taken.target is None else here[taken.target]
-                location.edges.append(sct.Edge(event=event, target=target))
-                always = always and taken is not None and taken.guard is None
-                if taken is not None:
-                    guard = None if taken.guard is None else expressions(taken.guard, self._within)
-                    parts: list[ex.Expression] = [sct.LocationReference(location=location)]
-                    condition = conjunction([*parts, *([] if guard is None else [guard])])
-                    assert condition is not None
-                    allowed.append(condition)
+                tried = [one for one in state.transitions if self._event(one.event) is event]
+                self._edges(event, location, [(one, here[one.target or state]) for one in tried], expressions)
+                unguarded = any(one.guard is None for one in tried)
+                always = always and unguarded
+                if tried:
+                    guards = [self._guard(one, expressions) for one in tried]
+                    parts = [sct.LocationReference(location=location), None if unguarded else disjunction(guards)]
+                    allowed += filter(None, [conjunction(filter(None, parts))])
             holds = disjunction(allowed)
             if not always and holds is not None:
                 self.allowed[event] = holds
+
+    def _edges(
+        self,
+        event: sct.Event,
+        location: sct.Location,
+        tried: Sequence[tuple[robosc.RequirementTransition, sct.Location]],
+        expressions: SctExpressions,
+    ) -> None:
+        """The edges of a location for an event: of the first transition whose condition holds.
+
+        Where none holds the event is forbidden, and where an edge would lead does not matter: it is that of the last.
+        """
+        before: list[ex.Expression] = []
+        for number, (transition, target) in enumerate(tried, start=1):
+            own = [] if number == len(tried) else [self._guard(transition, expressions)]
+            guard = conjunction([*(ex.Negation(operand=copied(other)) for other in before), *own])
+            location.edges.append(sct.Edge(event=event, guard=guard, target=target, source=transition.source))
+            before += map(copied, own)
+        if not tried:
+            location.edges.append(sct.Edge(event=event, target=location))
+
+    def _guard(self, transition: robosc.RequirementTransition, expressions: SctExpressions) -> ex.Expression:
+        if transition.guard is None:
+            return ex.BooleanLiteral(value=True)
+        return expressions(transition.guard, self._within)
 
 
 def _no_bound(count: robosc.CountRequirement) -> Diagnostic:

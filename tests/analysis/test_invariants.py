@@ -110,6 +110,13 @@ def test_synthesis_keeps_away_from_where_something_uncontrollable_leads_to_a_vio
     )
 
 
+def test_a_state_that_is_out_of_reach_says_what_keeps_it_out(tmp_path: Path) -> None:
+    made = sct_of(tmp_path, STOP, BASE, "requirement SR1: never Stop.stopped and Base.driving")
+    unreachable = next(one for one in supervise(made).findings if one.rule == "unreachable-state")
+    assert unreachable.message.startswith("`Base` is never in `driving`: in `idle` the supervisor holds back")
+    assert unreachable.message.endswith("`requirement SR1: never Stop.stopped and Base.driving` is violated")
+
+
 def test_an_action_is_cancelled_for_no_invariant(tmp_path: Path) -> None:
     made = sct_of(tmp_path, STOP, BASE, "requirement never Stop.stopped and Base.driving")
     cancel = next(one for one in made.requirements if one.event.kind == sct.EventKind.cancel)

@@ -112,6 +112,25 @@ def test_an_automaton_forbids_where_no_transition_of_the_state_has_a_condition_t
     assert possible(made, GRIP, PLACE) == {"grip", "drop", "dock"}
 
 
+def test_of_several_transitions_the_first_is_taken_whose_condition_holds(tmp_path: Path) -> None:
+    made = supervised(
+        tmp_path,
+        GATE,
+        """requirement T: automaton {
+            initial state a {
+                on request to grip if Gate.shut goto b
+                on request to grip if Gate.open goto c
+            }
+            state b { on request to place }
+            state c { on request to drop }
+        }""",
+    )
+    assert possible(made) == {"grip", "dock"}
+    assert possible(made, GRIP) == {"drop", "dock"}
+    assert possible(made, "message_closing.u_response", GRIP) == {"place", "dock"}
+    assert validate_cif(made, cif.generate(Models(made), Configuration())).outcome is Outcome.PROVED
+
+
 def test_requirements_read_the_states_of_an_automaton(tmp_path: Path) -> None:
     made = supervised(tmp_path, GATE, TURNS, "condition my_turn = Turns.mine", "requirement drop needs my_turn")
     assert "drop" in possible(made)
@@ -187,7 +206,17 @@ def test_the_c_engine_tracks_them(tmp_path: Path) -> None:
     files = supervisor.generate(Models(made), Configuration())
     assert validate_c(made, files).outcome is Outcome.PROVED
     (name,) = [name for name in files if name.endswith(".c")]
-    assert "requirement C1: at most 3 drop since grip (robot.rscd)" in files[name]
+    text = files[name]
+    assert "requirement C1: at most 3 drop since grip (robot.rscd)" in text
+    for right, wrong in (
+        ("requirement_C1_count < 3U", "requirement_C1_count <= 3U"),
+        ("requirement_C1_count = 0;", "requirement_C1_count = 1;"),
+        ("requirement_Turns = r_requirement_Turns_yours", "requirement_Turns = r_requirement_Turns_mine"),
+        ("requirement_3 == r_requirement_3_ready", "requirement_3 == r_requirement_3_waiting"),
+    ):
+        assert right in text
+        verdict = validate_c(made, {**files, name: text.replace(right, wrong)})
+        assert verdict.outcome is Outcome.REFUTED
 
 
 def test_verify_has_a_row_for_each_event_and_refutes_a_guard_that_forgets(tmp_path: Path) -> None:
@@ -258,7 +287,7 @@ def test_an_action_is_not_cancelled_for_an_order(tmp_path: Path) -> None:
         ),
         (
             "requirement T: automaton { initial state a { on grip on request to grip } }",
-            "nondeterminism: state `a` has a transition for this event already (line 9), expected one",
+            "nondeterminism: this transition of state `a` is never tried",
         ),
         (
             "requirement T: automaton { initial state a { } } requirement place needs T.b",

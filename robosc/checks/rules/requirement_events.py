@@ -103,19 +103,22 @@ def initial_states(base: rsc.Base) -> Iterator[Finding]:
 
 
 def repeated_events(base: rsc.Base) -> Iterator[Finding]:
-    """Transitions of one state on one event, of the rule `nondeterminism`."""
+    """Transitions of a state behind one without condition on the same event, of the rule `nondeterminism`."""
     for automaton in statements(rsc.AutomatonRequirement, base):
         for state in automaton.states:
-            firsts: dict[Any, rsc.RequirementTransition] = {}
+            always: dict[Any, rsc.RequirementTransition] = {}
             for transition in state.transitions:
                 reference = transition.event.communicationType if transition.event else None
                 event = meant(transition.event) if reference and reference.communicationType else None
                 if reference is None or event is None:
                     continue
-                first = firsts.setdefault((reference.component, reference.communicationType, event), transition)
-                if first is not transition:
+                key = (reference.component, reference.communicationType, event)
+                if key in always:
                     yield Finding(
                         transition,
-                        f"state `{state.name}` has a transition for this event already{on_line(first)}, expected one",
-                        "join the conditions of the two, or leave one of them out",
+                        f"this transition of state `{state.name}` is never tried: another one for this event, without"
+                        f" condition, stands before it{on_line(always[key])}",
+                        "move it before that one, or leave one of the two out",
                     )
+                elif transition.guard is None:
+                    always[key] = transition

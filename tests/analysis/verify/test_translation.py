@@ -114,7 +114,7 @@ def test_the_examples_are_translated_faithfully(name: str) -> None:
 
 
 @settings(max_examples=examples(6), suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
-@given(sct_models())
+@given(sct_models(requirements=True))
 def test_random_models_are_translated_faithfully(made: sct.SupervisoryControlModel) -> None:
     if supervised(made).supervisor is None:
         made.supervisor = sct.Supervisor(
