@@ -140,7 +140,7 @@ class ExpressionCheck:
             case ex.Conditional():
                 return self._conditional(expression, types)
             case rsc.Call():
-                return self._call(expression, types)
+                return declared_type(expression.function.type) if expression.function else UNKNOWN
             case rsc.InstanceQuantifier():
                 self._operand(expression.body, types[0], BOOLEAN, f"the condition of `{expression.quantifier}`")
         return infer(expression) if row is None else self._operator(expression, row, types)
@@ -158,14 +158,6 @@ class ExpressionCheck:
             self.report(choice.then, message, repair(choice.then, then, UNKNOWN))
             return UNKNOWN
         return then if then != UNKNOWN else otherwise
-
-    def _call(self, call: rsc.Call, types: list[Type]) -> Type:
-        if call.function is None:
-            return UNKNOWN
-        for parameter, argument, found in zip(call.function.parameters, call.arguments, types, strict=False):
-            wanted = declared_type(parameter.type)
-            self._operand(argument, found, wanted, f"argument `{parameter.name}` of `{call.function.name}`")
-        return declared_type(call.function.type)
 
     def report(self, element: ex.Located, message: str, hint: str) -> None:
         """Notes a finding."""

@@ -168,7 +168,9 @@ class _Linker:
         if name.text in parameters:
             argument.parameter = parameters[name.text]
         else:
-            self._missing(name, f"`{made_of.name}` has no parameter", parameters)
+            repair = did_you_mean(name.text, parameters, cutoff=0.6)
+            named = f"its parameters are {enumeration(f'`{written(other)}`' for other in parameters)}"
+            self._report(name, f"`{made_of.name}` has no parameter `{name.text}`", repair or named, rule="argument")
 
     def _call(self, call: rsc.Call, name: Name) -> None:
         own = self._around(call, rsc.Component)

@@ -249,7 +249,7 @@ class _Transformation:
             argument = rosgraph.WireAccess(steps=steps, type=self.wire_type(enum.type))
             assert isinstance(reached, robosc.ComplexDataTypeReference)
             given = bound_arguments(enum.parameters, reached.arguments)
-            arguments = {name: self.instances.expanded(value, within) for name, value in given.items()}
+            arguments = {name: self.instances.expanded.constant(value, within) for name, value in given.items()}
             call = rosgraph.ConversionCall(conversion=self.conversion(enum, arguments), argument=argument)
             return call, reached
         return rosgraph.WireAccess(steps=steps, type=self.wire_type(reached)), reached

@@ -73,6 +73,10 @@ class Expansion:
                 self.too_large[expression] = None
         return self._known[key]
 
+    def constant(self, expression: ex.Expression, within: Instance | None) -> ex.Expression:
+        """A constant expression as a literal; as it is, names written out, where it has no value."""
+        return _folded(self(expression, within))
+
     def argued(self, expression: ex.Expression, arguments: Arguments) -> ex.Expression:
         """An expression outside of components, with values for parameters, such as the condition of an enum's rule."""
         self._made = 0
@@ -98,7 +102,7 @@ class Expansion:
                 written = yield from self._call(element, environment)
                 if written is not None:
                     return written
-            case robosc.InstanceQuantifier(template=robosc.Component()) if self._instances is not None:
+            case robosc.InstanceQuantifier(template=robosc.Component()) if self._instances and not self._readable:
                 return (yield from self._quantified(element, environment))
         return (yield from self._copy(element, environment))
 

@@ -121,6 +121,10 @@ class RoboscPrinter(Printer):
             case robosc.ArrayQuantifier():
                 array, body = texts
                 return Printed(f"({expression.quantifier} {written(expression.element.name)} in {array}: {body})")
+            case robosc.InstanceQuantifier():
+                return Printed(f"({expression.quantifier} {written(expression.template.name)}: {texts[0]})")
+            case robosc.Call():
+                return Printed(f"{written(expression.function.name)}({', '.join(texts)})")
             case robosc.ArrayLiteral():
                 return Printed(f"[{', '.join(texts)}]")
         return super().write(expression, given)

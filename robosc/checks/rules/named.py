@@ -8,6 +8,7 @@ from robosc.checks.definitions import of_kind, statements
 from robosc.checks.expression_types import CONSTANT, ExpressionCheck
 from robosc.checks.libraries import instances
 from robosc.checks.rule import Finding, on_line, rule
+from robosc.checks.type_repairs import repair
 from robosc.diagnostics import Severity
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
@@ -15,7 +16,7 @@ from robosc.metamodel.reflection import tree
 from robosc.semantics.cone_of_influence import accesses, conditions
 from robosc.semantics.expansion import LARGEST, constant_value
 from robosc.semantics.operators import operator_of
-from robosc.semantics.typing import INTEGER, declared_type, type_of
+from robosc.semantics.typing import INTEGER, UNKNOWN, declared_type, type_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -82,11 +83,20 @@ def arguments(base: rsc.Base) -> Iterator[Finding]:
                 if len(element.arguments) != len(parameters):
                     names = [parameter.name for parameter in parameters]
                     yield _wrong_number(element, element.function.name, len(element.arguments), names)
+                yield from _called(element)
             case rsc.InstantiatedComponent() | rsc.ImportedComponent() if element.definition is not None:
                 yield from _given(element, element.definition, element.arguments)
             case rsc.ComplexDataTypeReference() if isinstance(element.type, rsc.EnumDataType | rsc.ObjectDataType):
                 yield from _of_type(element)
     yield from _defaults(base)
+
+
+def _called(call: rsc.Call) -> Iterator[Finding]:
+    for parameter, given in zip(call.function.parameters, call.arguments, strict=False):
+        wanted, found = declared_type(parameter.type), type_of(given)
+        if UNKNOWN not in {found, wanted} and found != wanted:
+            message = f"the argument for `{parameter.name}` must be {wanted}, found {found}"
+            yield Finding(given, message, repair(given, found, wanted))
 
 
 def _of_type(reference: rsc.ComplexDataTypeReference) -> Iterator[Finding]:
