@@ -63,13 +63,15 @@ class _Findings:
         done = "taken" if silent else _DONE.get(plant.kind, "sent")
         if observed.forbidden is Forbidden.BY_REQUIREMENTS:
             why, hint = f"wherever it could be, {forbid(observed.requirements, 'it')}", "loosen what it needs"
-        elif observed.counterexample is not None:
+        elif observed.counterexample is not None and not observed.kept_away:
             why, hint = counterexample_in_words(observed.counterexample, self._model), way_out(observed.counterexample)
             if observed.counterexample.violated and plant.kind == sct.PlantKind.action:
                 hint = f"{hint} (what the action `needs` cancels it; `never` and `always` do not let it start)"
         elif observed.kept_away:
             why = f"the supervisor lets the robot reach no state in which it could be {done}"
             hint = "allow a way to such a state"
+            if observed.counterexample is not None:
+                why += f": {counterexample_in_words(observed.counterexample, self._model)}"
         elif silent:
             why, hint = _guard(event), "correct its guard or what leads to its state"
         else:

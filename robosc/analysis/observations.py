@@ -9,6 +9,7 @@ from itertools import combinations
 from typing import TYPE_CHECKING
 
 from robosc.analysis.blocking import BlockingCounterexample, blocking_counterexample, forbidding, never_ready
+from robosc.analysis.paths import shortest_path
 from robosc.metamodel import sct
 from robosc.semantics.roles import plant_of, provide_numbers
 from robosc.synthesis.decoding import Value, pick, value
@@ -45,7 +46,7 @@ class NeverEnabled:
     `plants` are those which forbid it alone wherever the robot may come, `requirements` those which forbid it wherever
     the plants enable it, be it only in states that the supervisor keeps the robot from: see `forbidding`.
     `kept_away` says that the plants forbid it for that reason only. `counterexample` is there where synthesis forbids
-    it.
+    it, or holds back what leads to where it could happen, because of a requirement that would be violated.
     """
 
     event: sct.Event
@@ -207,13 +208,32 @@ class Observer:
             forbidden = not (enabled & relation.requirement).satisfiable()
             if not enabled.satisfiable() or not (in_sight.satisfiable() or forbidden):
                 plants, kept_away = never_ready(relation, controlled), enabled.satisfiable()
-                yield NeverEnabled(event, Forbidden.BY_PLANTS, plants=plants, kept_away=kept_away)
+                counterexample = self._on_the_way(enabled) if kept_away and self._system.violations else None
+                yield NeverEnabled(
+                    event, Forbidden.BY_PLANTS, plants=plants, kept_away=kept_away, counterexample=counterexample
+                )
             elif forbidden:
                 yield NeverEnabled(
                     event, Forbidden.BY_REQUIREMENTS, requirements=forbidding(permission.relation, enabled)
                 )
             else:
                 yield NeverEnabled(event, Forbidden.BY_SYNTHESIS, counterexample=self._counterexample(permission))
+
+    def _on_the_way(self, goal: Diagram) -> BlockingCounterexample | None:
+        """What is prevented by what synthesis holds back on a shortest way of the plants to one of these states.
+
+        None where something else stops the robot there, or what is prevented violates no requirement.
+        """
+        system = self._system
+        within = system.uncontrolled
+        way = shortest_path(system.encoding, system.plant_moves, system.encoding.initial, goal & within, within)
+        for (relation, _), state in zip(way.moves, way.states, strict=False) if way is not None else ():
+            permission = self._permissions.get(relation.event)
+            if permission is not None and not system.is_in(state, permission.allowed):
+                here = self._held_back(permission) & system.encoding.state(state)
+                found = self._counterexample(permission, here) if here.satisfiable() else None
+                return found if found is not None and found.violated else None
+        return None
 
     def _silent_restricted(self) -> Iterator[SilentRestricted]:
         for event, permission in self._permissions.items():

@@ -110,6 +110,25 @@ def test_synthesis_keeps_away_from_where_something_uncontrollable_leads_to_a_vio
     )
 
 
+def test_what_could_happen_only_beyond_names_the_requirement(tmp_path: Path) -> None:
+    """An event that is kept out of reach: the requirement and the uncontrollable event, with a trace."""
+    horn = "component Horn { incoming message toot with type: none }"
+    made = sct_of(
+        tmp_path,
+        STOP,
+        BASE.replace("state driving {", "state driving { on request to toot"),
+        horn,
+        "requirement SR1: never Stop.stopped and Base.driving",
+    )
+    (toot,) = [one for one in supervise(made).findings if one.message.startswith("`Horn.toot` can never")]
+    assert toot.rule == "never-enabled"
+    assert toot.message == (
+        "`Horn.toot` can never be sent: the supervisor lets the robot reach no state in which it could be sent: after "
+        "request to `Base.drive`, response from `Stop.pressed` can't be prevented, and then `requirement SR1: never "
+        "Stop.stopped and Base.driving` is violated"
+    )
+
+
 def test_a_state_that_is_out_of_reach_says_what_keeps_it_out(tmp_path: Path) -> None:
     made = sct_of(tmp_path, STOP, BASE, "requirement SR1: never Stop.stopped and Base.driving")
     unreachable = next(one for one in supervise(made).findings if one.rule == "unreachable-state")

@@ -29,9 +29,9 @@ ARM = """
 """
 
 
-def read_robot(folder: Path, *definitions: str) -> tuple[list[str], sct.SupervisoryControlModel | None]:
+def read_robot(folder: Path, *definitions: str, arm: str = ARM) -> tuple[list[str], sct.SupervisoryControlModel | None]:
     path = folder / "robot.rscd"
-    path.write_text(f"robot R {{ {ARM} {' '.join(definitions)} }}", encoding="utf-8")
+    path.write_text(f"robot R {{ {arm} {' '.join(definitions)} }}", encoding="utf-8")
     reading = read(path)
     found = [*reading.findings, *check(reading.base, reading.findings)]
     texts = [f"{finding.rule}: {finding.message}" for finding in found]
@@ -322,6 +322,47 @@ def test_the_words_are_names_elsewhere(tmp_path: Path) -> None:
         "requirement at after since",
         "requirement at most 2 most since at",
     ]
+
+
+LIBRARY = """library Arms {
+    component Arm {
+        incoming message grip with type: none
+        incoming message place with type: none
+        requirement O1: place after each grip
+        requirement Held: automaton {
+            initial state no { on request to grip goto yes }
+            state yes { on request to place goto no }
+        }
+        requirement never Held.no and Held.yes
+        requirement place needs Held.yes
+        property reachable Held.yes
+    }
+}"""
+
+
+def test_each_instance_of_a_component_of_a_library_has_its_own(tmp_path: Path) -> None:
+    """Requirements stand in components, also in libraries; `Left.O1` is that of the instance."""
+    (tmp_path / "arms.rscd").write_text(LIBRARY, encoding="utf-8")
+    left, right = (
+        f'component {name} from Arms import Arm with {{ grip: "/{name}/grip", place: "/{name}/place" }}'
+        for name in ("Left", "Right")
+    )
+    between = "requirement at most 2 { Left.place, request to Right.place } since Left.grip"
+    findings, made = read_robot(tmp_path, left, right, between, arm="")
+    assert findings == []
+    supervise(made)
+    assert [plant.name for plant in made.plants if plant.kind == sct.PlantKind.requirement] == [
+        "requirement_1",
+        "requirement_Left_O1",
+        "requirement_Left_Held",
+        "requirement_Right_O1",
+        "requirement_Right_Held",
+    ]
+    assert [invariant.text for invariant in made.invariants] == ["requirement never Held.no and Held.yes"] * 2
+    engine = Engine(made)
+    engine.perform("message_Left_grip.c_trigger")
+    assert engine.enabled("message_Left_place.c_trigger")
+    assert not engine.enabled("message_Right_place.c_trigger")
 
 
 def test_format_keeps_what_is_laid_out() -> None:

@@ -85,6 +85,8 @@ def unique_variable(base: rsc.Base) -> Iterator[Finding]:
         for definition in members:
             is_state = isinstance(definition, rsc.State)
             # That a state has the name of another state is the matter of `unique-state`.
+            if definition.name is None:
+                continue
             if definition.name in first and not (is_state and definition.name in known):
                 yield _declared_again("variable", definition, first[definition.name], where)
             if is_state:
