@@ -156,6 +156,7 @@ class _Transformation:
         sending = rosgraph.Sending(
             name=port.communication.name,
             event=self.trace.event(port, event.kind),
+            onChange=isinstance(port.communication, robosc.Message) and port.communication.onChange,
             source=port.communication.source,
         )
         sent = data_type(port.communication, event)

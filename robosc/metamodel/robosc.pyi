@@ -122,7 +122,8 @@ class Message(CommunicationType):
     """A message on a topic."""
     direction: MessageDirection
     type: DataType
-    def __init__(self, *, direction: MessageDirection | None = ..., type: DataType | None = ..., identifier: str | None = ..., interface: Interface | None = ..., computedIdentifier: expression.Expression | None = ..., source: Place | None = ..., name: str | None = ...) -> None: ...
+    onChange: bool | None
+    def __init__(self, *, direction: MessageDirection | None = ..., type: DataType | None = ..., onChange: bool | None = ..., identifier: str | None = ..., interface: Interface | None = ..., computedIdentifier: expression.Expression | None = ..., source: Place | None = ..., name: str | None = ...) -> None: ...
 
 class Service(CommunicationType):
     """A request that is answered once."""

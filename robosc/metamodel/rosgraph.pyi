@@ -86,7 +86,8 @@ class Sending(expression.NamedElement):
     """Data that goes out with an event; its name is the communication's in the robot model."""
     event: sct.Event
     alternatives: MutableSequence[ProvidedData]
-    def __init__(self, *, event: sct.Event | None = ..., alternatives: Iterable[ProvidedData] = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
+    onChange: bool | None
+    def __init__(self, *, event: sct.Event | None = ..., alternatives: Iterable[ProvidedData] = ..., onChange: bool | None = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class ProvidedData(expression.Located):
     """The data of one provide statement."""

@@ -194,6 +194,11 @@ def _in_arrays(found: dict[Path, Read]) -> Shown:
     return made
 
 
+def paths_set(sending: rosgraph.Sending) -> list[Path]:
+    """The fields that the model sets, `()` for the whole, in the order of the model."""
+    return list(dict.fromkeys(tuple(field.path) for data in sending.alternatives for field in data.fields))
+
+
 def parts_with_headers(sending: rosgraph.Sending) -> list[tuple[str, ...]]:
     """The data as a whole, `()`, and its parts on the way to fields that the model sets, by their path, sorted.
 
@@ -201,7 +206,7 @@ def parts_with_headers(sending: rosgraph.Sending) -> list[tuple[str, ...]]:
     where it has a field `header`. A part of which the model sets some field of `header` is not among them: that header
     is the model's.
     """
-    paths = [tuple(field.path) for data in sending.alternatives for field in data.fields]
+    paths = paths_set(sending)
     parts = {()} | {path[:length] for path in paths for length in range(1, len(path))}
     given = {path[: path.index("header")] for path in paths if "header" in path}
     return sorted(part for part in parts - given if "header" not in part)

@@ -7,7 +7,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from robosc.checks.definitions import communication_of, of_kind, restricted_events, statements, transitions
+from robosc.checks.definitions import (
+    communication_of,
+    communications,
+    of_kind,
+    restricted_events,
+    statements,
+    transitions,
+)
 from robosc.checks.libraries import instances
 from robosc.checks.rule import Finding, on_line, rule
 from robosc.metamodel import robosc as rsc
@@ -37,6 +44,29 @@ def requirement_event(base: rsc.Base) -> Iterator[Finding]:
                 )
     if any(True for _ in statements(rsc.AutomatonRequirement, base)):
         yield from _readers(base)
+    yield from _sent_on_change(base)
+
+
+def _sent_on_change(base: rsc.Base) -> Iterator[Finding]:
+    """What is sent on change and comes from its component, or is named as an event: when it goes out means nothing."""
+    for message in communications(base):
+        if isinstance(message, rsc.Message) and message.onChange and message.direction == rsc.MessageDirection.outgoing:
+            what = f"`{message.name}` comes from its component whenever that sends it, expected an incoming message"
+            yield Finding(message, f"{what} before `send: change`", "leave `, send: change` out")
+    named: list[tuple[ex.Located, rsc.CommunicationReference]] = []
+    named += [(event, event.communicationType) for event in named_events(base)]
+    for _, transition in transitions(base):
+        if isinstance(transition, rsc.ResultTransition):
+            named.append((transition, transition.communicationType))
+    for where, reference in named:
+        sent = communication_of(reference)
+        if isinstance(sent, rsc.Message) and sent.onChange and sent.direction == rsc.MessageDirection.incoming:
+            yield Finding(
+                where,
+                f"`{sent.name}` is sent when its data changes, expected no transition, order, count or automaton that"
+                " names it",
+                "leave `, send: change` out, or this",
+            )
 
 
 def _readers(base: rsc.Base) -> Iterator[Finding]:

@@ -13,7 +13,14 @@ from robosc.m2t.ros.names import CppNames, kept_for
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
 from robosc.semantics.definition import reported
-from robosc.semantics.messages import first_value, holds_objects, is_structured, parts_with_headers, reads_elements
+from robosc.semantics.messages import (
+    first_value,
+    holds_objects,
+    is_structured,
+    parts_with_headers,
+    paths_set,
+    reads_elements,
+)
 from robosc.semantics.naming import Names
 from robosc.semantics.operators import PRECEDENCE
 from robosc.semantics.roles import Roles
@@ -93,6 +100,7 @@ class Alternative:
 class Message:
     """Data that the node sends: a message, a request or a goal.
 
+    `on_change` are the fields that are compared, where it is sent on change only.
     It may fail where a double could be no finite number, or where it `reads_elements` of arrays. `reaction` is what
     sending it changes in the node; `parts` may hold headers that are the node's to fill in, "" is the whole.
     """
@@ -103,6 +111,7 @@ class Message:
     alternatives: list[Alternative]
     may_fail: bool
     reads_elements: bool
+    on_change: list[str] | None
     reaction: EventHandler | None
     parts: list[str]
 
@@ -115,6 +124,11 @@ class Publisher:
     topic: str
     interface: rosgraph.Interface
     messages: list[Message]
+
+    @property
+    def on_change(self) -> bool:
+        """Whether all of its messages are sent on change only."""
+        return all(message.on_change is not None for message in self.messages)
 
 
 @dataclass(frozen=True)
@@ -461,6 +475,7 @@ class Node:
             [self._alternative(provided) for provided in sending.alternatives],
             reads or any(infer(value) in {DOUBLE, ArrayType(DOUBLE)} for value in values),
             reads,
+            [".".join(path) for path in paths_set(sending)] if sending.onChange else None,
             self._handler(sending.event) if self._reactions(sending.event) else None,
             [".".join(path) for path in parts_with_headers(sending)],
         )

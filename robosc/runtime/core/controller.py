@@ -6,7 +6,7 @@ import time
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial, reduce
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from robosc.configuration import NO_STOP, NO_STOP_ON_SILENCE
 from robosc.engine import Settings as LoopSettings
@@ -19,7 +19,7 @@ from robosc.runtime.core.monitors import GraphMonitor, Watchdog
 from robosc.runtime.core.node_data import NotFiniteError, bounded, fill, hand_on
 from robosc.runtime.core.settings import SafeMessages
 from robosc.runtime.core.times import RESOLUTION_MS
-from robosc.semantics.messages import holds_objects, parts_with_headers
+from robosc.semantics.messages import holds_objects, parts_with_headers, paths_set
 from robosc.semantics.operators import UnreadableError
 from robosc.semantics.parameters import topic_words, watchdog
 from robosc.semantics.roles import event_name, plant_of
@@ -49,6 +49,16 @@ class _Sender:
     client: ActionClient | None = None
     message: Message = None
     logged: Mapping[str, Json] | None = None
+    #: What was handed over last, as long as it could have been sent again; of what is sent on change.
+    handed: Message = None
+
+    @property
+    def unchanged(self) -> bool:
+        """Whether what was made last is what was handed over last."""
+        return self.handed is not None and all(
+            _plain(reduce(getattr, path, self.handed)) == _plain(reduce(getattr, path, self.message))
+            for path in paths_set(self.sending)
+        )
 
 
 @dataclass
@@ -86,6 +96,7 @@ class Controller(EventHandler):
         self._stopping = False
         self._patience = self._farewell = 0.0
         self._senders: dict[sct.Event, _Sender] = {}
+        self._on_change: list[_Sender] = []
         self._failures: dict[Client, _Failure] = {}
         self._resets: dict[sct.Event, _Failure] = {}
         self._cancels: dict[sct.Event, ActionClient] = {}
@@ -117,7 +128,9 @@ class Controller(EventHandler):
         send: Callable[[Message], None],
     ) -> None:
         frame = self._settings.configuration.frame_id.get(name.removeprefix("/"), "")
-        self._senders[sending.event] = _Sender(sending, owner.interface, section, frame, send)
+        sender = self._senders[sending.event] = _Sender(sending, owner.interface, section, frame, send)
+        if sending.onChange:
+            self._on_change.append(sender)
 
     # The node's life
 
@@ -252,7 +265,7 @@ class Controller(EventHandler):
                 self._send_outside(self._safe.on_withheld)
             return False
         self._withheld.discard(name)
-        return True
+        return not (sender.sending.onChange and sender.unchanged)
 
     def _may_wait(self, event: sct.Event) -> bool:
         return event not in self._cancels
@@ -290,13 +303,24 @@ class Controller(EventHandler):
         # What may no longer be sent is no longer withheld.
         self._withheld = {command for command in self._withheld if self._control.engine.enabled(command)}
         super()._after(name)
+        for sender in self._on_change:
+            if not self._control.engine.enabled(event_name(sender.sending.event)):
+                sender.handed = None
 
     def _act(self, event: sct.Event) -> tuple[str, Mapping[str, Json] | None] | None:
         sender = self._senders.get(event)
         if sender is not None:
             sender.send(sender.message)
+            if sender.sending.onChange:
+                sender.handed = sender.message
             return "out", sender.logged
         if event in self._cancels:
             self._cancels[event].cancel()
             return "out", None
         return None
+
+
+def _plain(value: Any) -> Any:
+    """A value to be compared: an array, of numpy or not, as a list."""
+    is_array = hasattr(value, "__len__") and not isinstance(value, (str, bytes))
+    return list(value) if is_array else value

@@ -182,7 +182,9 @@ class Ros2Node(Node):
         return self.quality(element.topic, qos_profile_sensor_data if sensor else None)
 
     def _publisher(self, publisher: rosgraph.Publisher) -> Any:
-        self._qualities[publisher] = self.quality(publisher.topic)
+        kept = all(sending.onChange for sending in publisher.sendings)
+        usual = QoSProfile(depth=QUEUE_DEPTH, durability=DurabilityPolicy.TRANSIENT_LOCAL) if kept else None
+        self._qualities[publisher] = self.quality(publisher.topic, usual)
         return self.node.create_publisher(
             self._types[publisher.interface],
             publisher.topic,

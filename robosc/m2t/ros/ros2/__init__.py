@@ -57,7 +57,7 @@ class Ros2:
             "headers": self._headers(node, headers, strings=configuration.publish_state_information),
             **_build(libraries, types, started, _TESTED if tests else []),
             "subscription_qos": lambda topic: _quality(_usual(topic), topic.topic, configuration),
-            "publisher_qos": lambda topic: _quality(f"rclcpp::QoS({QUEUE_DEPTH})", topic.topic, configuration),
+            "publisher_qos": lambda topic: _quality(_sent(topic), topic.topic, configuration),
             "client_qos": lambda client: _quality(_client(client), client.name, configuration),
         }
 
@@ -110,6 +110,11 @@ def _client(client: Client) -> str:
 def _chosen(name: str, configuration: Configuration) -> QualityOfService:
     """What the configuration says of a topic, service or action."""
     return configuration.qos.get(name.removeprefix("/")) or QualityOfService()
+
+
+def _sent(topic: Publisher) -> str:
+    """What is usual for what is sent: what is sent on change only is kept for those who come later."""
+    return f"rclcpp::QoS({QUEUE_DEPTH}){'.transient_local()' if topic.on_change else ''}"
 
 
 def _quality(usual: str, name: str, configuration: Configuration, *, with_durability: bool = True) -> str:
