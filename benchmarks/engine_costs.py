@@ -35,6 +35,7 @@ PROGRAM = """\
 
 static {p}_supervisor robot;
 static unsigned steps;
+static uint32_t now;
 static uint64_t number = 1U;
 
 static uint64_t chance(void)
@@ -79,20 +80,21 @@ int main(int words, char **word)
     const {p}_hooks hooks = {{ NULL, NULL, count, NULL }};
     const unsigned batches = (unsigned)atoi(word[1]);
     (void)words;
-    {p}_init(&robot, NULL, word[2][0] == 's' ? &hooks : NULL);
-    {p}_tick(&robot);
+    {p}_init(&robot, NULL, word[2][0] == 's' ? &hooks : NULL{now});
+    {p}_tick(&robot{now});
     for (unsigned batch = 1U; batch <= batches; ++batch) {{
         const int event = choose();
         set();
         steps = 0U;
-        {p}_begin(&robot);
-        if (event >= 0) {p}_perform(&robot, ({p}_event)event);
-        {p}_end(&robot);
+        now += 10U;
+        {p}_begin(&robot{now});
+        if (event >= 0) {p}_perform(&robot, ({p}_event)event{now});
+        {p}_end(&robot{now});
         printf("batch %u %d\\n", steps, event);
         if (batch % 4U == 0U) {{
             const unsigned before = enabled();
             steps = 0U;
-            {p}_tick(&robot);
+            {p}_tick(&robot{now});
             printf("tick %u %u\\n", steps, before);
         }}
     }}
@@ -221,6 +223,7 @@ def _program(model: SupervisoryControlModel, source: Path) -> Path:
     main.write_text(
         PROGRAM.format(
             p=names.prefix,
+            now=", now" if roles.timeouts else "",
             incoming=", ".join(names.enumerator(event) for event in roles.incoming or roles.events),
             queued=len(roles.cancels) + len(roles.triggers),
             inputs="\n".join(_inputs(model, names)),

@@ -258,11 +258,13 @@ class Writer:
         common = [candidate for candidate in free if self.random.randrange(6) == 0]
         body += [self.transition(component, *candidate) for candidate in common]
         body += [self.silent(component, self.goto(component)) for _ in self.many(1)]
+        body += [self.timed(component, everywhere=True)] * (self.random.randrange(6) == 0)
         marked = [state for state in component.states if self.one([True, False])] or component.states[-1:]
         for index, state in enumerate(component.states):
             own = [candidate for candidate in free if candidate not in common and self.random.randrange(4) == 0]
             inside = [self.transition(component, *candidate) for candidate in own]
             inside += [self.silent(component, self.goto(component)) for _ in self.many(2)]
+            inside += [self.timed(component) for _ in self.many(2) if self.random.randrange(3) == 0]
             if state not in marked:
                 inside.append(self.silent(component, f" goto {self.one(marked)}"))
             kinds = ["initial "] * (index == 0) + ["marked "] * (state in marked)
@@ -287,6 +289,17 @@ class Writer:
     def silent(self, component: Component, goto: str) -> str:
         guard = self.maybe(f" if {self.expression(BOOLEAN, self.readable(finite=True), 3)}")
         return f"transition{guard}{self.assigned(component, [])}{goto}"
+
+    def timed(self, component: Component, *, everywhere: bool = False) -> str:
+        """A transition that waits; outside of states for the silence of a message, if there is one."""
+        messages = [(owner, found) for owner in self.components for found in owner.communications]
+        heard = [self.reference(owner, found) for owner, found in messages if found.kind == "outgoing"]
+        if everywhere and not heard:
+            return ""
+        named = self.random.sample(heard, min(len(heard), self.random.randrange(everywhere, 3)))
+        without = f" without {', '.join(named)}" if named else ""
+        time = self.one(["1 ms", "0.5 s", "2 min", "(1 + 2) * 3 s", "24 * 24 * 60 min"])
+        return f"after {time}{without}{self.assigned(component, [])}{self.goto(component)}"
 
     def goto(self, component: Component) -> str:
         return self.maybe(f" goto {self.one(component.states)}")

@@ -516,6 +516,9 @@ static void follow(void)
             break;
         }
         printf(" = %d", result);
+#ifdef TIMES
+        printf(" %lu", (unsigned long)ENGINE(wait)(&robot, now));
+#endif
         get(code);
         tell(code, CELLS);
     }

@@ -35,7 +35,7 @@ class LoopWalk:
 
     Events, inputs and cells are told as their position in the model, values as their code. `script` is what `follow`
     in the explorer reads; `said` has what it is to say of each operation: a letter, what happened (`!`: a livelock),
-    whether the event did, and the state after it.
+    whether the event did, in models with times when the next is up, and the state after it.
     """
 
     def __init__(self, model: sct.SupervisoryControlModel, operations: int) -> None:
@@ -130,7 +130,9 @@ class LoopWalk:
     def _say(self, operation: str, result: bool) -> None:
         state = self._loop.state
         codes = (value - domain.low for value, domain in zip(state.cells, state.layout.domains, strict=True))
-        self.said.append(" ".join(map(str, (operation, *self._happened, "=", int(result), *codes))))
+        timers = self._loop.timers
+        wait = [2**32 - 1 if timers.wait is None else timers.wait] * timers.exist
+        self.said.append(" ".join(map(str, (operation, *self._happened, "=", int(result), *wait, *codes))))
         self._happened.clear()
 
     def difference(self, theirs: list[str], text: str) -> str | None:
@@ -141,7 +143,7 @@ class LoopWalk:
                 at = _OPERATIONS.get(ours[0], "an event")
                 events = [", ".join(self._told(line)) or "nothing happens" for line in (told, ours)]
                 if events[0] == events[1]:
-                    events = ["the state is another one", "not"]
+                    events = ["the state is another one, or the time of the next call", "not"]
                 return f"in the control loop of {text}, at {at}: {events[0]}; in that of the model: {events[1]}"
         return None
 

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from robosc.metamodel import sct
 from tests.m2t.supervisor import corners
 from tests.m2t.supervisor.driver import write
 from tests.m2t.supervisor.test_supervisor import dock, supervised
@@ -16,8 +17,14 @@ pytestmark = pytest.mark.build
 
 ROOT = Path(__file__).parents[3]
 EXAMPLES = [path for path in sorted((ROOT / "examples").glob("*/*.rscd")) if path.stem == path.parent.name]
-#: What no example needs: wide ranges, enumerations, names that nothing bounds.
-OTHERS = (dock, corners.shared, corners.swap, corners.data, corners.incoming, corners.cancels)
+
+
+def guard() -> sct.SupervisoryControlModel:
+    return supervised(ROOT / "tests" / "runtime" / "guard.rscd")
+
+
+#: What no example needs: wide ranges, enumerations, names that nothing bounds, times.
+OTHERS = (dock, guard, corners.shared, corners.swap, corners.data, corners.incoming, corners.cancels)
 
 
 def found(sources: Sequence[Path]) -> set[str]:

@@ -1,0 +1,97 @@
+"""Times in the engine in C: it is told what time it is, and says when it wants to be called."""
+
+import re
+import shutil
+from pathlib import Path
+
+import pytest
+
+import robosc
+from benchmarks.engine_costs import measured
+from robosc.configuration import ControlLoop
+from robosc.m2t.c import engine
+from robosc.metamodel import sct
+from tests.m2t.supervisor.driver import build, run
+
+pytestmark = pytest.mark.build
+
+GUARD = Path(__file__).parents[2] / "runtime" / "guard.rscd"
+
+
+def made(path: Path) -> sct.SupervisoryControlModel:
+    model = robosc.to_sct(robosc.load(path))
+    robosc.synthesize(model)
+    return model
+
+
+@pytest.mark.parametrize("small", [64, 0])
+def test_it_is_correct_over_the_wrap_of_32_bits(tmp_path: Path, small: int) -> None:
+    """`now` (milliseconds, wrapping 32 bits): a time that starts 400 ms before the wrap is up after it."""
+    start = 2**32 - 400
+    built = build(made(GUARD), tmp_path, small=small)
+    script = []
+    for at in (100, 399, 400, 800, 999, 1000, 2000):
+        script += [f"now {(start + at) % 2**32}", "begin", "perform message_scan.u_response", "end", "expire"]
+    expired = [line for line in run(built, script, str(start)) if line.startswith("expire:")]
+    told = [re.fullmatch(r"expire:(.*) = \d; (\d+); .*", line) for line in expired]
+    assert [(found[1].strip(), int(found[2])) for found in told if found] == [
+        ("", 500),
+        ("", 500),
+        ("", 500),
+        ("", 200),
+        ("", 1),
+        ("component_Base.u_after2", 500),
+        ("", 500),
+    ]
+
+
+def test_a_time_that_goes_back_starts_all_times_anew(tmp_path: Path) -> None:
+    """Also where the clock has wrapped meanwhile."""
+    script = ["now 200", "tick", f"now {2**32 - 5}", "tick", "expire"]
+    lines = run(build(made(GUARD), tmp_path), script, "100")
+    assert [line.split("; ")[1].split(";")[0] for line in lines] == ["400", "500", "500"]
+
+
+def test_without_times_nothing_is_added() -> None:
+    """Models without timers keep their API: no `now`, no deadline."""
+    model = made(Path(__file__).parent / "dock.rscd")
+    text = "".join(engine.generate(model, ControlLoop()).values())
+    assert not re.search(r"\bnow\b|_expire|_wait\b|resolution", text.replace("can happen now", ""))
+
+
+def test_it_reads_no_clock_and_allocates_nothing() -> None:
+    """It reads no clock; no heap."""
+    text = "".join(engine.generate(made(GUARD), ControlLoop()).values())
+    assert set(re.findall(r"#include <(.*)>", text)) == {"stdbool.h", "stdint.h", "stddef.h"}
+
+
+def ring(folder: Path, states: int) -> sct.SupervisoryControlModel:
+    """A component with so many states that each wait for a time and for a silence."""
+    text = "".join(
+        f"{'' if number else 'initial marked '}state s{number} {{ after {number + 1} s goto s{(number + 1) % states}"
+        f" on response from next goto s{(number + 1) % states} }}\n"
+        for number in range(states)
+    )
+    path = folder / f"ring{states}.rscd"
+    path.write_text(
+        'robot Ring { component A { outgoing message next with identifier: "/next", type: none'
+        ' incoming message lamp with identifier: "/lamp", type: none'
+        f" behaviour {{ after 5 s without next do on_ := true variable on_: boolean\n{text} }} }}"
+        " requirement lamp needs A.s0 }"
+    )
+    return made(path)
+
+
+@pytest.mark.slow
+def test_a_thousand_timed_states_cost_no_more_per_tick_than_one(tmp_path: Path) -> None:
+    """Counted in instructions, which are the same on each machine."""
+    if shutil.which("valgrind") is None:
+        pytest.skip("valgrind is not installed")
+    costs = {}
+    for states in (70, 1000):
+        folder = tmp_path / str(states)
+        folder.mkdir()
+        costs[states] = measured(ring(tmp_path, states), folder)
+    assert costs[1000].tick is not None
+    assert costs[70].tick is not None
+    assert costs[1000].tick.most <= costs[70].tick.most * 1.02
