@@ -320,7 +320,20 @@ class Writer:
         condition = self.expression(BOOLEAN, self.readable(finite=True), 3)
         named = [self.reference(*self.one(sent)) for _ in self.many(2, 1)]
         target = f"{{ {', '.join(named)} }}" if len(named) > 1 else named[0]
-        return self.one([f"requirement {target} needs {condition}", f"requirement {condition} disables {target}"])
+        anchor = self.reference(*self.one(sent))
+        text = self.maybe(' "why"')
+        heading = self.maybe(f"R{self.random.randrange(10**6)}{text}: ", 4)
+        often = [f"{target} needs {condition}", f"{condition} disables {target}"]
+        seldom = [
+            f"never {condition}",
+            f"always {condition}",
+            f"{target} after {self.maybe('each ')}{anchor}",
+            f"at most {self.random.randint(1, 4)} {target} since {anchor}",
+            f"automaton {{ initial state a {{ on {anchor} if {condition} goto b }} state b {{ on {anchor} goto a }} }}",
+        ]
+        said = self.one([*often * 3, *seldom])
+        claimed = f"property reachable {condition}{self.maybe(f' from {condition}')}"
+        return f"requirement {heading}{said} {self.maybe(claimed, 6)}"
 
     def provide(self, component: Component, communication: Communication) -> str:
         if communication.sent == NONE:

@@ -416,9 +416,9 @@ class _Transformation:
         else:
             assert isinstance(claimed, robosc.ReachabilityProperty)
             made, said = sct.ReachabilityProperty(condition=condition), f"reachable {said}"
-            if claimed.origin is not None:
-                made.origin = self.expressions(claimed.origin, within)
-                said += f" from {self.print(self.instances.expanded(claimed.origin, within, readable=True))}"
+            if claimed.premise is not None:
+                made.premise = self.expressions(claimed.premise, within)
+                said += f" from {self.print(self.instances.expanded(claimed.premise, within, readable=True))}"
         made.name, made.source = _stated_name(statement), claimed.source
         made.text = f"{self.heading(statement)} {said}"
         self.model.properties.append(made)

@@ -471,8 +471,8 @@ class InvariantProperty(Property):
 
 class ReachabilityProperty(Property):
     """Where the supervised robot can get to."""
-    origin: expression.Expression | None
-    def __init__(self, *, origin: expression.Expression | None = ..., condition: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
+    premise: expression.Expression | None
+    def __init__(self, *, premise: expression.Expression | None = ..., condition: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
 
 class NeedsRequirement(CommunicationRequirement):
     """The communication may start only where the condition holds."""

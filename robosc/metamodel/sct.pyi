@@ -136,8 +136,8 @@ class InvariantProperty(Property):
 
 class ReachabilityProperty(Property):
     """A state with the condition can be reached."""
-    origin: expression.Expression | None
-    def __init__(self, *, origin: expression.Expression | None = ..., condition: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
+    premise: expression.Expression | None
+    def __init__(self, *, premise: expression.Expression | None = ..., condition: expression.Expression | None = ..., name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
 
 class Supervisor(expression.Located):
     """The maximally permissive, controllable, non-blocking supervisor."""

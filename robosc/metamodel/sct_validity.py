@@ -183,7 +183,7 @@ CHECKS: Checks = {
     sct.Requirement: [_RESTRICTABLE, typed("condition")],
     sct.StateInvariant: [typed("condition")],
     sct.Property: [typed("condition")],
-    sct.ReachabilityProperty: [typed("origin")],
+    sct.ReachabilityProperty: [typed("premise")],
     sct.EventGuard: [_CONTROLLABLE, typed("requirement"), typed("synthesis")],
     sct.InputReference: [_read],
     sct.Supervisor: [_guards],

@@ -148,7 +148,7 @@ def _stated(instances: Instances) -> Iterator[tuple[ex.Expression | None, Instan
     for claimed in instances.statements(robosc.Property):
         yield claimed.element.condition, claimed.within
         if isinstance(claimed.element, robosc.ReachabilityProperty):
-            yield claimed.element.origin, claimed.within
+            yield claimed.element.premise, claimed.within
     for required in instances.statements(robosc.CommunicationRequirement):
         yield required.element.condition, required.within
     for provided in (statement for port in instances.ports() for statement in instances.provided(port)):

@@ -161,12 +161,12 @@ def claim_holds(system: GuardedSystem, claimed: sct.Property) -> Verdict:
         return invariant_holds(system, claimed)
     assert isinstance(claimed, sct.ReachabilityProperty)
     states = system.controlled
-    start, goal = states & system.encoding.holds(claimed.origin), states & system.encoding.holds(claimed.condition)
+    start, goal = states & system.encoding.holds(claimed.premise), states & system.encoding.holds(claimed.condition)
     stuck = {claimed: start & ~coreachable(system.diagrams, steps(system.moves), goal, states)}
     asked = RobotPrinter()(claimed.condition)
 
     def explanation(_: object, path: Path) -> str:
-        read = [*referenced(claimed.origin), *referenced(claimed.condition)]
+        read = [*referenced(claimed.premise), *referenced(claimed.condition)]
         return f"from `{system.where(path.states[-1], read)}` no state with `{asked}` can be reached"
 
     origin = counted(system.encoding.count(start), "state")

@@ -80,7 +80,7 @@ def _requirements(base: rsc.Base) -> Iterator[Finding]:
     for claimed in statements(rsc.Property, base):
         yield from _boolean(claimed.condition, "the condition of a property", _REQUIREMENT)
         if isinstance(claimed, rsc.ReachabilityProperty):
-            yield from _boolean(claimed.origin, "the condition behind `from`", _REQUIREMENT)
+            yield from _boolean(claimed.premise, "the condition behind `from`", _REQUIREMENT)
     for automaton in statements(rsc.AutomatonRequirement, base):
         for transition in (transition for state in automaton.states for transition in state.transitions):
             yield from _boolean(transition.guard, "the condition behind `if`", _REQUIREMENT)
