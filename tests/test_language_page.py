@@ -30,6 +30,18 @@ def test_the_snippets_make_a_model(tmp_path: Path) -> None:
     assert robosc.synthesize(robosc.to_sct(robot)).controlledStates > 1
 
 
+def test_the_snippet_on_time_is_a_behaviour(tmp_path: Path) -> None:
+    time = PAGE.read_text(encoding="utf-8").partition("\n### Time\n")[2]
+    behaviour = re.findall(r"^```\n(.*?)^```$", time, flags=re.MULTILINE | re.DOTALL)[0]
+    heard = "\n".join(f"outgoing message {name} with type: none" for name in ("scan", "bumper"))
+    behaviour = behaviour.replace("behaviour {", "behaviour {\n variable turned: boolean", 1)
+    path = tmp_path / "turner.rscd"
+    path.write_text(f"robot Turner {{ constant turn: integer = 800 component Base {{ {heard} {behaviour} }} }}")
+    robot = robosc.load(path)
+    assert robosc.check(robot) == []
+    assert robosc.synthesize(robosc.to_sct(robot)).controlledStates == 3
+
+
 def test_the_standard_library_is_what_the_page_says() -> None:
     page = PAGE.read_text(encoding="utf-8")
     for file in locate("robosc/stdlib").glob("*.rscd") if locate("metamodel").is_dir() else ():
