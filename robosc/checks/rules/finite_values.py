@@ -78,9 +78,10 @@ def _has_objects(found: Type) -> bool:
 def _stored(base: rsc.Base) -> set[rsc.Variable]:
     """The variables in which data is stored that came in, in one step or several."""
     assigned = [
-        (assigned_variable(assignment), assignment.value)
+        (variable, value)
         for _, transition in transitions(base)
-        for assignment in transition.assignments
+        # Of several to one variable the last counts.
+        for variable, value in {assigned_variable(given): given.value for given in transition.assignments}.items()
     ]
     found: set[rsc.Variable] = set()
     more = True
@@ -95,6 +96,10 @@ def _stored(base: rsc.Base) -> set[rsc.Variable]:
     return found
 
 
+#: What the node keeps has too many values.
+_KEPT_REPAIR = "let a variable remember what matters of it, such as `do some := size(value.…) > 0`"
+
+
 def _without_domain(_: Instances, result: ConeOfInfluence) -> Iterator[Fault]:
     for owned, reason in result.variables.items():
         found = declared_type(owned.type)
@@ -105,7 +110,7 @@ def _without_domain(_: Instances, result: ConeOfInfluence) -> Iterator[Fault]:
                 reason,
                 f"variable `{name}` is {found}, and the supervisor needs it, expected boolean, an integer with a range"
                 " or an enum: its states are finitely many",
-                _enum_repair(str(found)),
+                _KEPT_REPAIR if isinstance(found, ArrayType | ObjectType) else _enum_repair(str(found)),
             )
     for reading in readings(result):
         access = reading.reason.access

@@ -1,0 +1,40 @@
+"""Expressions over arrays in scripts: what can't be read does not happen, what is not given is not asked for."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import robosc
+from robosc.simulation import Simulation
+
+ARRAYS = Path(__file__).parents[1] / "runtime" / "arrays.rscd"
+
+
+@pytest.fixture(scope="module")
+def simulation() -> Simulation:
+    robot = robosc.load(ARRAYS)
+    model = robosc.to_sct(robot)
+    robosc.synthesize(model)
+    return Simulation(model, robosc.to_rosgraph(robot))
+
+
+@pytest.mark.parametrize(
+    ("data", "accepted"),
+    [
+        ({"ranges": [1.0, 2.0], "first": 0, "last": 1}, True),
+        # A slice past the end, an index below 0, `min` of nothing can't be read.
+        ({"ranges": [1.0, 2.0], "first": 0, "last": 2}, False),
+        ({"ranges": [1.0, 2.0], "first": -1, "last": 1}, False),
+        ({"ranges": [1.0, 2.0], "first": 1, "last": 0}, False),
+        # Of an array that is not there, or of a slice whose ends are not, nothing is known.
+        ({"ranges": [1.0, 2.0]}, True),
+        ({"first": 0, "last": 2}, True),
+    ],
+)
+def test_a_script_says_what_comes_in(simulation: Simulation, data: dict[str, Any], *, accepted: bool) -> None:
+    happened = simulation.perform("message_scan.u_response", {"value": data})
+    assert happened.accepted is accepted
+    assert (None if happened.by is None else str(happened.by)) == (None if accepted else "data")
