@@ -12,7 +12,8 @@ from robosc.metamodel import sct
 from robosc.semantics.cone_of_influence import LARGEST_TABLE
 from robosc.semantics.evaluation import Program, Value, literal
 from robosc.semantics.printing import conjunction, disjunction
-from robosc.semantics.walks import copied, parts
+from robosc.semantics.typing import BOOLEAN, infer
+from robosc.semantics.walks import copied, fold, operands, parts, with_operands
 
 
 class TooLargeError(Exception):
@@ -35,7 +36,12 @@ _Table: TypeAlias = bool | _Column
 
 
 def tabulate(comparison: ex.Expression) -> ex.Expression:
-    """A condition over integer comparisons that holds exactly where the comparison does. Raises TooLargeError."""
+    """A condition over integer comparisons that holds exactly where the comparison does. Raises TooLargeError.
+
+    Of a choice between numbers its condition is a part of that.
+    """
+    choices: dict[sct.DiscreteVariable, ex.Expression] = {}
+    comparison = fold(lambda part, operands: _decided(part, operands, choices), comparison, _numbers)
     references = {_declaration(part): part for part in parts(comparison) if _declaration(part) is not None}
     ranges = [_range(reference) for reference in references]
     count = math.prod(map(len, ranges))
@@ -47,7 +53,23 @@ def tabulate(comparison: ex.Expression) -> ex.Expression:
     for depth in range(len(ranges) - 1, -1, -1):
         width = len(ranges[depth])
         rows = [_column(depth, ranges[depth], rows[first : first + width]) for first in range(0, len(rows), width)]
-    return _condition(rows[0], list(references.values()), ranges)
+    return _condition(rows[0], [choices.get(of, part) for of, part in references.items()], ranges)  # type: ignore[arg-type]
+
+
+def _numbers(part: ex.Expression) -> list[ex.Expression]:
+    """What a number is computed from: of a choice its branches."""
+    return [part.then, part.otherwise] if isinstance(part, ex.Conditional) else operands(part)
+
+
+def _decided(
+    part: ex.Expression, inside: list[ex.Expression], choices: dict[sct.DiscreteVariable, ex.Expression]
+) -> ex.Expression:
+    """The part, with a variable in the place of each condition."""
+    if not isinstance(part, ex.Conditional):
+        return with_operands(part, inside) if inside else copied(part)
+    variable = sct.DiscreteVariable(name="choice", type=ex.BooleanType())
+    choices[variable] = part.condition
+    return with_operands(part, [sct.VariableReference(variable=variable), *inside])
 
 
 def _column(depth: int, whole: range, rows: list[_Table]) -> _Table:
@@ -78,6 +100,8 @@ def _condition(table: _Table, references: list[ex.Expression], ranges: list[rang
 
 def _between(reference: ex.Expression, low: int, high: int, whole: range) -> list[ex.Expression]:
     """`low <= reference <= high`, without the bounds that the range has anyway."""
+    if _is_condition(reference):
+        return [copied(reference) if low else ex.Negation(operand=copied(reference))]
     if low == high:
         return [ex.Equation(left=copied(reference), right=literal(low))]
     bounds: list[ex.Expression] = []
@@ -86,6 +110,10 @@ def _between(reference: ex.Expression, low: int, high: int, whole: range) -> lis
     if high < whole[-1]:
         bounds.append(ex.LessOrEqual(left=copied(reference), right=literal(high)))
     return bounds
+
+
+def _is_condition(reference: ex.Expression) -> bool:
+    return infer(reference) == BOOLEAN
 
 
 def _all(conditions: list[ex.Expression]) -> ex.Expression:
@@ -105,6 +133,8 @@ def _declaration(reference: ex.Expression) -> sct.DiscreteVariable | sct.Input |
 
 def _range(declared: sct.DiscreteVariable | sct.Input | None) -> range:
     kind = declared.type if declared is not None else None
+    if isinstance(kind, ex.BooleanType):
+        return range(2)
     assert isinstance(kind, ex.IntegerType)
     assert kind.minimum is not None
     assert kind.maximum is not None

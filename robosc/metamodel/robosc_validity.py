@@ -86,7 +86,7 @@ def _owner(reference: robosc.CommunicationReference | robosc.Access) -> robosc.C
 def _definitions(component: robosc.Component) -> Sequence[Any]:
     """What a component's text defines, wherever that is; imports go round in no circle."""
     kind = component.type
-    while isinstance(kind, robosc.ImportedComponent):
+    while isinstance(kind, robosc.InstantiatedComponent | robosc.ImportedComponent):
         kind = kind.definition.type
     return kind.definitions if isinstance(kind, robosc.LocalComponent) else ()
 

@@ -91,8 +91,17 @@ class Oracle:
                 return left * right
         raise TypeError(expression)
 
-    def edges(self, event: sct.Event, state: State) -> list[sct.Edge] | None:
-        """The edges that the plants take together; None where the event is not enabled."""
+    def inputs(self, event: sct.Event) -> list[dict[sct.Input, Any]]:
+        """All that an event may come with."""
+        values = product(*(values_of(parameter.type) for parameter in event.inputs))
+        return [dict(zip(event.inputs, chosen, strict=True)) for chosen in values]
+
+    def enabled(self, event: sct.Event, state: State) -> bool:
+        """Whether the plants let the event happen with some data."""
+        return any(self.edges(event, state, inputs) is not None for inputs in self.inputs(event))
+
+    def edges(self, event: sct.Event, state: State, inputs: dict[sct.Input, Any]) -> list[sct.Edge] | None:
+        """The edges that the plants take together; None where the event is not enabled with this data."""
         taken = []
         for plant in self.model.plants:
             if not any(edge.event is event for edge in edges_of(plant)):
@@ -100,7 +109,7 @@ class Oracle:
             possible = [
                 edge
                 for edge in edges_from(state[self.places[plant]])
-                if edge.event is event and self.value(edge.guard, state, {})
+                if edge.event is event and self.value(edge.guard, state, inputs)
             ]
             if not possible:
                 return None
@@ -109,18 +118,16 @@ class Oracle:
 
     def successors(self, event: sct.Event, state: State) -> dict[State, dict[sct.Input, Any]]:
         """The states after the event, each with input values that lead there."""
-        if self.edges(event, state) is None:
-            return {}
         reached: dict[State, dict[sct.Input, Any]] = {}
-        for values in product(*(values_of(parameter.type) for parameter in event.inputs)):
-            inputs = dict(zip(event.inputs, values, strict=True))
-            reached.setdefault(self.successor(event, state, inputs), inputs)
+        for inputs in self.inputs(event):
+            if self.edges(event, state, inputs) is not None:
+                reached.setdefault(self.successor(event, state, inputs), inputs)
         return reached
 
     def successor(self, event: sct.Event, state: State, inputs: dict[sct.Input, Any]) -> State:
         """The state after an enabled event."""
         after = list(state)
-        for edge in self.edges(event, state) or ():
+        for edge in self.edges(event, state, inputs) or ():
             after[self.places[edge.target.eContainer()]] = edge.target
             for update in edge.updates:
                 value = self.value(update.value, state, inputs)
@@ -138,7 +145,7 @@ class Oracle:
     def violates(self, state: State) -> bool:
         """Whether some invariant does not hold, or something can come that is forbidden."""
         forbidden = (event for event in self.events if not event.controllable and not self.required(event, state))
-        return any(self.edges(event, state) is not None for event in forbidden) or not all(
+        return any(self.enabled(event, state) for event in forbidden) or not all(
             self.value(invariant.condition, state, {}) for invariant in self.model.invariants
         )
 

@@ -35,7 +35,7 @@ def check_guards(oracle: Oracle, supervisor: sct.Supervisor) -> None:
     for guard in supervisor.guards:
         ever = False
         for state in oracle.controlled:
-            enabled = oracle.edges(guard.event, state) is not None
+            enabled = oracle.enabled(guard.event, state)
             requirement, synthesis = (oracle.value(part, state, {}) for part in (guard.requirement, guard.synthesis))
             allowed = oracle.allows(guard.event, state)
             assert (enabled and requirement and synthesis) == allowed, describe(guard)
@@ -48,7 +48,7 @@ def check_guards(oracle: Oracle, supervisor: sct.Supervisor) -> None:
 
 def check_parts_say_something(oracle: Oracle, guard: sct.EventGuard) -> None:
     """A part is absent where it would be true in every state that the rest leaves."""
-    states = [state for state in oracle.controlled if oracle.edges(guard.event, state) is not None]
+    states = [state for state in oracle.controlled if oracle.enabled(guard.event, state)]
     if guard.requirement is not None:
         assert not all(oracle.required(guard.event, state) for state in states), describe(guard)
     if guard.synthesis is not None:

@@ -1,0 +1,135 @@
+"""Random robots that use what the language's second edition adds."""
+
+from __future__ import annotations
+
+from tests.random_robots import BOOLEAN, DOUBLE, INTEGER, NONE, Communication, Component, Type, Variable, Writer, paths
+
+_NAMED = (
+    "constant k0: integer = 1 + 1",
+    "constant k1: double = 0.5 * 2",
+    "constant k2: boolean = k0 > 3",
+    "function f0(a: integer, b: integer): integer = if a > b then a - b else k0",
+    "function f1(a: boolean): boolean = !a or k2",
+)
+
+
+class SecondWriter(Writer):
+    """Writes names for values and conditions, templates, alternatives, times, and requirements on states and orders."""
+
+    def __init__(self, seed: int) -> None:
+        super().__init__(seed, mistakes=False)
+        self.constants = [("k0", INTEGER), ("k1", DOUBLE), ("k2", BOOLEAN)]
+        self.conditions: list[str] = []
+        self.templates: list[str] = []
+
+    def robot(self, name: str) -> str:
+        head, *lines, end = super().robot(name).split("\n")
+        finite = self.readable(finite=True)
+        for number in self.many(2):
+            condition = self.expression(BOOLEAN, finite, 2)
+            lines.append(f"condition q{number} = {condition}")
+            self.conditions.append(f"q{number}")
+        sent = [(c, m) for c in self.components for m in c.communications if m.kind != "outgoing"]
+        for number in self.many(2):
+            lines.append(self.one([self.invariant, self.order])(number, sent))
+        if self.conditions and sent:
+            target = self.reference(*self.one(sent))
+            lines.append(
+                f"requirement N: {target} needs {self.one(self.conditions)} or {self.expression(BOOLEAN, finite, 2)}"
+            )
+        return "\n".join([head, *_NAMED, *lines, *self.templates, end])
+
+    def declare(self, number: int) -> None:
+        super().declare(number)
+        if self.random.randrange(3) == 0:
+            self.template(number)
+
+    def template(self, number: int) -> None:
+        """A component with parameters, made several times."""
+        name = f"Made{number}"
+        made = [
+            Communication(f"bump{number}", "outgoing", data={"response": NONE}),
+            Communication(f"lamp{number}", "incoming", sent=BOOLEAN),
+        ]
+        self.templates.append(
+            f"component {name}(topic: string, most: integer(1..3), step: integer = 1) {{\n"
+            f'outgoing message bump{number} with identifier: topic + "/bump", type: none\n'
+            f'incoming message lamp{number} with identifier: topic + "/lamp", type: boolean\n'
+            f"condition full = times >= most\nprovide lamp{number} with full\nbehaviour {{\n"
+            "variable times: integer(0..most + 1)\n"
+            f"initial marked state up {{ on response from bump{number} if full do times := 0"
+            f" on response from bump{number} do times := times + step goto off }}\n"
+            f"state off {{ transition if times > step goto up on request to lamp{number} goto up }}\n}}\n}}"
+        )
+        for index in self.many(2, 1):
+            component = Component(
+                f"{name}I{index}", list(made), [Variable("times", INTEGER, may_be_needed=True)], ["up", "off"]
+            )
+            component.text = f'component {component.name} is {name}("/{name.lower()}{index}", {self.one([1, 2, 3])})'
+            self.templates.append(component.text)
+            self.components.append(component)
+        word = self.one(["all", "any"])
+        self.conditions.append(f"({word} {name}: {name}.{self.one(['off', 'times > 1', 'full'])})")
+        self.conditions.append(f"(count {name}: {name}.up) {self.one(['<', '>='])} {self.one('12')}")
+
+    def transition(self, component: Component, owner: Component, communication: Communication, event: str) -> str:
+        """Several that are tried in order."""
+        last = super().transition(component, owner, communication, event)
+        data = paths("value", communication.data.get(event, NONE))
+        made = []
+        for _ in self.many(2):
+            guard = self.guard(data)
+            plain = super().transition(component, owner, communication, event)
+            head = f"on {event} {plain.split(' ')[2]} {plain.split(' ')[3]}"
+            made.append(f"{head} if {guard}{plain.removeprefix(head)}")
+        return " ".join([*made, *([last] if not made or self.one([True, False]) else [])])
+
+    def guard(self, data: list[tuple[str, Type]]) -> str:
+        """A condition over data, over what the supervisor knows, or both."""
+        known = self.expression(BOOLEAN, self.readable(finite=True), 2)
+        told = self.expression(BOOLEAN, [read for read in data if "[" not in read[0]], 2)
+        return self.one([known, f"({told})", f"({known}) {self.one(['and', 'or'])} ({told})"])
+
+    def invariant(self, number: int, _sent: list[tuple[Component, Communication]]) -> str:
+        condition = self.expression(BOOLEAN, self.readable(finite=True), 2)
+        named = self.one([f"I{number}: ", f'I{number} "as it is": ', ""])
+        return f"{self.one(['requirement', 'property'])} {named}{self.one(['never', 'always'])} {condition}"
+
+    def order(self, number: int, sent: list[tuple[Component, Communication]]) -> str:
+        others = [
+            (c, m, event)
+            for c in self.components
+            for m in c.communications
+            for event in ("response",)
+            if event in m.data
+        ]
+        if not sent or not others:
+            return ""
+        left = self.reference(*self.one(sent))
+        owner, communication, event = self.one(others)
+        right = f"{event} from {self.reference(owner, communication)}"
+        return self.one(
+            [
+                f"requirement O{number}: {left} after {right}",
+                f"requirement {left} after each {right}",
+                f"requirement at most {self.one('12')} {left} since {right}",
+            ]
+        )
+
+    def expression(self, kind: Type, reads: list[tuple[str, Type]], depth: int, *, constant: bool = True) -> str:
+        if depth > 0 and self.random.randrange(6) == 0:
+            condition = super().expression(BOOLEAN, reads, depth - 1)
+            one, other = (
+                super(SecondWriter, self).expression(kind, reads, depth - 1, constant=constant) for _ in range(2)
+            )
+            return f"(if {condition} then {one} else {other})"
+        return super().expression(kind, reads, depth, constant=constant)
+
+    def literals(self, kind: Type) -> list[str]:
+        named = [name for name, found in self.constants if found == kind]
+        return [*super().literals(kind), *named]
+
+
+def second_edition_robot(seed: int, name: str = "R") -> str:
+    """The text of a robot, the same for the same seed, in which no rule finds an error."""
+    return SecondWriter(seed).robot(name)
