@@ -35,8 +35,7 @@ from tests.fuzz.mutants import mutant  # noqa: E402
 from tests.fuzz.saved_mutants import saved_mutant  # noqa: E402
 from tests.fuzz.special import special_tried  # noqa: E402
 from tests.fuzz.trial import called, saved_tried, time_limit, tried  # noqa: E402
-from tests.fuzz.valid import checked, compared, compiled  # noqa: E402
-from tests.random_robots import random_robot  # noqa: E402
+from tests.fuzz.valid import checked, compared, compiled, valid_robot  # noqa: E402
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -193,7 +192,7 @@ def _in_parallel(trial: Callable[[range], Result], chunks: list[range], jobs: in
 def _files(kind: str, seed: int) -> dict[str, str]:
     """The files of a model that was tried; none of those that stand where no file is."""
     if kind == "valid":
-        return {"model.rscd": random_robot(seed, f"R{seed}", mistakes=False)}
+        return {"model.rscd": valid_robot(seed)}
     if _kind(seed) == "saved":
         return saved_mutant(seed)[1]
     return {"model.rscd": mutant(seed)} if _kind(seed) == "text" else {}

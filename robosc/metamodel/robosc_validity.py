@@ -50,8 +50,8 @@ def _access(access: robosc.Access, _model: Model) -> Iterator[Fault]:
         if item.eContainer() not in [behaviour.automaton for behaviour in behaviours]:
             yield access, f"'{item.name}' is no state or variable of '{component.name}'"
             return
-    elif access.component is not None:
-        yield access, "only a state or a variable is one of a component"
+    elif access.component is not None and item not in _definitions(access.component):
+        yield access, "only a state, a variable, a constant or a condition is one of a component"
         return
     types = access_types(access, value_type(access))
     for before, segment in zip(types, access.segments, strict=False):

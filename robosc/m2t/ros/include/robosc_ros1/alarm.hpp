@@ -15,8 +15,8 @@
 namespace robosc {
 inline namespace v1 {
 
-/// A clock and one timer on it, which calls a function: the steady clock or, with use_sim_time, ROS time. The calls come
-/// through the node's callback queue, behind the messages that came before.
+/// A clock and one timer on it, which calls a function: the steady clock or, with use_sim_time, ROS time. The calls
+/// come through the node's callback queue, behind the messages that came before.
 class Alarm {
  public:
   Alarm(ros::NodeHandle& node, std::function<void()> ring) : ring_(std::move(ring)) {
@@ -60,7 +60,8 @@ class Alarm {
   static constexpr std::int64_t kMillisecond = 1000000;
 
   static std::int64_t nanoseconds() {
-    return static_cast<std::int64_t>(ros::Time::isSimTime() ? ros::Time::now().toNSec() : ros::SteadyTime::now().toNSec());
+    return static_cast<std::int64_t>(ros::Time::isSimTime() ? ros::Time::now().toNSec()
+                                                            : ros::SteadyTime::now().toNSec());
   }
 
   void call() {
