@@ -129,6 +129,23 @@ def test_no_import_breaks_the_rule() -> None:
     assert broken == []
 
 
+#: What the second reading of a robot's text shares with the first: how expressions are computed, and walks over them.
+COMMON = {"evaluation", "operators", "walks"}
+
+
+def test_the_second_reading_shares_nothing_with_the_first() -> None:
+    used = {
+        tuple(imported)
+        for importer, nodes in modules()
+        if importer[:3] == ("analysis", "verify", "model_reading")
+        for root, *imported in imports(nodes)
+        if root == "robosc"
+    }
+    assert {imported[0] for imported in used} == {"analysis", "metamodel", "semantics"}
+    assert {imported[1] for imported in used if imported[0] == "semantics"} == COMMON
+    assert {imported[1] for imported in used if imported[0] == "analysis"} == {"verify", "wording", "paths"}
+
+
 @pytest.mark.parametrize("library", LIBRARIES)
 def test_a_library_stays_in_its_room(library: str) -> None:
     used = {room(importer) for importer, nodes in modules() for name, *_ in imports(nodes) if name == library}

@@ -67,13 +67,14 @@ def test_a_table_and_a_count(run: Run, door: Path) -> None:
         ["bounded response", "proved", "2 states, at most 0 silent events in a row"],
         ["confluence", "proved", "2 states, 2 of them at rest"],
         ["non-blocking in the control loop", "proved", "2 states"],
+        ["model-translation", "proved", "2 states, 2 events"],
         ["c-translation", "skipped", ""],
     ]
     assert answer.stdout.endswith(
         "\nc-translation: no C compiler is here\n\n"
-        "Trusted, not examined: that plants and requirements are what the text says, the control loop around the "
-        "events, the C compiler, RoboSC itself; docs/verify.md says more.\n\n"
-        "Door: 10 proved, 1 skipped\n"
+        "Trusted, not examined: the reading of the text itself, the control loop around the events, the C compiler, "
+        "RoboSC itself; docs/verify.md says more.\n\n"
+        "Door: 11 proved, 1 skipped\n"
     )
 
 

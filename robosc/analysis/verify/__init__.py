@@ -5,7 +5,8 @@
 `properties` and `response` are about the supervised system, on decision diagrams; the states that the control loop
 comes to are found in `loop`. `c_validation` and `cif_validation` are translation validation: they do not ask how a text
 was made, but read it anew, the C with a compiler, the CIF with a grammar of its own, and compare it with the model
-(Pnueli, Siegel, Singerman: Translation validation, TACAS 1998).
+(Pnueli, Siegel, Singerman: Translation validation, TACAS 1998). `model_reading` does so the other way: it reads the
+text of the robot anew, and holds the plants that were made of it against that.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from robosc.analysis.system import GuardedSystem
 from robosc.analysis.verify import c_validation, cif_validation
 from robosc.analysis.verify.c_validation import Effort, validate_c
 from robosc.analysis.verify.cif_validation import validate_cif
+from robosc.analysis.verify.model_reading import validate_model
 from robosc.analysis.verify.properties import properties
 from robosc.analysis.verify.verdict import Outcome, Verdict
 from robosc.m2t import cif, supervisor
@@ -31,15 +33,26 @@ if TYPE_CHECKING:
     from robosc.metamodel import sct
     from robosc.synthesis.encoding import Encoding
 
-__all__ = ["Effort", "Outcome", "Verdict", "validate", "validate_c", "validate_cif", "verify", "verify_system"]
+__all__ = [
+    "Effort",
+    "Outcome",
+    "Verdict",
+    "validate",
+    "validate_c",
+    "validate_cif",
+    "validate_model",
+    "verify",
+    "verify_system",
+]
 
 
 def verify(models: Models, configuration: Configuration) -> list[Verdict]:
-    """The verdicts on a model with its supervisor, and on the C and the CIF that the configuration makes of it.
+    """The verdicts on a model with its supervisor, on how it was made, and on what the configuration makes of it.
 
     Raises ValueError where the model has no supervisor, MemoryError where decision diagrams take more than 4 GB.
     """
-    return [*verify_system(models.sct), *validate(models, configuration)]
+    read = _timed(lambda: validate_model(models.robosc, models.sct))
+    return [*verify_system(models.sct), read, *validate(models, configuration)]
 
 
 def verify_system(model: sct.SupervisoryControlModel, *, memory: int = MEMORY) -> list[Verdict]:

@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 
 #: What no verdict is about.
 TRUSTED = (
-    "Trusted, not examined: that plants and requirements are what the text says, the control loop around the events, "
-    "the C compiler, RoboSC itself; docs/verify.md says more."
+    "Trusted, not examined: the reading of the text itself, the control loop around the events, the C compiler, RoboSC "
+    "itself; docs/verify.md says more."
 )
 
 

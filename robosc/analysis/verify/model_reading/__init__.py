@@ -1,0 +1,44 @@
+"""A second reading of a robot's text, held against the plants and requirements that were made of it.
+
+    verdict = validate_model(robot, model)
+
+`text` interprets the linked robot by the pages of the language alone, `plants` the sct model; neither knows how the one
+was made from the other, but for the names of plants, events and inputs. `lockstep` goes through both at once.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robosc.analysis.verify.model_reading.lockstep import DifferenceError, Effort, Lockstep
+from robosc.analysis.verify.model_reading.plants import read_plants
+from robosc.analysis.verify.model_reading.text import UnlikeError, read_text
+from robosc.analysis.verify.verdict import Outcome, Verdict
+
+if TYPE_CHECKING:
+    from robosc.metamodel import robosc, sct
+
+#: What the verdict is called.
+PROPERTY = "model-translation"
+ENOUGH = Effort()
+
+__all__ = ["PROPERTY", "Effort", "validate_model"]
+
+
+def validate_model(robot: robosc.Base | None, model: sct.SupervisoryControlModel, effort: Effort = ENOUGH) -> Verdict:
+    """Whether plants and requirements do what the text says: in every state that the requirements let it come to."""
+    if robot is None:
+        return Verdict(PROPERTY, Outcome.SKIPPED, "", "the model was not read from its text")
+    try:
+        plants = read_plants(model)
+        walked = Lockstep(read_text(robot, plants), plants, effort).run()
+    except UnlikeError as unlike:
+        source = unlike.source.source if unlike.source is not None else None
+        line = f" (line {source.span.line})" if source is not None else ""
+        return Verdict(PROPERTY, Outcome.REFUTED, "", f"{unlike}{line}")
+    except DifferenceError as difference:
+        return Verdict(PROPERTY, Outcome.REFUTED, "", difference.explanation, difference.trace)
+    evidence = f"{walked.states:,} states, {walked.events:,} events"
+    if walked.exhaustive:
+        return Verdict(PROPERTY, Outcome.PROVED, evidence)
+    return Verdict(PROPERTY, Outcome.SAMPLED, f"{evidence}, and {effort.steps:,} random steps")

@@ -1,0 +1,399 @@
+"""Two readings of a robot, side by side: the text's and the plants', from the initial state on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import product
+from math import prod
+from random import Random
+from typing import TYPE_CHECKING, NamedTuple
+
+from robosc.analysis.paths import TraceStep
+from robosc.analysis.verify.model_reading.plants import AmbiguousError
+from robosc.analysis.wording import words
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+    from robosc.analysis.verify.model_reading.machine import (
+        Claim,
+        Domain,
+        Event,
+        Literal,
+        Machine,
+        Outcome,
+        Restriction,
+        Slot,
+        Value,
+    )
+    from robosc.metamodel import expression as ex
+
+
+class DifferenceError(Exception):
+    """The readings differ: how, and the events that lead there."""
+
+    def __init__(self, explanation: str, trace: Sequence[TraceStep] = ()) -> None:
+        super().__init__(explanation)
+        self.explanation = explanation
+        self.trace = tuple(trace)
+
+
+@dataclass(frozen=True)
+class Effort:
+    """How far to look.
+
+    Up to so many `states`, computing so many effects of events (`values`), of one event in one state for so many
+    values of its `inputs`; where that is not all, on a random way of so many `steps`.
+    """
+
+    states: int = 1_000_000
+    values: int = 2_000_000
+    inputs: int = 100_000
+    steps: int = 10_000
+
+
+class Walked(NamedTuple):
+    """What was compared."""
+
+    states: int
+    events: int
+    exhaustive: bool
+
+
+class _Pair:
+    """An event in both readings, and what it does by both in the states met so far."""
+
+    def __init__(self, text: Event, plants: Event, layout: _Layout, most: int) -> None:
+        self.text, self.plants = text, plants
+        self.reads = sorted(text.reads | plants.reads)
+        self.mask = layout.mask(self.reads)
+        self.known: dict[int, tuple[tuple[int, int], ...]] = {}
+        self.domains = plants.inputs
+        self.is_sampled = prod(map(_size, self.domains.values())) > most
+
+    def choices(self, random: Random) -> Iterator[dict[str, Value]]:
+        """Values of all inputs; some, where there are too many."""
+        if not self.is_sampled:
+            for values in product(*self.domains.values()):
+                yield dict(zip(self.domains, values, strict=True))
+        else:
+            ends = [(domain[0], domain[-1]) for domain in self.domains.values()]
+            for values in product(*ends) if len(ends) < 10 else ():
+                yield dict(zip(self.domains, values, strict=True))
+            for _ in range(100):
+                yield self.choice(random)
+
+    def choice(self, random: Random) -> dict[str, Value]:
+        """A random value of each input."""
+        return {name: domain[random.randrange(_size(domain))] for name, domain in self.domains.items()}
+
+
+class _Layout:
+    """States as whole numbers: some bits for each slot that anything reads."""
+
+    def __init__(self, domains: Mapping[Slot, Domain]) -> None:
+        self.domains = domains
+        self._places: dict[Slot, tuple[int, int]] = {}
+        place = 0
+        for slot, domain in domains.items():
+            bits = (_size(domain) - 1).bit_length()
+            self._places[slot] = place, (1 << bits) - 1
+            place += bits
+
+    def mask(self, slots: Iterable[Slot]) -> int:
+        """The bits of some slots."""
+        return sum(ones << place for place, ones in (self._places[slot] for slot in slots))
+
+    def value(self, slot: Slot, state: int) -> Value:
+        """What a slot holds."""
+        place, ones = self._places[slot]
+        return self.domains[slot][state >> place & ones]
+
+    def change(self, writes: Mapping[Slot, Value]) -> tuple[int, int]:
+        """The bits that stay and those that are added, where slots get values."""
+        kept, added = -1, 0
+        for slot, value in writes.items():
+            if slot in self._places:
+                place, ones = self._places[slot]
+                kept &= ~(ones << place)
+                added |= self.domains[slot].index(value) << place  # type: ignore[arg-type]
+        return kept, added
+
+
+class Lockstep:
+    """The comparison of a text with its plants."""
+
+    def __init__(self, text: Machine, plants: Machine, effort: Effort) -> None:
+        _same_things(text, plants)
+        self._effort = effort
+        self._random = Random(0)  # noqa: S311 - the same values on every run
+        self._values = 0
+        claims = list(zip(text.conditions, plants.conditions, strict=True))
+        read = {slot for event in (*text.events.values(), *plants.events.values()) for slot in event.reads}
+        read |= {slot for pair in claims for claim in pair for slot in claim.condition.reads}
+        self._layout = _Layout({slot: domain for slot, domain in text.domains.items() if slot in read})
+        self._pairs = [
+            _Pair(event, plants.events[name], self._layout, effort.inputs) for name, event in text.events.items()
+        ]
+        self._claims = [
+            (claim, other, self._layout.mask(reads), sorted(reads), set[int]())
+            for claim, other in claims
+            for reads in [claim.condition.reads | other.condition.reads]
+        ]
+        self._initial = self._layout.change(text.initial)[1]
+        self._before: dict[int, int] = {}
+
+    def run(self) -> Walked:
+        """Compares all states, or as many as the effort allows and then some more; raises DifferenceError."""
+        states, is_whole = self._explore()
+        if not is_whole or any(pair.is_sampled for pair in self._pairs):
+            self._wander()
+            is_whole = False
+        return Walked(states, len(self._pairs), is_whole)
+
+    def _explore(self) -> tuple[int, bool]:
+        """Goes to all states by the fewest events."""
+        self._before = {self._initial: self._initial}
+        layer = [self._initial]
+        while layer:
+            reached: list[int] = []
+            for state in layer:
+                self._claimed(state, state)
+                for pair in self._pairs:
+                    key = state & pair.mask
+                    found = pair.known.get(key)
+                    if found is None:
+                        found = pair.known[key] = self._compared(pair, state)
+                    for kept, added in found:
+                        successor = state & kept | added
+                        if successor not in self._before:
+                            self._before[successor] = state
+                            reached.append(successor)
+                if len(self._before) > self._effort.states or self._values > self._effort.values:
+                    return len(self._before), False
+            layer = reached
+        return len(self._before), True
+
+    def _wander(self) -> None:
+        """Goes on a random way, with random data."""
+        state, trace = self._initial, list[TraceStep]()
+        for _ in range(self._effort.steps):
+            self._claimed(state, trace)
+            possible = []
+            for pair in self._pairs:
+                inputs = pair.choice(self._random)
+                change = self._effect(pair, self._state(pair.reads, state), inputs, trace)
+                if change is not None:
+                    possible.append((change, _step(pair, inputs)))
+            if not possible or len(trace) == 100:
+                state, trace = self._initial, []
+                continue
+            (kept, added), step = self._random.choice(possible)
+            state = state & kept | added
+            trace.append(step)
+
+    def _compared(self, pair: _Pair, state: int) -> tuple[tuple[int, int], ...]:
+        held = self._state(pair.reads, state)
+        changes: dict[tuple[int, int], None] = {}
+        for inputs in pair.choices(self._random):
+            self._values += 1
+            change = self._effect(pair, held, inputs, state)
+            if change is not None:
+                changes[change] = None
+        return tuple(changes)
+
+    def _state(self, slots: Iterable[Slot], state: int) -> dict[Slot, Value]:
+        return {slot: self._layout.value(slot, state) for slot in slots}
+
+    def _effect(
+        self, pair: _Pair, held: Mapping[Slot, Value], inputs: Mapping[str, Value], way: int | Sequence[TraceStep]
+    ) -> tuple[int, int] | None:
+        """What an event changes by both readings; None where it can't happen, or is forbidden."""
+        ours = pair.text.happen(held, inputs)
+        try:
+            theirs = pair.plants.happen(held, inputs)
+        except AmbiguousError as error:
+            said = f"{error} for {words(pair.plants.element)}{_line(error.source)}"
+            raise self._difference(said, held, inputs, way) from error
+        said = _unlike(ours, theirs, held, pair)
+        if said:
+            raise self._difference(said, held, inputs, way)
+        if ours.refused or ours.forbidden:
+            return None
+        return self._layout.change(ours.writes)
+
+    def _claimed(self, state: int, way: int | Sequence[TraceStep]) -> None:
+        """Compares the conditions of invariants and properties."""
+        for claim, other, mask, reads, known in self._claims:
+            if state & mask not in known:
+                known.add(state & mask)
+                held = self._state(reads, state)
+                ours = _holds(claim, held)
+                if ours is not _holds(other, held):
+                    said = f"{claim.what}{_line(claim.source)} {'holds' if ours else 'does not hold'} by the text"
+                    said += f" and {'does not' if ours else 'does'} in the model{_where(held)}"
+                    raise DifferenceError(said, self._way(way))
+
+    def _difference(
+        self,
+        said: str,
+        held: Mapping[Slot, Value],
+        inputs: Mapping[str, Value],
+        way: int | Sequence[TraceStep],
+    ) -> DifferenceError:
+        data = f" with {', '.join(f'{name} = {_text(value)}' for name, value in inputs.items())}" if inputs else ""
+        return DifferenceError(f"{said}{_where(held)}{data}", self._way(way))
+
+    def _way(self, way: int | Sequence[TraceStep]) -> list[TraceStep]:
+        """The events that lead to a state, by the fewest."""
+        if not isinstance(way, int):
+            return list(way)
+        steps: list[TraceStep] = []
+        while way != self._initial:
+            before = self._before[way]
+            steps.append(self._between(before, way))
+            way = before
+        return steps[::-1]
+
+    def _between(self, before: int, after: int) -> TraceStep:
+        for pair in self._pairs:
+            if any(before & kept | added == after for kept, added in pair.known.get(before & pair.mask, ())):
+                held = self._state(pair.reads, before)
+                for inputs in pair.choices(Random(0)):  # noqa: S311
+                    outcome = pair.text.happen(held, inputs)
+                    if not outcome.refused and not outcome.forbidden:
+                        kept, added = self._layout.change(outcome.writes)
+                        if before & kept | added == after:
+                            return _step(pair, inputs)
+        raise AssertionError(f"no event leads from {before} to {after}")
+
+
+def _same_things(text: Machine, plants: Machine) -> None:
+    """What can be compared without going anywhere: which slots and events there are, and how they begin."""
+    for slot in dict.fromkeys([*text.domains, *plants.domains]):
+        _same_slot(slot, text, plants)
+    for name in dict.fromkeys([*text.events, *plants.events]):
+        ours, theirs = text.events.get(name), plants.events.get(name)
+        if ours is None or theirs is None:
+            only = "the model" if ours is None else "the text"
+            raise DifferenceError(f"event `{name.name}` of `{name.plant.origin}` is only in {only}")
+        _same_event(ours, theirs)
+    mine, other = ([claim.what for claim in machine.conditions] for machine in (text, plants))
+    if mine != other:
+        raise DifferenceError("the invariants and properties of the model are others than those of the text")
+
+
+def _same_slot(slot: Slot, text: Machine, plants: Machine) -> None:
+    here, there = text.domains.get(slot), plants.domains.get(slot)
+    said = f"{_called(slot)}{_line(text.sources.get(slot))}"
+    if here is None or there is None:
+        raise DifferenceError(f"{said} is only in {'the model' if here is None else 'the text'}")
+    if _kind(here) != _kind(there):
+        raise DifferenceError(f"{said} has {_values(here)} by the text, {_values(there)} in the model")
+    first, other = text.initial[slot], plants.initial[slot]
+    if first != other:
+        raise DifferenceError(f"{said} begins at {_text(first)} by the text, at {_text(other)} in the model")
+    for location in sorted(text.marked.get(slot, frozenset()) ^ plants.marked.get(slot, frozenset())):
+        only = "text" if location in text.marked[slot] else "model"
+        raise DifferenceError(f"location `{location}` of {said} is marked only in the {only}")
+
+
+def _same_event(ours: Event, theirs: Event) -> None:
+    said = words(theirs.element)
+    line = "" if " in line " in said else _line(ours.element)
+    if (ours.controllable, ours.kind) != (theirs.controllable, theirs.kind):
+        other = f"{'' if theirs.controllable else 'un'}controllable in the model, of kind {theirs.kind}"
+        raise DifferenceError(f"{said}{line} is {other}")
+    if ours.timer != theirs.timer:
+        raise DifferenceError(f"{said}{line} has another time or place in the model")
+    for name, domain in ours.inputs.items():
+        if theirs.inputs[name] != domain:
+            there = _values(theirs.inputs[name])
+            raise DifferenceError(f"`{name}` of {said}{line} has {_values(domain)} by the text, {there} in the model")
+
+
+def _unlike(ours: Outcome, theirs: Outcome, held: Mapping[Slot, Value], pair: _Pair) -> str:
+    """How two readings of an event in a state differ; empty where they do not."""
+    said = words(pair.plants.element)
+    if bool(ours.refused) != bool(theirs.refused):
+        if ours.refused:
+            return f"{said} can happen in the plants, and not by the text{_line(ours.refused.source)}"
+        lines = _lines(taken.source for taken in ours.taken) or _line(pair.text.element)
+        return f"{said} can happen by the text{lines}, and not in the plants"
+    if bool(ours.forbidden) != bool(theirs.forbidden):
+        found: Restriction | None = ours.forbidden or theirs.forbidden
+        assert found is not None
+        who = ("the text", "the model") if ours.forbidden else ("the model", "the text")
+        return f"{said} is forbidden by {who[0]}{_line(found.source)}, and not by {who[1]}"
+    mine, other = _changed(ours, held), _changed(theirs, held)
+    for slot in dict.fromkeys([*mine, *other]):
+        if mine.get(slot) != other.get(slot):
+            lines = _lines(taken.source for taken in ours.taken if slot in taken.writes) or _line(pair.text.element)
+            told = f"{_becomes(slot, mine)} by the text{lines}, and {_becomes(slot, other)} in the plants"
+            return f"after {said}, {_called(slot)} {told}"
+    return ""
+
+
+def _changed(outcome: Outcome, held: Mapping[Slot, Value]) -> dict[Slot, Value]:
+    """What really changes."""
+    return {slot: value for slot, value in outcome.writes.items() if held.get(slot, None) != value}
+
+
+def _becomes(slot: Slot, writes: Mapping[Slot, Value]) -> str:
+    if slot not in writes:
+        return "stays as it was"
+    return f"is {_text(writes[slot])}" if slot.variable else f"is in `{writes[slot]}`"
+
+
+def _holds(claim: Claim, held: Mapping[Slot, Value]) -> bool:
+    return bool(claim.condition.compute(held, {})) is claim.wanted
+
+
+def _step(pair: _Pair, inputs: Mapping[str, Value]) -> TraceStep:
+    event = pair.plants.element
+    return TraceStep(f"{event.eContainer().name}.{event.name}", dict(inputs))
+
+
+def _size(domain: Domain) -> int:
+    return domain.stop - domain.start if isinstance(domain, range) else len(domain)
+
+
+def _kind(domain: Domain) -> object:
+    """Locations and literals may stand in any order."""
+    return domain if isinstance(domain, range) else frozenset(domain)
+
+
+def _values(domain: Domain) -> str:
+    if isinstance(domain, range):
+        return f"values from {domain.start} to {domain.stop - 1}"
+    return "values " + ", ".join(map(_text, domain)) if domain else "no values"
+
+
+def _text(value: Value | Literal) -> str:
+    return str(value).lower() if isinstance(value, bool) else str(value)
+
+
+def _called(slot: Slot) -> str:
+    kind, origin = slot.plant
+    owner = f"requirement automaton {origin}" if kind == "requirement" else f"`{origin}`"
+    if slot.variable:
+        return f"`{origin}.{slot.variable}`" if kind != "requirement" else f"the count of {owner}"
+    return f"the data of {owner}" if kind == "data" else owner
+
+
+def _where(held: Mapping[Slot, Value]) -> str:
+    said = [
+        f"{slot.plant.origin}.{slot.variable} = {_text(value)}" if slot.variable else f"{slot.plant.origin}.{value}"
+        for slot, value in held.items()
+        if slot.plant.kind != "requirement"
+    ]
+    return f" where `{' and '.join(said)}`" if said else ""
+
+
+def _line(source: ex.Located | None) -> str:
+    return f" (line {source.source.span.line})" if source is not None and source.source is not None else ""
+
+
+def _lines(sources: Iterable[ex.Located | None]) -> str:
+    found = sorted({one.source.span.line for one in sources if one is not None and one.source is not None})
+    return f" (line{'s' if len(found) > 1 else ''} {', '.join(map(str, found))})" if found else ""

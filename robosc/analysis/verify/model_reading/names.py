@@ -1,0 +1,303 @@
+"""What the names of a robot's text mean: components and templates, constants, conditions, functions, quantifiers."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from functools import reduce
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar, cast
+
+from robosc.analysis.verify.model_reading.machine import BOOLEANS, At, Literal, Meaning, Plant, Slot
+from robosc.metamodel import expression as ex
+from robosc.metamodel import robosc
+from robosc.semantics.evaluation import evaluate, literal
+from robosc.semantics.operators import operator_of
+from robosc.semantics.walks import fold, operands, walk, with_operands
+
+if TYPE_CHECKING:
+    from collections.abc import Generator, Iterator, Mapping, Sequence
+
+    from robosc.analysis.verify.model_reading.machine import Domain
+
+_Definition = TypeVar("_Definition")
+_LITERALS = (ex.BooleanLiteral, ex.IntegerLiteral, ex.DoubleLiteral, ex.StringLiteral)
+_TOKEN = re.compile(r'"(?:[^"\\]|\\.)*"|\d+(?:\.\d+)?|\w+|\.\.|=>|!=|<=|>=|[^\s()^]')
+#: Requirements that follow events: they have states of their own.
+OBSERVERS = (robosc.OrderRequirement, robosc.CountRequirement, robosc.AutomatonRequirement)
+
+
+@dataclass(frozen=True, eq=False)
+class Instance:
+    """A component of the robot, and the component whose text it is made from."""
+
+    name: str
+    text: robosc.Component
+    arguments: Mapping[robosc.FormalParameter, tuple[ex.Expression, Environment]] = field(default_factory=dict)
+
+    def of(self, kind: type[_Definition]) -> list[_Definition]:
+        """Its definitions of a kind, in the order of the text."""
+        assert isinstance(self.text.type, robosc.LocalComponent)
+        return [definition for definition in self.text.type.definitions if isinstance(definition, kind)]
+
+    def behaviour(self, kind: type[_Definition]) -> list[_Definition]:
+        """The same in its automaton."""
+        automata = self.of(robosc.ComponentBehaviour)
+        found = (definition for behaviour in automata for definition in behaviour.automaton.definitions)
+        return [definition for definition in found if isinstance(definition, kind)]
+
+    @property
+    def plant(self) -> Plant:
+        """What its behaviour becomes."""
+        return Plant("behaviour", self.name)
+
+
+class Environment(NamedTuple):
+    """Where an expression stands: in the text of an instance, with parameters bound, with an instance at hand."""
+
+    within: Instance | None = None
+    bound: Mapping[robosc.FormalParameter, tuple[ex.Expression, Environment]] = {}
+    at_hand: Mapping[robosc.Component, Instance] = {}
+
+
+class Data(NamedTuple):
+    """A part of an event's data: its text word by word, and the properties on the way to it; None: an element."""
+
+    words: tuple[str, ...]
+    path: tuple[str, ...] | None
+
+
+class Names:
+    """The instances of a robot, and its expressions with names written out."""
+
+    def __init__(self, robot: robosc.Base) -> None:
+        self.robot = robot
+        self._of: dict[robosc.Component, Instance] = {}
+        for component in robot.definitions:
+            if isinstance(component, robosc.Component) and not component.parameters:
+                self._of[component] = _instance(component)
+        self.observers: dict[tuple[robosc.Requirement, Instance | None], Plant] = {
+            stated: Plant("requirement", str(number))
+            for number, stated in enumerate(
+                (stated for stated in self.stated(robosc.Requirement) if isinstance(stated[0], OBSERVERS)), start=1
+            )
+        }
+        self._meanings: dict[ex.Expression, Meaning | Data] = {}
+        self._changing: dict[ex.Expression, bool] = {}
+
+    def __iter__(self) -> Iterator[Instance]:
+        return iter(self._of.values())
+
+    def stated(self, kind: type[_Definition]) -> list[tuple[_Definition, Instance | None]]:
+        """Definitions outside of components, then those in each."""
+        outside = [(definition, None) for definition in self.robot.definitions if isinstance(definition, kind)]
+        return [*outside, *((definition, instance) for instance in self for definition in instance.of(kind))]
+
+    def port(
+        self, reference: robosc.CommunicationReference, within: Instance | None
+    ) -> tuple[Instance, robosc.CommunicationType]:
+        """The instance and the communication that a reference means."""
+        return self._meant(reference.component, Environment(within)), reference.communicationType
+
+    def _meant(self, component: robosc.Component | None, place: Environment) -> Instance:
+        if component is not None and component in place.at_hand:
+            return place.at_hand[component]
+        if place.within is not None and (component is None or component is place.within.text):
+            return place.within
+        assert component is not None
+        return self._of[component]
+
+    def written_out(self, expression: ex.Expression, place: Environment) -> ex.Expression:
+        """A new expression without names of expressions: `meaning` knows what is read in it."""
+        made: ex.Expression = walk(self._write, (expression, place))
+        return made
+
+    def meaning(self, reference: ex.Expression) -> Meaning | Data:
+        """What is read there."""
+        return self._meanings[reference]
+
+    def leaf(self, meaning: Meaning | Data) -> ex.Expression:
+        """An expression that reads it."""
+        made = robosc.Access()
+        self._meanings[made] = meaning
+        return made
+
+    def constant(self, expression: ex.Expression, place: Environment) -> Any:
+        """The value of a constant expression; that of an enum is a Literal."""
+        return evaluate(self.written_out(expression, place), self._meanings.__getitem__)
+
+    def domain(self, declared: robosc.DataType, place: Environment) -> Domain | None:
+        """The values of a type; None where there is no end of them."""
+        if isinstance(declared, robosc.BooleanDataType):
+            return BOOLEANS
+        if isinstance(declared, robosc.IntegerDataType):
+            low, high = declared.minimum, declared.maximum
+            if low is None and declared.lower is not None and declared.upper is not None:
+                low, high = self.constant(declared.lower, place), self.constant(declared.upper, place)
+            return None if low is None or high is None else range(low, high + 1)
+        if isinstance(declared, robosc.ComplexDataTypeReference) and isinstance(declared.type, robosc.EnumDataType):
+            return tuple(dict.fromkeys(rule.value.name for rule in declared.type.rules))
+        return None
+
+    def _write(self, node: tuple[ex.Expression, Environment]) -> Generator[Any, Any, ex.Expression]:
+        expression, place = node
+        match expression:
+            case robosc.Access():
+                return (yield from self._access(expression, place))
+            case robosc.Call(function=function):
+                given = {
+                    parameter: (argument, place)
+                    for parameter, argument in zip(function.parameters, expression.arguments, strict=True)
+                }
+                inner = self._inside(function, place.within)
+                body = yield function.value, inner._replace(bound={**inner.bound, **given})
+                return cast("ex.Expression", body)
+            case robosc.InstanceQuantifier():
+                return (yield from self._quantified(expression, place))
+            case robosc.ArrayQuantifier():
+                array = yield expression.array, place
+                body = yield expression.body, place
+                head = (str(expression.quantifier), expression.element.name, "in")
+                return self.leaf(Data((*head, *self._words(array), ":", *self._words(body)), None))
+            case _ if isinstance(expression, _LITERALS):
+                kind: Any = type(expression)
+                copy: ex.Expression = kind(value=expression.value)
+                return copy
+        inside = []
+        for operand in operands(expression):
+            inside.append((yield operand, place))  # noqa: PERF401 - a generator can't ask from within a comprehension
+        return with_operands(expression, inside)
+
+    def _access(self, access: robosc.Access, place: Environment) -> Generator[Any, Any, ex.Expression]:
+        item = access.item
+        match item:
+            case None | robosc.ArrayElement():
+                return (yield from self._data(access, place))
+            case robosc.FormalParameter():
+                given = yield place.bound[item]
+                return cast("ex.Expression", given)
+            case robosc.EnumValue():
+                return self.leaf(Literal(item.name))
+            case robosc.RequirementState():
+                automaton = item.eContainer()
+                inside = isinstance(automaton.eContainer(), robosc.LocalComponent)
+                plant = self.observers[automaton, place.within if inside else None]
+                return self.leaf(At(Slot(plant), item.name))
+        owner = self._meant(access.component, place) if access.component or _is_member(item) else None
+        match item:
+            case robosc.State() if owner is not None:
+                return self.leaf(At(Slot(owner.plant), item.name))
+            case robosc.Variable() if owner is not None:
+                return self.leaf(Slot(owner.plant, item.name))
+        assert isinstance(item, robosc.NamedExpression)
+        value: ex.Expression = yield item.value, self._inside(item, owner)
+        if not isinstance(item, robosc.Constant):
+            return value
+        folded = evaluate(value, self._meanings.__getitem__)
+        return self.leaf(folded) if isinstance(folded, Literal) else literal(folded)
+
+    def _inside(self, named: robosc.NamedExpression, owner: Instance | None) -> Environment:
+        """Where the text of a name stands."""
+        return Environment(owner, owner.arguments) if owner is not None and _is_member(named) else Environment()
+
+    def _quantified(
+        self, quantifier: robosc.InstanceQuantifier, place: Environment
+    ) -> Generator[Any, Any, ex.Expression]:
+        found: list[ex.Expression] = []
+        for instance in self:
+            if instance.text is quantifier.template:
+                body = yield quantifier.body, place._replace(at_hand={**place.at_hand, quantifier.template: instance})
+                found.append(body)
+        if quantifier.quantifier == robosc.Quantifier.count:
+            number = ex.IntegerLiteral
+            found = [ex.Conditional(condition=body, then=number(value=1), otherwise=number(value=0)) for body in found]
+            combined: Any = ex.Addition
+            start: ex.Expression = number(value=0)
+        else:
+            everyone = quantifier.quantifier == robosc.Quantifier.all
+            combined = ex.Conjunction if everyone else ex.Disjunction
+            start = ex.BooleanLiteral(value=everyone)
+        return reduce(lambda left, right: combined(left=left, right=right), found, start)
+
+    def _data(self, access: robosc.Access, place: Environment) -> Generator[Any, Any, ex.Expression]:
+        path: list[str] = []
+        words = [access.item.name if access.item else "value"]
+        whole = access.item is None
+        for segment in access.segments:
+            if isinstance(segment, robosc.PropertySegment):
+                path.append(segment.property.name)
+                words += [".", segment.property.name]
+                continue
+            assert isinstance(segment, robosc.IndexSegment)
+            whole = False
+            words += ["["]
+            if segment.first is None:
+                words.append(str(segment.index))
+            else:
+                words += self._words((yield segment.first, place))
+            if segment.last is not None:
+                words += ["..", *self._words((yield segment.last, place))]
+            words += ["]"]
+        return self.leaf(Data(tuple(words), tuple(path) if whole else None))
+
+    def words(self, expression: ex.Expression) -> tuple[str, ...] | None:
+        """The text of an expression over data, word by word, without parentheses; None where it reads what changes."""
+        changing = fold(self._changes, expression, memo=self._changing)
+        return None if changing else tuple(self._words(expression))
+
+    def _changes(self, part: ex.Expression, inside: Sequence[bool]) -> bool:
+        return isinstance(self._meanings.get(part), Slot | At) or any(inside)
+
+    def _words(self, expression: ex.Expression) -> list[str]:
+        return fold(self._said, expression)
+
+    def _said(self, part: ex.Expression, inside: list[list[str]]) -> list[str]:
+        meaning = self._meanings.get(part)
+        if isinstance(meaning, Data):
+            return list(meaning.words)
+        if isinstance(meaning, Literal):
+            return [str(meaning)]
+        if isinstance(part, ex.Conditional):
+            condition, then, otherwise = inside
+            return ["if", *condition, "then", *then, "else", *otherwise]
+        row = operator_of(part)
+        if row is None:
+            assert isinstance(part, _LITERALS)
+            return [_word(part)]
+        if isinstance(part, ex.FunctionCall):
+            return [row.symbol, *reduce(lambda said, more: [*said, ",", *more], inside)]
+        return [*(inside[0] if len(inside) == 2 else ()), row.symbol, *inside[-1]]
+
+
+def words_of(text: str) -> tuple[str, ...]:
+    """A text word by word, without parentheses, numbers as Python writes them."""
+    return tuple(str(float(word)) if re.fullmatch(r"\d+\.\d+", word) else word for word in _TOKEN.findall(text))
+
+
+def _word(part: Any) -> str:
+    if isinstance(part, ex.BooleanLiteral):
+        return str(part.value).lower()
+    if isinstance(part, ex.StringLiteral):
+        return '"' + part.value.replace("\\", "\\\\").replace('"', '\\"') + '"'
+    return str(part.value)
+
+
+def _is_member(item: Any) -> bool:
+    """Whether a definition stands in a component: states and variables in its automaton, others in it directly."""
+    return isinstance(item, robosc.State | robosc.Variable) or isinstance(item.eContainer(), robosc.LocalComponent)
+
+
+def _instance(component: robosc.Component) -> Instance:
+    """Follows `is` and `import` to the text; what is a parameter there is what was given on the way."""
+    arguments: dict[robosc.FormalParameter, tuple[ex.Expression, Environment]] = {}
+    text = component
+    while not isinstance(text.type, robosc.LocalComponent):
+        made = text.type
+        assert isinstance(made, robosc.InstantiatedComponent | robosc.ImportedComponent)
+        text = made.definition
+        outside = Environment(bound=dict(arguments))
+        for position, argument in enumerate(made.arguments):
+            arguments[argument.parameter or text.parameters[position]] = argument.value, outside
+        for parameter in text.parameters:
+            if parameter.default is not None and parameter not in arguments:
+                arguments[parameter] = parameter.default, Environment()
+    return Instance(component.name, text, arguments)

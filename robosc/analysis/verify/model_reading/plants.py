@@ -1,0 +1,180 @@
+"""The plants and requirements of an sct model, as they are defined: each event happens in all plants that have it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from robosc.analysis.verify.model_reading.machine import (
+    BOOLEANS,
+    At,
+    Claim,
+    Condition,
+    Event,
+    EventName,
+    Literal,
+    Machine,
+    Meaning,
+    Participant,
+    Plant,
+    Restriction,
+    Slot,
+    Taken,
+    Timer,
+    Told,
+    compiled,
+    fitting,
+)
+from robosc.metamodel import expression as ex
+from robosc.metamodel import sct
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from robosc.analysis.verify.model_reading.machine import Domain, Value
+
+
+class AmbiguousError(Exception):
+    """Two edges with different ends are possible at once."""
+
+    def __init__(self, source: ex.Located | None) -> None:
+        super().__init__("several edges with different ends are possible in the plants")
+        self.source = source
+
+
+def read_plants(model: sct.SupervisoryControlModel) -> Machine:
+    """The reading of plants and requirements; the supervisor is left out."""
+    return _Reading(model).run()
+
+
+class _Reading:
+    def __init__(self, model: sct.SupervisoryControlModel) -> None:
+        self.model = model
+        self.machine = Machine()
+        observers = (plant for plant in model.plants if plant.kind == sct.PlantKind.requirement)
+        numbers = {plant: number for number, plant in enumerate(observers, start=1)}
+        self.plants = {
+            plant: Plant(plant.kind.name, str(numbers[plant]) if plant in numbers else plant.origin or plant.name)
+            for plant in model.plants
+        }
+
+    def run(self) -> Machine:
+        machine = self.machine
+        for plant, called in self.plants.items():
+            slot = Slot(called)
+            machine.domains[slot] = tuple(location.name for location in plant.locations)
+            # A second initial location shows as one whose name no text has.
+            machine.initial[slot] = " and ".join(location.name for location in plant.locations if location.initial)
+            machine.marked[slot] = frozenset(location.name for location in plant.locations if location.marked)
+            machine.sources[slot] = plant
+            for variable in plant.variables:
+                held = Slot(called, variable.name)
+                machine.domains[held] = _domain(variable.type)
+                machine.initial[held] = compiled(variable.initial, self.meaning).compute({}, {})
+                machine.sources[held] = variable
+            for event in plant.events:
+                machine.events[self.name(event)] = Event(
+                    event.kind.name,
+                    event.controllable,
+                    event,
+                    inputs={one.name: _domain(one.type) for one in event.inputs},
+                    timer=self.timer(event),
+                )
+        for plant in self.plants:
+            self.edges(plant)
+        for required in self.model.requirements:
+            wanted = required.kind == sct.RequirementKind.needs
+            restriction = Restriction(self.condition(required.condition), wanted, required)
+            machine.events[self.name(required.event)].restrictions.append(restriction)
+        self.claims()
+        return machine
+
+    def name(self, event: sct.Event) -> EventName:
+        """Underscores behind a name keep it apart from others."""
+        return EventName(self.plants[event.eContainer()], event.name.rstrip("_"))
+
+    def timer(self, event: sct.Event) -> Timer | None:
+        timer = event.timer
+        if timer is None:
+            return None
+        without = frozenset(map(self.name, timer.without))
+        return Timer(timer.milliseconds, None if timer.location is None else timer.location.name, without)
+
+    def meaning(self, reference: ex.Expression) -> Meaning:
+        match reference:
+            case sct.LocationReference(location=location):
+                return At(Slot(self.plants[location.eContainer()]), location.name)
+            case sct.VariableReference(variable=variable):
+                return Slot(self.plants[variable.eContainer()], variable.name)
+            case sct.InputReference():
+                return Told(reference.input.name)
+        assert isinstance(reference, ex.EnumerationLiteralReference)
+        return Literal(reference.literal.name)
+
+    def condition(self, expression: ex.Expression) -> Condition:
+        return compiled(expression, self.meaning)
+
+    def edges(self, plant: sct.Plant) -> None:
+        """For each event what the edges of the location that the plant is in do."""
+        everywhere: dict[sct.Event, list[sct.Edge]] = {}
+        leaving: dict[sct.Event, dict[str, list[sct.Edge]]] = {}
+        for edge in plant.edges:
+            everywhere.setdefault(edge.event, []).append(edge)
+        for location in plant.locations:
+            for edge in location.edges:
+                leaving.setdefault(edge.event, {}).setdefault(location.name, []).append(edge)
+        for event in dict.fromkeys([*everywhere, *leaving]):
+            participant = self.participant(plant, everywhere.get(event, []), leaving.get(event, {}))
+            self.machine.events[self.name(event)].participants.append(participant)
+
+    def participant(
+        self, plant: sct.Plant, everywhere: list[sct.Edge], leaving: Mapping[str, list[sct.Edge]]
+    ) -> Participant:
+        slot = Slot(self.plants[plant])
+        reads = {slot} if leaving else set()
+        read: dict[sct.Edge, Any] = {}
+        for edge in [*everywhere, *(edge for edges in leaving.values() for edge in edges)]:
+            guard = None if edge.guard is None else self.condition(edge.guard)
+            updates = [(Slot(slot.plant, one.variable.name), self.condition(one.value)) for one in edge.updates]
+            read[edge] = guard, updates
+            reads.update(*(condition.reads for condition in [guard, *(value for _, value in updates)] if condition))
+        domains = self.machine.domains
+
+        def step(state: Mapping[Slot, Value], inputs: Mapping[str, Value]) -> Taken | None:
+            found: Taken | None = None
+            for edge in [*leaving.get(str(state[slot]), ()), *everywhere] if leaving else everywhere:
+                guard, updates = read[edge]
+                if guard is None or guard.compute(state, inputs):
+                    given = {held: fitting(value.compute(state, inputs), domains[held]) for held, value in updates}
+                    taken = Taken({slot: edge.target.name, **given}, edge)
+                    if found is not None and found.writes != taken.writes:
+                        raise AmbiguousError(edge)
+                    found = taken
+            return found
+
+        return Participant(step, frozenset(reads), plant)
+
+    def claims(self) -> None:
+        """The conditions of invariants and properties."""
+        for invariant in self.model.invariants:
+            self.claim("the condition of an invariant", invariant.condition, invariant)
+        for claimed in self.model.properties:
+            if isinstance(claimed, sct.InvariantProperty):
+                self.claim("the condition of a property", claimed.condition, claimed)
+            elif isinstance(claimed, sct.ReachabilityProperty):
+                self.claim("what a property says can be reached", claimed.condition, claimed)
+                origin = claimed.premise or ex.BooleanLiteral(value=True)
+                self.claim("where a property begins", origin, claimed)
+
+    def claim(self, what: str, expression: ex.Expression, source: ex.Located) -> None:
+        self.machine.conditions.append(Claim(what, self.condition(expression), True, source))
+
+
+def _domain(declared: ex.Type) -> Domain:
+    if isinstance(declared, ex.EnumerationType):
+        return tuple(literal.name for literal in declared.enumeration.literals)
+    if isinstance(declared, ex.IntegerType):
+        assert declared.minimum is not None
+        assert declared.maximum is not None
+        return range(declared.minimum, declared.maximum + 1)
+    assert isinstance(declared, ex.BooleanType)
+    return BOOLEANS

@@ -1,0 +1,546 @@
+"""A robot's text as the language's pages have it: what its communications and components do, and what is required."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from robosc.analysis.verify.model_reading.machine import (
+    At,
+    Claim,
+    Condition,
+    Event,
+    EventName,
+    Machine,
+    Meaning,
+    Participant,
+    Plant,
+    Restriction,
+    Slot,
+    Taken,
+    Timer,
+    Told,
+    compiled,
+    fitting,
+)
+from robosc.analysis.verify.model_reading.names import Data, Environment, Instance, Names, words_of
+from robosc.metamodel import expression as ex
+from robosc.metamodel import robosc
+from robosc.semantics.walks import operands, walk, with_operands
+
+if TYPE_CHECKING:
+    from collections.abc import Generator, Iterable, Mapping, Sequence
+
+    from robosc.analysis.verify.model_reading.machine import Domain, Value
+
+    _Port = tuple[Instance, robosc.CommunicationType]
+    #: A transition of a requirement automaton: its condition, where it goes, where it stands.
+    _Way = tuple[Condition | None, str, ex.Located]
+
+#: Thesis listings 5.1 to 5.3: what a service and an action go through, from where and to where.
+_SERVICE = {
+    "c_trigger": {"idle": "wait_for_response"},
+    "u_response": {"wait_for_response": "ready"},
+    "u_error": {"wait_for_response": "error"},
+    "c_reset": {"ready": "idle", "error": "idle"},
+}
+_ACTION = {
+    "c_trigger": {"idle": "executing"},
+    "u_feedback": {"executing": "executing"},
+    "u_response": {"executing": "ready"},
+    "u_error": {"executing": "error"},
+    "c_cancel": {"executing": "idle"},
+    "c_reset": {"ready": "idle", "error": "idle"},
+}
+#: How a transition names an event (thesis table 5.1).
+_NAMED = {
+    robosc.ResultType.request: "c_trigger",
+    robosc.ResultType.response: "u_response",
+    robosc.ResultType.error: "u_error",
+    robosc.ResultType.feedback: "u_feedback",
+    robosc.ResultType.cancel: "c_cancel",
+}
+_UNITS = {robosc.TimeUnit.ms: 1, robosc.TimeUnit.s: 1000, robosc.TimeUnit.min: 60_000}
+
+
+class UnlikeError(Exception):
+    """The plants lack what the text reads, or have it otherwise; `source` is where the text reads it."""
+
+    def __init__(self, message: str, source: ex.Located | None = None) -> None:
+        super().__init__(message)
+        self.source = source
+
+
+def read_text(robot: robosc.Base, plants: Machine) -> Machine:
+    """The reading of a linked robot.
+
+    Of the plants it takes which variables and inputs they hold, all else lives in the node, and the range of what the
+    node computes: where a variable is given it, the plants must have the variable's.
+    """
+    return _Reading(robot, plants).run()
+
+
+class _Reading:
+    def __init__(self, robot: robosc.Base, plants: Machine) -> None:
+        self.names = Names(robot)
+        self.plants = plants
+        self.machine = Machine()
+
+    def run(self) -> Machine:
+        for instance in self.names:
+            for communication in instance.of(robosc.CommunicationType):
+                self.communication(instance, communication)
+        for instance in self.names:
+            self.slots(instance)
+        self.observer_slots()
+        for instance in self.names:
+            if instance.of(robosc.ComponentBehaviour):
+                self.behaviour(instance)
+        self.provided()
+        self.required()
+        for (stated, within), plant in self.names.observers.items():
+            self.observer(stated, within, plant)
+        self.claims()
+        return self.machine
+
+    # Communication
+
+    def communication(self, instance: Instance, communication: robosc.CommunicationType) -> None:
+        plant = _plant(instance, communication)
+        if isinstance(communication, robosc.Message):
+            comes = communication.direction == robosc.MessageDirection.outgoing
+            steps = {"u_response" if comes else "c_trigger": {"ready": "ready"}}
+        else:
+            steps = _SERVICE if isinstance(communication, robosc.Service) else _ACTION
+        places = dict.fromkeys(name for step in steps.values() for pair in step.items() for name in pair)
+        first = next(iter(places))
+        slot = self.locations(plant, tuple(places), first, [first], communication)
+        for name, step in steps.items():
+            event = self.event(plant, name, communication)
+            event.participants.append(_phases(slot, step, communication))
+
+    def locations(
+        self, plant: Plant, names: tuple[str, ...], initial: str, marked: Iterable[str], source: ex.Located
+    ) -> Slot:
+        slot = Slot(plant)
+        self.slot(slot, names, initial, source)
+        self.machine.marked[slot] = frozenset(marked)
+        return slot
+
+    def slot(self, slot: Slot, domain: Domain, initial: Value, source: ex.Located) -> None:
+        self.machine.domains[slot] = domain
+        self.machine.initial[slot] = initial
+        self.machine.sources[slot] = source
+
+    def event(self, plant: Plant, name: str, element: ex.Located) -> Event:
+        kind = name.partition("_")[2]
+        kind = {"after": "timeout"}.get(kind.rstrip("0123456789"), kind.rstrip("0123456789"))
+        kind = "data" if plant.kind == "data" else kind
+        made = Event(kind, controllable=name.startswith("c_"), element=element)
+        self.machine.events[EventName(plant, name)] = made
+        return made
+
+    def of(self, reference: robosc.CommunicationReference, named: str, within: Instance | None) -> EventName:
+        return EventName(_plant(*self.names.port(reference, within)), named)
+
+    # Components
+
+    def slots(self, instance: Instance) -> None:
+        states = instance.behaviour(robosc.State)
+        if instance.of(robosc.ComponentBehaviour):
+            initial = next(state.name for state in states if state.initial)
+            marked = [state.name for state in states if state.marked]
+            source = instance.of(robosc.ComponentBehaviour)[0]
+            self.locations(instance.plant, tuple(state.name for state in states), initial, marked, source)
+        for variable in instance.behaviour(robosc.Variable):
+            slot = Slot(instance.plant, variable.name)
+            if slot in self.plants.domains:
+                domain = self.names.domain(variable.type, Environment(instance, instance.arguments))
+                if domain is None:
+                    raise UnlikeError(f"the plants hold `{instance.name}.{variable.name}`, which has no end", variable)
+                self.slot(slot, domain, self.first_value(variable, domain, instance), variable)
+
+    def first_value(self, variable: robosc.Variable, domain: Domain, instance: Instance) -> Value:
+        if variable.initial is not None:
+            given = self.names.constant(variable.initial, Environment(instance, instance.arguments))
+            return fitting(given, domain)
+        if isinstance(variable.type, robosc.ComplexDataTypeReference):
+            assert isinstance(variable.type.type, robosc.EnumDataType)
+            rules = variable.type.type.rules
+            return next(rule.value.name for rule in rules if isinstance(rule, robosc.EnumDefaultRule))
+        return fitting(0, domain) if isinstance(domain, range) else False
+
+    def behaviour(self, instance: Instance) -> None:
+        tried: dict[EventName, dict[str, list[robosc.Transition]]] = {}
+        numbers = {robosc.TauTransition: 0, robosc.TimedTransition: 0}
+        states = [state.name for state in instance.behaviour(robosc.State)]
+        for definition in instance.behaviour(robosc.AutomatonDefinition):
+            if isinstance(definition, robosc.Variable):
+                continue
+            state = definition if isinstance(definition, robosc.State) else None
+            for transition in [definition] if state is None else state.transitions:
+                assert isinstance(transition, robosc.Transition)
+                if isinstance(transition, robosc.ResultTransition):
+                    name = self.of(transition.communicationType, _NAMED[transition.resultType], instance)
+                else:
+                    kind = type(transition)
+                    numbers[kind] += 1
+                    prefix = "c_tau" if kind is robosc.TauTransition else "u_after"
+                    name = EventName(instance.plant, f"{prefix}{numbers[kind]}")
+                    event = self.event(*name, transition)
+                    if isinstance(transition, robosc.TimedTransition):
+                        event.timer = self.timer(transition, state.name if state else None, instance)
+                places = tried.setdefault(name, {})
+                for place in states if state is None else [state.name]:
+                    places.setdefault(place, []).append(transition)
+        for name, places in tried.items():
+            # What every state has is tried behind what a state has itself.
+            ordered = {
+                place: sorted(found, key=lambda transition: not isinstance(transition.eContainer(), robosc.State))
+                for place, found in places.items()
+            }
+            ignored = name.plant != instance.plant and name.name != "c_trigger"
+            self.machine.events[name].participants.append(self.reaction(name, ordered, instance, ignored))
+
+    def timer(self, transition: robosc.TimedTransition, where: str | None, instance: Instance) -> Timer:
+        length = self.names.constant(transition.duration, Environment(instance, instance.arguments))
+        exact = Fraction(length) * _UNITS[transition.unit]
+        without = frozenset(self.of(message, "u_response", instance) for message in transition.without)
+        return Timer(int(exact + Fraction(1, 2)), where, without)
+
+    def reaction(
+        self,
+        name: EventName,
+        tried: Mapping[str, Sequence[robosc.Transition]],
+        instance: Instance,
+        ignored: bool,
+    ) -> Participant:
+        """Of the transitions of the state the first whose guard holds; where none does it may be ignored."""
+        location = Slot(instance.plant)
+        reads = {location}
+        ways: dict[str, list[tuple[Condition | None, Taken, list[tuple[Slot, Condition]]]]] = {}
+        known: dict[robosc.Transition, Any] = {}
+        for state, transitions in tried.items():
+            for transition in transitions:
+                if transition not in known:
+                    known[transition] = self.way(transition, name, instance)
+                guard, fixed, assigned = known[transition]
+                reads.update(*(condition.reads for condition in [guard, *(one for _, one in assigned)] if condition))
+                ways.setdefault(state, []).append((guard, fixed, assigned))
+        domains = self.machine.domains
+        nothing = Taken({}, None)
+
+        def step(state: Mapping[Slot, Value], inputs: Mapping[str, Value]) -> Taken | None:
+            for guard, fixed, assigned in ways.get(str(state[location]), ()):
+                if guard is None or guard.compute(state, inputs):
+                    given = {slot: fitting(value.compute(state, inputs), domains[slot]) for slot, value in assigned}
+                    return Taken({**fixed.writes, **given}, fixed.source)
+            return nothing if ignored else None
+
+        source = next(iter(tried.values()))[0]
+        return Participant(step, frozenset(reads), source)
+
+    def way(
+        self, transition: robosc.Transition, name: EventName, instance: Instance
+    ) -> tuple[Condition | None, Taken, list[tuple[Slot, Condition]]]:
+        guard = transition.guard if isinstance(transition, robosc.GuardedTransition) else None
+        asked = None if guard is None else self.condition(guard, instance, name)
+        writes = {} if transition.target is None else {Slot(instance.plant): transition.target.name}
+        assigned: dict[Slot, Condition] = {}
+        for assignment in transition.assignments:
+            slot = Slot(instance.plant, assignment.item.item.name if assignment.item.item else "")
+            if slot in self.plants.domains:
+                assigned[slot] = self.condition(assignment.value, instance, name, slot)
+        return asked, Taken(writes, transition), list(assigned.items())
+
+    # Expressions
+
+    def condition(
+        self,
+        expression: ex.Expression,
+        within: Instance | None,
+        name: EventName | None = None,
+        assigned: Slot | None = None,
+    ) -> Condition:
+        """An expression in the text of an instance, of a transition on an event."""
+        place = Environment(within, within.arguments if within else {})
+        written = self.names.written_out(expression, place)
+        if name is not None:
+            written = walk(lambda part: self.told(part[0], name, part[1]), (written, assigned))
+
+        def meaning(reference: ex.Expression) -> Meaning:
+            found = self.names.meaning(reference)
+            slot = found.slot if isinstance(found, At) else found
+            if isinstance(slot, Slot) and slot not in self.machine.domains:
+                read = f"{slot.plant.origin}.{slot.variable}"
+                raise UnlikeError(f"the text reads `{read}`, which the plants do not have", expression)
+            if isinstance(found, Data):
+                said = "".join(found.words)
+                raise UnlikeError(f"the text reads `{said}`, which no input of the plants tells", expression)
+            return found
+
+        return compiled(written, meaning)
+
+    def told(self, part: ex.Expression, name: EventName, assigned: Slot | None) -> Generator[Any, Any, ex.Expression]:
+        """The expression with inputs of the event in place of the largest parts that the plants have inputs for."""
+        event = self.plants.events.get(name)
+        inputs = event.element.inputs if event is not None else []
+        computed = [(words_of(one.text), one.name) for one in inputs if one.text is not None]
+        words = self.names.words(part) if computed else None
+        alike = {told: event.inputs[told] for said, told in computed if event and said == words}
+        if alike:
+            kept = None if assigned is None else self.machine.domains[assigned]
+            if isinstance(kept, range):
+                # Of one text there is an input for each range.
+                alike = {told: domain for told, domain in alike.items() if domain == kept}
+            if not alike:
+                raise UnlikeError("the plants have another range for what is computed of data", part)
+            told = next(iter(alike))
+            self.machine.events[name].inputs[told] = alike[told]
+            return self.names.leaf(Told(told))
+        found = self.names.meaning(part) if isinstance(part, robosc.Access) else None
+        if isinstance(found, Data) and found.path is not None:
+            wanted = "_".join(["i", name.name.removeprefix("u_"), *found.path])
+            fitted = [one.name for one in inputs if one.text is None and one.name.rstrip("_") == wanted.rstrip("_")]
+            if len(fitted) == 1:
+                self.machine.events[name].inputs[fitted[0]] = self.carried(name, found.path)
+                return self.names.leaf(Told(fitted[0]))
+        inside = operands(part)
+        if not inside:
+            return part
+        made: list[ex.Expression] = []
+        for number, operand in enumerate(inside):
+            branch = isinstance(part, ex.Conditional) and number > 0
+            made.append((yield operand, assigned if branch else None))
+        return with_operands(part, made)
+
+    def carried(self, name: EventName, path: Sequence[str]) -> Domain:
+        """The values of a part of what an event carries."""
+        communication = next(
+            communication
+            for instance in self.names
+            for communication in instance.of(robosc.CommunicationType)
+            if _plant(instance, communication) == name.plant
+        )
+        instance = next(instance for instance in self.names if name.plant.origin.startswith(f"{instance.name}."))
+        declared: Any = None
+        if isinstance(communication, robosc.Message):
+            declared = communication.type
+        elif isinstance(communication, robosc.Service):
+            declared = communication.responseType
+        elif isinstance(communication, robosc.Action):
+            feedback = name.name == "u_feedback"
+            declared = communication.feedbackType if feedback else communication.responseType
+        for part in path:
+            declared = next(one.type for one in declared.type.properties if one.name == part)
+        domain = self.names.domain(declared, Environment(instance, instance.arguments))
+        return () if domain is None else domain
+
+    # Provided data
+
+    def provided(self) -> None:
+        """The first statement whose condition holds; those outside of components take the place of those in them."""
+        found: dict[_Port, list[tuple[robosc.ProvideStatement, Instance | None]]] = {}
+        for statement, within in self.names.stated(robosc.ProvideStatement):
+            found.setdefault(self.names.port(statement.communicationType, within), []).append((statement, within))
+        for port, statements in found.items():
+            outside = [statement for statement in statements if statement[1] is None]
+            self.choice(Plant("data", _plant(*port).origin), outside or statements)
+
+    def choice(self, plant: Plant, statements: Sequence[tuple[robosc.ProvideStatement, Instance | None]]) -> None:
+        names = ("none", *(f"d{number}" for number in range(1, len(statements) + 1)))
+        slot = self.locations(plant, names, "none", names, statements[0][0])
+        conditions = [
+            (None if statement.condition is None else self.condition(statement.condition, within), statement)
+            for statement, within in statements
+        ]
+        for location, (condition, statement) in zip(names[1:], conditions, strict=True):
+            event = self.event(plant, f"c_{location}", statement)
+            event.participants.append(_chosen(Slot(plant), location, [(condition, True)], statement))
+        denied = [(condition, False) for condition, _ in conditions]
+        self.event(plant, "c_none", statements[0][0]).participants.append(
+            _chosen(slot, "none", denied, statements[0][0])
+        )
+
+    # Requirements
+
+    def required(self) -> None:
+        """On the start of what they name; an action is cancelled where one of its requirements does not hold."""
+        starting: dict[EventName, list[Restriction]] = {}
+        for stated, within in self.names.stated(robosc.CommunicationRequirement):
+            wanted = not isinstance(stated, robosc.DisablesRequirement)
+            condition = self.condition(stated.condition, within)
+            for name in dict.fromkeys(
+                self.of(reference, "c_trigger", within) for reference in stated.target.communicationTypes
+            ):
+                starting.setdefault(name, []).append(Restriction(condition, wanted, stated))
+        for name, restrictions in starting.items():
+            self.machine.events[name].restrictions += restrictions
+        for name, event in self.machine.events.items():
+            if event.kind == "cancel":
+                event.restrictions.append(_broken(starting.get(EventName(name.plant, "c_trigger"), []), event.element))
+
+    def observer_slots(self) -> None:
+        for (stated, within), plant in self.names.observers.items():
+            if isinstance(stated, robosc.OrderRequirement):
+                self.locations(plant, ("waiting", "ready"), "waiting", ("waiting", "ready"), stated)
+            elif isinstance(stated, robosc.CountRequirement):
+                self.locations(plant, ("counting",), "counting", ["counting"], stated)
+                most = self.names.constant(stated.bound, Environment(within, within.arguments if within else {}))
+                self.slot(Slot(plant, "count"), range(most + 1), 0, stated)
+            else:
+                assert isinstance(stated, robosc.AutomatonRequirement)
+                names = tuple(state.name for state in stated.states)
+                initial = next(state.name for state in stated.states if state.initial)
+                marked = [state.name for state in stated.states if state.marked] or names
+                self.locations(plant, names, initial, marked, stated)
+
+    def named(self, reference: robosc.EventReference, within: Instance | None) -> EventName:
+        """The event that is named, or the request, or what an outgoing message brings."""
+        if isinstance(reference, robosc.NamedEvent):
+            return self.of(reference.communicationType, _NAMED[reference.resultType], within)
+        communication = reference.communicationType.communicationType
+        comes = (
+            isinstance(communication, robosc.Message) and communication.direction == robosc.MessageDirection.outgoing
+        )
+        return self.of(reference.communicationType, "u_response" if comes else "c_trigger", within)
+
+    def observer(self, stated: robosc.Requirement, within: Instance | None, plant: Plant) -> None:
+        if isinstance(stated, robosc.AutomatonRequirement):
+            self.automaton(stated, within, Slot(plant))
+            return
+        assert isinstance(stated, robosc.OrderRequirement | robosc.CountRequirement)
+        anchor = self.named(stated.anchor, within)
+        targets = dict.fromkeys(self.named(event, within) for event in stated.target.events)
+        events = self.machine.events
+        slot = Slot(plant) if isinstance(stated, robosc.OrderRequirement) else Slot(plant, "count")
+        allowed = At(slot, "ready")
+        for name in targets:
+            if isinstance(stated, robosc.CountRequirement):
+                holds = _below(slot, self.machine.domains[slot])
+                events[name].participants.append(_one_more(slot, stated))
+            else:
+                holds = self.is_at(allowed)
+                if stated.each and name != anchor:
+                    events[name].participants.append(_always({slot: "waiting"}, stated))
+            events[name].restrictions.append(Restriction(holds, True, stated))
+        given: Value = "ready" if isinstance(stated, robosc.OrderRequirement) else 0
+        events[anchor].participants.append(_always({slot: given}, stated))
+
+    def is_at(self, place: At) -> Condition:
+        return compiled(self.names.leaf(place), lambda _: place)
+
+    def automaton(self, stated: robosc.AutomatonRequirement, within: Instance | None, slot: Slot) -> None:
+        """Where no transition of the state has a condition that holds, the event is forbidden."""
+        alphabet = {
+            self.named(transition.event, within): transition
+            for state in stated.states
+            for transition in state.transitions
+        }
+        for name in alphabet:
+            ways = {
+                state.name: [
+                    (
+                        None if transition.guard is None else self.condition(transition.guard, within),
+                        transition.target.name if transition.target else state.name,
+                        transition,
+                    )
+                    for transition in state.transitions
+                    if self.named(transition.event, within) == name
+                ]
+                for state in stated.states
+            }
+            asked = (way[0] for found in ways.values() for way in found)
+            reads = frozenset({slot}).union(*(condition.reads for condition in asked if condition))
+            event = self.machine.events[name]
+            event.participants.append(_following(slot, ways, reads, stated))
+            possible = partial(_first, slot, ways)
+            event.restrictions.append(Restriction(Condition(possible, reads), True, stated))
+
+    def claims(self) -> None:
+        """The conditions of `never`, `always`, and of properties."""
+        for stated, within in self.names.stated(robosc.StateInvariant):
+            wanted = stated.kind == robosc.InvariantKind.always
+            self.claim("the condition of an invariant", stated.condition, within, wanted, stated)
+        for claimed, within in self.names.stated(robosc.Property):
+            if isinstance(claimed, robosc.InvariantProperty):
+                wanted = claimed.kind == robosc.InvariantKind.always
+                self.claim("the condition of a property", claimed.condition, within, wanted, claimed)
+            elif isinstance(claimed, robosc.ReachabilityProperty):
+                self.claim("what a property says can be reached", claimed.condition, within, True, claimed)
+                start = claimed.premise or ex.BooleanLiteral(value=True)
+                self.claim("where a property begins", start, within, True, claimed)
+
+    def claim(
+        self, what: str, expression: ex.Expression, within: Instance | None, wanted: bool, source: ex.Located
+    ) -> None:
+        self.machine.conditions.append(Claim(what, self.condition(expression, within), wanted, source))
+
+
+def _plant(instance: Instance, communication: robosc.CommunicationType) -> Plant:
+    return Plant(type(communication).__name__.lower(), f"{instance.name}.{communication.name}")
+
+
+def _phases(slot: Slot, step: Mapping[str, str], source: ex.Located) -> Participant:
+    def taken(state: Mapping[Slot, Value], _: Mapping[str, Value]) -> Taken | None:
+        target = step.get(str(state[slot]))
+        return None if target is None else Taken({slot: target}, source)
+
+    return Participant(taken, frozenset({slot}), source)
+
+
+def _chosen(
+    slot: Slot, location: str, asked: Sequence[tuple[Condition | None, bool]], source: ex.Located
+) -> Participant:
+    """A choice of data where each condition is as it should be; one that is not there holds."""
+
+    def step(state: Mapping[Slot, Value], inputs: Mapping[str, Value]) -> Taken | None:
+        holds = (
+            (True if condition is None else bool(condition.compute(state, inputs))) is wanted
+            for condition, wanted in asked
+        )
+        return Taken({slot: location}, source) if all(holds) else None
+
+    return Participant(step, frozenset().union(*(one.reads for one, _ in asked if one)), source)
+
+
+def _always(writes: Mapping[Slot, Value], source: ex.Located) -> Participant:
+    return Participant(lambda *_: Taken(writes, source), frozenset(), source)
+
+
+def _one_more(slot: Slot, source: ex.Located) -> Participant:
+    return Participant(lambda state, _: Taken({slot: int(state[slot]) + 1}, source), frozenset({slot}), source)
+
+
+def _broken(starting: Sequence[Restriction], source: ex.Located) -> Restriction:
+    """That one of the requirements on starting an action does not hold; without any that is never so."""
+
+    def compute(state: Mapping[Slot, Value], inputs: Mapping[str, Value]) -> bool:
+        return any(bool(one.condition.compute(state, inputs)) is not one.wanted for one in starting)
+
+    reads = frozenset().union(*(one.condition.reads for one in starting))
+    return Restriction(Condition(compute, reads), True, starting[0].source if starting else source)
+
+
+def _below(slot: Slot, domain: Domain) -> Condition:
+    """That a count has not come to its bound."""
+    return Condition(lambda state, _: state[slot] != domain[-1], frozenset({slot}))
+
+
+def _first(
+    slot: Slot, ways: Mapping[str, Sequence[_Way]], state: Mapping[Slot, Value], inputs: Mapping[str, Value]
+) -> _Way | None:
+    """The first transition of a requirement automaton's state whose condition holds."""
+    tried = ways.get(str(state[slot]), ())
+    return next((way for way in tried if way[0] is None or way[0].compute(state, inputs)), None)
+
+
+def _following(
+    slot: Slot, ways: Mapping[str, Sequence[_Way]], reads: frozenset[Slot], source: ex.Located
+) -> Participant:
+    def step(state: Mapping[Slot, Value], inputs: Mapping[str, Value]) -> Taken:
+        way = _first(slot, ways, state, inputs)
+        return Taken({}, source) if way is None else Taken({slot: way[1]}, way[2])
+
+    return Participant(step, reads, source)

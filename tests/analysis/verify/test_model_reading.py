@@ -1,0 +1,536 @@
+"""The plants mean what the text says; wherever they are changed, that is found, and where."""
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+import robosc
+from robosc.analysis.verify import validate_model
+from robosc.analysis.verify.model_reading import Effort
+from robosc.analysis.verify.verdict import Outcome, details
+from robosc.checks import check
+from robosc.diagnostics import has_errors
+from robosc.language import read
+from robosc.metamodel import expression as ex
+from robosc.metamodel import robosc as rsc
+from robosc.metamodel import sct
+from robosc.semantics.edges import edges_of
+from robosc.semantics.roles import event_name
+from robosc.semantics.walks import copied, parts
+from tests.fuzz.mutants import LIBRARIES, sources
+from tests.random_robots import random_robot
+from tests.searching import examples
+
+ROBOT = """\
+robot Rich {
+    interface task use Fibonacci from action_tutorials_interfaces
+    interface dock_type use SetBool from std_srvs
+    constant least: integer = 1
+    condition low = Battery.charge <= least
+    function far(d: double, limit: double): boolean = d > limit
+    datatype object Reading { range: double }
+    datatype object Done { success: boolean }
+    datatype object Goal { order: integer }
+    datatype enum Distance(limit: double) from double to {
+        value < limit -> near
+        default -> away
+    }
+
+    component Zone(ns: string, start: integer(0..2) = 2) {
+        outgoing message seen with identifier: ns + "/seen", type: integer(0..2)
+        behaviour {
+            variable count: integer(0..2) = start
+            initial marked state clear {
+                on response from seen if value = 2 do count := value + 2 goto crowded
+                on response from seen if value > 0 do count := value
+            }
+            state crowded { on response from seen if value = 0 do count := value goto clear }
+        }
+    }
+    component Front is Zone(ns: "/front")
+    component Rear is Zone("/rear", start: 1)
+    component Battery {
+        outgoing message level with type: integer(0..2)
+        behaviour {
+            variable charge: integer(0..2) = 2
+            initial marked state using { on response from level do charge := value }
+        }
+    }
+    component Lidar {
+        outgoing message scan with type: double
+        outgoing message gap with type: Distance(0.5)
+        behaviour {
+            variable ahead: Distance
+            initial marked state free {
+                on response from scan if !far(value, 1.5) goto blocked
+                on response from gap do ahead := value
+                after 500 ms without scan goto blind
+            }
+            state blocked { on response from scan if far(value, 1.5) goto free }
+            state blind { on response from scan goto free after 2.0 s do ahead := near }
+        }
+    }
+    component Platform {
+        incoming message move with type: double
+        incoming message halt with type: none
+        service dock with request: boolean, response: Done links dock_type
+        action drive with request: Goal, response: Done, feedback: integer(0..3) links task
+        action wave with request: none, response: none, feedback: none links task
+        provide move with 0.5 if Lidar.free and Battery.charge > 1
+        provide move with 0.1 if Lidar.blocked
+        behaviour {
+            variable tries: integer(0..2)
+            initial marked state still {
+                on request to move goto moving
+                on response from dock if value.success goto docked
+                transition if tries = 2 and Lidar.blind do tries := 0
+            }
+            state moving { on request to halt goto still }
+            state docked { transition goto still }
+            on error from dock do tries := tries + 1
+            on feedback from drive do tries := if value > 2 then 2 else tries
+        }
+    }
+    requirement move needs (all Zone: Zone.clear) and (count Zone: Zone.count > 0) < 2
+    requirement Slow: low and Platform.tries / 2 > 0.5 disables move
+    requirement { dock, drive } needs Battery.charge < 2 or Lidar.ahead = near
+    requirement halt after each move
+    requirement at most 2 dock since response from scan
+    requirement Turns: automaton {
+        initial state mine {
+            on request to drive goto yours
+            on error from drive
+        }
+        state yours {
+            on error from drive goto mine
+            on response from drive if Platform.still goto mine
+        }
+    }
+    requirement never Front.crowded and Rear.crowded and Platform.docked
+    property P: reachable Platform.still from Lidar.blind
+    property always Platform.tries <= 2
+}
+"""
+
+
+@pytest.fixture
+def models(tmp_path: Path) -> tuple[rsc.Base, sct.SupervisoryControlModel]:
+    """The robot and its plants, to be changed."""
+    path = tmp_path / "rich.rscd"
+    path.write_text(ROBOT)
+    reading = read(path)
+    found = [*reading.findings, *check(reading.base, reading.findings)]
+    assert [finding.message for finding in found if finding.severity.value == "error"] == []
+    assert isinstance(reading.base, rsc.Robot)
+    return reading.base, robosc.to_sct(reading.base)
+
+
+def event(model: sct.SupervisoryControlModel, name: str) -> sct.Event:
+    return next(event for plant in model.plants for event in plant.events if event_name(event) == name)
+
+
+def plant(model: sct.SupervisoryControlModel, name: str) -> sct.Plant:
+    return next(plant for plant in model.plants if plant.name == name)
+
+
+def place(model: sct.SupervisoryControlModel, name: str) -> sct.Location:
+    owner, _, called = name.partition(".")
+    return next(location for location in plant(model, owner).locations if location.name == called)
+
+
+def variable(model: sct.SupervisoryControlModel, name: str) -> sct.DiscreteVariable:
+    owner, _, called = name.partition(".")
+    return next(variable for variable in plant(model, owner).variables if variable.name == called)
+
+
+def edges(model: sct.SupervisoryControlModel, location: str, happening: str) -> list[sct.Edge]:
+    wanted = event(model, happening)
+    return [edge for edge in place(model, location).edges if edge.event is wanted]
+
+
+def required(model: sct.SupervisoryControlModel, name: str) -> list[sct.Requirement]:
+    return [requirement for requirement in model.requirements if event_name(requirement.event) == name]
+
+
+def negate(element: sct.Edge | sct.Requirement | sct.StateInvariant | sct.Property) -> None:
+    feature = "guard" if isinstance(element, sct.Edge) else "condition"
+    setattr(element, feature, ex.Negation(operand=getattr(element, feature)))
+
+
+def literals(expression: ex.Expression) -> list[ex.IntegerLiteral]:
+    return [part for part in parts(expression) if isinstance(part, ex.IntegerLiteral)]
+
+
+# The eight of an attack that nothing had caught.
+
+
+def disables_is_built_as_needs(model: sct.SupervisoryControlModel) -> None:
+    disabling = next(one for one in model.requirements if one.kind == sct.RequirementKind.disables)
+    disabling.kind = sct.RequirementKind.needs
+
+
+def initial_values_are_ignored(model: sct.SupervisoryControlModel) -> None:
+    variable(model, "component_Front.count").initial = ex.IntegerLiteral(value=0)
+
+
+def a_range_is_one_too_large(model: sct.SupervisoryControlModel) -> None:
+    held = variable(model, "component_Platform.tries").type
+    assert isinstance(held, ex.IntegerType)
+    held.maximum = 3
+
+
+def everything_is_marked(model: sct.SupervisoryControlModel) -> None:
+    for one in model.plants:
+        for location in one.locations:
+            location.marked = True
+
+
+def a_table_is_inverted(model: sct.SupervisoryControlModel) -> None:
+    """That of `Platform.tries / 2 > 0.5`."""
+    disabling = next(one for one in model.requirements if one.kind == sct.RequirementKind.disables)
+    assert isinstance(disabling.condition, ex.Conjunction)
+    disabling.condition.right = ex.Negation(operand=disabling.condition.right)
+
+
+def a_response_leads_to_error(model: sct.SupervisoryControlModel) -> None:
+    (edge,) = edges(model, "service_dock.wait_for_response", "service_dock.u_response")
+    edge.target = place(model, "service_dock.error")
+
+
+def a_cancel_stays_executing(model: sct.SupervisoryControlModel) -> None:
+    (edge,) = edges(model, "action_drive.executing", "action_drive.c_cancel")
+    edge.target = place(model, "action_drive.executing")
+
+
+def a_data_guard_is_dropped(model: sct.SupervisoryControlModel) -> None:
+    edge = next(edge for edge in edges_of(plant(model, "data_move")) if edge.event.name == "c_d2")
+    edge.guard = None
+
+
+# Others.
+
+
+def a_requirement_is_lost(model: sct.SupervisoryControlModel) -> None:
+    model.requirements.remove(required(model, "service_dock.c_trigger")[0])
+
+
+def a_requirement_is_on_another_event(model: sct.SupervisoryControlModel) -> None:
+    required(model, "service_dock.c_trigger")[0].event = event(model, "action_wave.c_trigger")
+
+
+def all_is_read_as_any(model: sct.SupervisoryControlModel) -> None:
+    needed = required(model, "message_move.c_trigger")[0]
+    assert isinstance(needed.condition, ex.Conjunction)
+    every = needed.condition.left
+    assert isinstance(every, ex.Conjunction)
+    needed.condition.left = ex.Disjunction(left=copied(every.left), right=copied(every.right))
+
+
+def an_instance_is_read_twice(model: sct.SupervisoryControlModel) -> None:
+    needed = required(model, "message_move.c_trigger")[0]
+    rear = variable(model, "component_Rear.count")
+    for part in parts(needed.condition):
+        if isinstance(part, sct.VariableReference) and part.variable is rear:
+            part.variable = variable(model, "component_Front.count")
+
+
+def a_constant_is_one_more(model: sct.SupervisoryControlModel) -> None:
+    disabling = next(one for one in model.requirements if one.kind == sct.RequirementKind.disables)
+    literals(disabling.condition)[0].value += 1
+
+
+def a_cancel_is_always_allowed(model: sct.SupervisoryControlModel) -> None:
+    for requirement in required(model, "action_drive.c_cancel"):
+        requirement.condition = ex.BooleanLiteral(value=True)
+
+
+def an_action_without_requirement_is_cancelled(model: sct.SupervisoryControlModel) -> None:
+    for requirement in required(model, "action_wave.c_cancel"):
+        model.requirements.remove(requirement)
+
+
+def what_comes_can_be_prevented(model: sct.SupervisoryControlModel) -> None:
+    event(model, "message_scan.u_response").controllable = True
+
+
+def a_transition_comes_from_outside(model: sct.SupervisoryControlModel) -> None:
+    event(model, "component_Platform.c_tau1").controllable = False
+
+
+def a_component_blocks_an_answer(model: sct.SupervisoryControlModel) -> None:
+    place(model, "component_Platform.moving").edges.remove(
+        *edges(model, "component_Platform.moving", "service_dock.u_response")
+    )
+
+
+def a_request_is_possible_anywhere(model: sct.SupervisoryControlModel) -> None:
+    docked = place(model, "component_Platform.docked")
+    docked.edges.append(sct.Edge(event=event(model, "message_move.c_trigger"), target=docked))
+
+
+def a_guard_is_negated(model: sct.SupervisoryControlModel) -> None:
+    negate(edges(model, "component_Platform.still", "component_Platform.c_tau1")[0])
+
+
+def a_guard_over_data_is_negated(model: sct.SupervisoryControlModel) -> None:
+    for edge in edges(model, "component_Lidar.free", "message_scan.u_response"):
+        negate(edge)
+
+
+def a_later_transition_is_tried_first(model: sct.SupervisoryControlModel) -> None:
+    first, second, *_ = edges(model, "component_Front.clear", "message_Front_seen.u_response")
+    assert isinstance(second.guard, ex.Conjunction)
+    later = second.guard.right
+    first.guard = ex.Conjunction(left=copied(first.guard), right=ex.Negation(operand=copied(later)))
+    second.guard = later
+
+
+def a_transition_leads_elsewhere(model: sct.SupervisoryControlModel) -> None:
+    (edge,) = edges(model, "component_Platform.docked", "component_Platform.c_tau2")
+    edge.target = place(model, "component_Platform.moving")
+
+
+def an_assignment_is_lost(model: sct.SupervisoryControlModel) -> None:
+    (edge,) = edges(model, "component_Battery.using", "message_level.u_response")
+    edge.updates.pop()
+
+
+def an_assignment_is_one_more(model: sct.SupervisoryControlModel) -> None:
+    (edge,) = edges(model, "component_Platform.moving", "service_dock.u_error")
+    literals(edge.updates[0].value)[0].value = 2
+
+
+def an_assignment_reads_a_variable_for_data(model: sct.SupervisoryControlModel) -> None:
+    (edge,) = edges(model, "component_Battery.using", "message_level.u_response")
+    edge.updates[0].value = sct.VariableReference(variable=edge.updates[0].variable)
+
+
+def branches_are_swapped(model: sct.SupervisoryControlModel) -> None:
+    (edge,) = edges(model, "component_Platform.still", "action_drive.u_feedback")
+    choice = edge.updates[0].value
+    assert isinstance(choice, ex.Conditional)
+    choice.condition = ex.Negation(operand=choice.condition)
+
+
+def data_has_one_value_more(model: sct.SupervisoryControlModel) -> None:
+    told = event(model, "message_level.u_response").inputs[0].type
+    assert isinstance(told, ex.IntegerType)
+    told.maximum = 3
+
+
+def an_enum_lacks_a_value(model: sct.SupervisoryControlModel) -> None:
+    model.enumerations[0].literals.pop()
+
+
+def a_transition_of_every_state_is_in_one_only(model: sct.SupervisoryControlModel) -> None:
+    for edge in edges(model, "component_Platform.docked", "service_dock.u_error"):
+        edge.updates.pop()
+
+
+def an_error_needs_no_reset(model: sct.SupervisoryControlModel) -> None:
+    (edge,) = edges(model, "service_dock.wait_for_response", "service_dock.u_error")
+    edge.target = place(model, "service_dock.idle")
+
+
+def feedback_ends_an_action(model: sct.SupervisoryControlModel) -> None:
+    (edge,) = edges(model, "action_wave.executing", "action_wave.u_feedback")
+    edge.target = place(model, "action_wave.ready")
+
+
+def a_time_is_up_elsewhere(model: sct.SupervisoryControlModel) -> None:
+    place(model, "component_Lidar.free").edges.append(
+        sct.Edge(event=event(model, "component_Lidar.u_after2"), target=place(model, "component_Lidar.free"))
+    )
+
+
+def a_time_is_longer(model: sct.SupervisoryControlModel) -> None:
+    timer = event(model, "component_Lidar.u_after2").timer
+    assert timer is not None
+    timer.milliseconds = 2001
+
+
+def a_time_starts_with_nothing(model: sct.SupervisoryControlModel) -> None:
+    timer = event(model, "component_Lidar.u_after1").timer
+    assert timer is not None
+    timer.without.clear()
+
+
+def no_data_is_chosen_anywhere(model: sct.SupervisoryControlModel) -> None:
+    edge = next(edge for edge in edges_of(plant(model, "data_move")) if edge.event.name == "c_none")
+    edge.guard = None
+
+
+def data_is_another(model: sct.SupervisoryControlModel) -> None:
+    edge = next(edge for edge in edges_of(plant(model, "data_move")) if edge.event.name == "c_d1")
+    edge.target = place(model, "data_move.d2")
+
+
+def an_order_forgets_nothing(model: sct.SupervisoryControlModel) -> None:
+    """`after each` is built as `after`."""
+    for edge in edges(model, "requirement_1.ready", "message_halt.c_trigger"):
+        edge.target = place(model, "requirement_1.ready")
+
+
+def a_count_goes_one_further(model: sct.SupervisoryControlModel) -> None:
+    counted = next(one for one in required(model, "service_dock.c_trigger") if one.automaton is not None)
+    literals(counted.condition)[0].value += 1
+
+
+def a_count_starts_anew_with_itself(model: sct.SupervisoryControlModel) -> None:
+    (edge,) = edges(model, "requirement_2.counting", "service_dock.c_trigger")
+    edge.updates[0].value = ex.IntegerLiteral(value=0)
+
+
+def a_requirement_automaton_stays(model: sct.SupervisoryControlModel) -> None:
+    (edge,) = edges(model, "requirement_Turns.mine", "action_drive.c_trigger")
+    edge.target = place(model, "requirement_Turns.mine")
+
+
+def a_requirement_automaton_forbids_less(model: sct.SupervisoryControlModel) -> None:
+    model.requirements.remove(required(model, "action_drive.u_response")[0])
+
+
+def never_is_built_as_always(model: sct.SupervisoryControlModel) -> None:
+    negate(model.invariants[0])
+
+
+def a_property_is_another(model: sct.SupervisoryControlModel) -> None:
+    negate(next(one for one in model.properties if isinstance(one, sct.ReachabilityProperty)))
+
+
+def it_begins_elsewhere(model: sct.SupervisoryControlModel) -> None:
+    place(model, "component_Lidar.free").initial = False
+    place(model, "component_Lidar.blind").initial = True
+
+
+def two_edges_are_possible_at_once(model: sct.SupervisoryControlModel) -> None:
+    for edge in edges(model, "component_Front.clear", "message_Front_seen.u_response"):
+        edge.guard = None
+
+
+#: Each with how its explanation begins.
+MUTANTS: list[tuple[Callable[[sct.SupervisoryControlModel], None], str]] = [
+    (disables_is_built_as_needs, "request to `Platform.move` is forbidden by the model (line 71), and"),
+    (initial_values_are_ignored, "`Front.count` (line 18) begins at 2 by the text, at 0 in the model"),
+    (a_range_is_one_too_large, "`Platform.tries` (line 58) has values from 0 to 2 by the text, values"),
+    (everything_is_marked, "location `error` of `Platform.dock` (line 52) is marked only in the model"),
+    (a_table_is_inverted, "request to `Platform.move` is forbidden by the model (line 71), and not by"),
+    (a_response_leads_to_error, "after response from `Platform.dock`, `Platform.dock` is in `ready` by"),
+    (a_cancel_stays_executing, "after cancel of `Platform.drive`, `Platform.drive` is in `idle` by the"),
+    (a_data_guard_is_dropped, "choice of `provide` 2 for `Platform.move` in line 56 can happen in the"),
+    (a_requirement_is_lost, "request to `Platform.dock` is forbidden by the text (line 72), and not by"),
+    (a_requirement_is_on_another_event, "request to `Platform.dock` is forbidden by the text (line 72),"),
+    (all_is_read_as_any, "request to `Platform.move` is forbidden by the text (line 70), and not by the"),
+    (an_instance_is_read_twice, "request to `Platform.move` is forbidden by the model (line 70), and"),
+    (a_constant_is_one_more, "request to `Platform.move` is forbidden by the model (line 71), and not"),
+    (a_cancel_is_always_allowed, "cancel of `Platform.drive` is forbidden by the text (line 72), and"),
+    (an_action_without_requirement_is_cancelled, "cancel of `Platform.wave` is forbidden by the text"),
+    (what_comes_can_be_prevented, "response from `Lidar.scan` (line 36) is controllable in the model,"),
+    (a_transition_comes_from_outside, "transition of `Platform` in line 62 is uncontrollable in the"),
+    (a_component_blocks_an_answer, "response from `Platform.dock` can happen by the text (line 52), and"),
+    (a_request_is_possible_anywhere, "request to `Platform.move` can happen in the plants, and not by"),
+    (a_guard_is_negated, "transition of `Platform` in line 62 can happen in the plants, and not by the"),
+    (a_guard_over_data_is_negated, "after response from `Lidar.scan`, `Lidar` is in `blocked` by the"),
+    (a_later_transition_is_tried_first, "after response from `Front.seen`, `Front` is in `crowded` by"),
+    (a_transition_leads_elsewhere, "after transition of `Platform` in line 65, `Platform` is in `still`"),
+    (an_assignment_is_lost, "after response from `Battery.level`, `Battery.charge` is 0 by the text"),
+    (an_assignment_is_one_more, "after error from `Platform.dock`, `Platform.tries` is 1 by the text"),
+    (an_assignment_reads_a_variable_for_data, "after response from `Battery.level`, `Battery.charge` is"),
+    (branches_are_swapped, "after feedback from `Platform.drive`, `Platform.tries` stays as it was by"),
+    (data_has_one_value_more, "`i_response` of response from `Battery.level` (line 29) has values from"),
+    (an_enum_lacks_a_value, "`Lidar.ahead` (line 39) has values near, away by the text, values near in"),
+    (a_transition_of_every_state_is_in_one_only, "after error from `Platform.dock`, `Platform.tries` is"),
+    (an_error_needs_no_reset, "after error from `Platform.dock`, `Platform.dock` is in `error` by the"),
+    (feedback_ends_an_action, "after feedback from `Platform.wave`, `Platform.wave` stays as it was by"),
+    (a_time_is_up_elsewhere, "timeout of `Lidar` after 2 s in line 46 can happen in the plants, and not"),
+    (a_time_is_longer, "timeout of `Lidar` after 2001 ms in line 46 has another time or place in the"),
+    (a_time_starts_with_nothing, "timeout of `Lidar` after 500 ms in line 43 has another time or place"),
+    (no_data_is_chosen_anywhere, "choice of no data for `Platform.move` can happen in the plants, and"),
+    (data_is_another, "after choice of `provide` 1 for `Platform.move` in line 55, the data of"),
+    (an_order_forgets_nothing, "after request to `Platform.halt`, requirement automaton 1 is in"),
+    (a_count_goes_one_further, "request to `Platform.dock` is forbidden by the text (line 74), and not"),
+    (a_count_starts_anew_with_itself, "after request to `Platform.dock`, the count of requirement"),
+    (a_requirement_automaton_stays, "after request to `Platform.drive`, requirement automaton 3 is in"),
+    (a_requirement_automaton_forbids_less, "response from `Platform.drive` is forbidden by the text"),
+    (never_is_built_as_always, "the condition of an invariant (line 85) holds by the text and does not"),
+    (a_property_is_another, "what a property says can be reached (line 86) holds by the text and does"),
+    (it_begins_elsewhere, "`Lidar` (line 38) begins at free by the text, at blind in the model"),
+    (two_edges_are_possible_at_once, "several edges with different ends are possible in the plants for"),
+]
+
+
+def test_a_right_model_is_proved(models: tuple[rsc.Base, sct.SupervisoryControlModel]) -> None:
+    """All constructs of the language's second edition that the supervisor knows are in it."""
+    found = validate_model(*models)
+    assert (found.outcome, found.explanation) == (Outcome.PROVED, "")
+    assert found.evidence == "442,080 states, 30 events"
+
+
+@pytest.mark.parametrize(("change", "said"), MUTANTS, ids=lambda value: getattr(value, "__name__", ""))
+def test_a_change_is_found(
+    models: tuple[rsc.Base, sct.SupervisoryControlModel],
+    change: Callable[[sct.SupervisoryControlModel], None],
+    said: str,
+) -> None:
+    change(models[1])
+    found = validate_model(*models)
+    assert (found.outcome, found.explanation[: len(said)]) == (Outcome.REFUTED, said)
+
+
+def test_it_is_told_with_a_shortest_trace(models: tuple[rsc.Base, sct.SupervisoryControlModel]) -> None:
+    a_cancel_stays_executing(models[1])
+    assert details(validate_model(*models), models[1]) == (
+        "model-translation: after cancel of `Platform.drive`, `Platform.drive` is in `idle` by the text (line 53), and "
+        "stays as it was in the plants where `Platform.drive.executing and Battery.charge = 2 and Lidar.ahead = away`\n"
+        "  after\n"
+        "    1. response from `Battery.level` (value = 0)\n"
+        "    2. request to `Platform.drive`\n"
+        "    3. response from `Battery.level` (value = 2)"
+    )
+
+
+def test_where_there_is_too_much_it_looks_at_random(models: tuple[rsc.Base, sct.SupervisoryControlModel]) -> None:
+    few = Effort(states=50, steps=2000)
+    found = validate_model(*models, few)
+    assert found.outcome is Outcome.SAMPLED
+    assert re.fullmatch(r"\d+ states, 30 events, and 2,000 random steps", found.evidence)
+    an_error_needs_no_reset(models[1])
+    assert validate_model(*models, few).outcome is Outcome.REFUTED
+
+
+def test_of_too_many_values_it_tries_some(models: tuple[rsc.Base, sct.SupervisoryControlModel]) -> None:
+    found = validate_model(*models, Effort(inputs=2, steps=100))
+    assert (found.outcome, found.explanation) == (Outcome.SAMPLED, "")
+    an_assignment_is_lost(models[1])
+    assert validate_model(*models, Effort(inputs=2, steps=100)).outcome is Outcome.REFUTED
+
+
+def test_a_model_without_its_text_is_skipped(models: tuple[rsc.Base, sct.SupervisoryControlModel]) -> None:
+    found = validate_model(None, models[1])
+    assert (found.outcome, found.explanation) == (Outcome.SKIPPED, "the model was not read from its text")
+
+
+def agrees(path: Path, text: str) -> bool | None:
+    """Whether nothing is refuted; None for a model with errors."""
+    path.write_text(text, encoding="utf-8")
+    reading = read(path, [LIBRARIES])
+    found = [*reading.findings, *check(reading.base, reading.findings)]
+    if not isinstance(reading.base, rsc.Robot) or has_errors(found):
+        return None
+    said = validate_model(reading.base, robosc.to_sct(reading.base), Effort(states=20_000, values=100_000, steps=200))
+    assert said.outcome in {Outcome.PROVED, Outcome.SAMPLED}, said
+    return True
+
+
+@pytest.mark.slow
+def test_every_model_of_the_repository_says_what_its_plants_do(tmp_path: Path) -> None:
+    found = [agrees(tmp_path / "model.rscd", "".join(text)) for text in sources()]
+    assert found.count(True) > 100
+
+
+@pytest.mark.slow
+def test_a_random_robot_says_what_its_plants_do(tmp_path: Path) -> None:
+    count = examples(50)
+    assert [agrees(tmp_path / "model.rscd", random_robot(seed)) for seed in range(count)].count(True) > 0.9 * count
