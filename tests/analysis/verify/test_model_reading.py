@@ -492,7 +492,7 @@ def test_it_is_told_with_a_shortest_trace(models: tuple[rsc.Base, sct.Supervisor
 
 
 def test_where_there_is_too_much_it_looks_at_random(models: tuple[rsc.Base, sct.SupervisoryControlModel]) -> None:
-    few = Effort(states=50, steps=2000)
+    few = Effort(states=50, values=0, random=60_000)
     found = validate_model(*models, few)
     assert found.outcome is Outcome.SAMPLED
     assert re.fullmatch(r"\d+ states, 30 events, and 2,000 random steps", found.evidence)
@@ -500,11 +500,22 @@ def test_where_there_is_too_much_it_looks_at_random(models: tuple[rsc.Base, sct.
     assert validate_model(*models, few).outcome is Outcome.REFUTED
 
 
+def test_where_there_are_too_many_states_each_event_may_be_tried_in_all(
+    models: tuple[rsc.Base, sct.SupervisoryControlModel],
+) -> None:
+    """What an event reads is a small part of a state."""
+    found = validate_model(*models, Effort(states=50))
+    assert found.outcome is Outcome.PROVED
+    assert re.fullmatch(r"\d+ states, 30 events; in other states event by event", found.evidence)
+    an_error_needs_no_reset(models[1])
+    assert validate_model(*models, Effort(states=50)).outcome is Outcome.REFUTED
+
+
 def test_of_too_many_values_it_tries_some(models: tuple[rsc.Base, sct.SupervisoryControlModel]) -> None:
-    found = validate_model(*models, Effort(inputs=2, steps=100))
+    found = validate_model(*models, Effort(states=10_000, inputs=2, values=0, random=3000))
     assert (found.outcome, found.explanation) == (Outcome.SAMPLED, "")
     an_assignment_is_lost(models[1])
-    assert validate_model(*models, Effort(inputs=2, steps=100)).outcome is Outcome.REFUTED
+    assert validate_model(*models, Effort(states=10_000, inputs=2, values=0, random=3000)).outcome is Outcome.REFUTED
 
 
 def test_a_model_without_its_text_is_skipped(models: tuple[rsc.Base, sct.SupervisoryControlModel]) -> None:
@@ -519,7 +530,9 @@ def agrees(path: Path, text: str) -> bool | None:
     found = [*reading.findings, *check(reading.base, reading.findings)]
     if not isinstance(reading.base, rsc.Robot) or has_errors(found):
         return None
-    said = validate_model(reading.base, robosc.to_sct(reading.base), Effort(states=20_000, values=100_000, steps=200))
+    said = validate_model(
+        reading.base, robosc.to_sct(reading.base), Effort(states=20_000, tries=3_000_000, values=20_000, random=10_000)
+    )
     assert said.outcome in {Outcome.PROVED, Outcome.SAMPLED}, said
     return True
 

@@ -39,6 +39,8 @@ def validate_model(robot: robosc.Base | None, model: sct.SupervisoryControlModel
     except DifferenceError as difference:
         return Verdict(PROPERTY, Outcome.REFUTED, "", difference.explanation, difference.trace)
     evidence = f"{walked.states:,} states, {walked.events:,} events"
-    if walked.exhaustive:
+    if walked.is_whole:
         return Verdict(PROPERTY, Outcome.PROVED, evidence)
-    return Verdict(PROPERTY, Outcome.SAMPLED, f"{evidence}, and {effort.steps:,} random steps")
+    if not walked.steps:
+        return Verdict(PROPERTY, Outcome.PROVED, f"{evidence}; in other states event by event")
+    return Verdict(PROPERTY, Outcome.SAMPLED, f"{evidence}, and {walked.steps:,} random steps")

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections import deque
 from dataclasses import dataclass
 from itertools import product
 from math import prod
 from random import Random
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, cast
 
 from robosc.analysis.paths import TraceStep
 from robosc.analysis.verify.model_reading.plants import AmbiguousError
@@ -29,6 +30,10 @@ if TYPE_CHECKING:
     from robosc.metamodel import expression as ex
 
 
+#: How much longer it takes to compute what an event does than to know it from before.
+_COMPUTED = 30
+
+
 class DifferenceError(Exception):
     """The readings differ: how, and the events that lead there."""
 
@@ -42,22 +47,29 @@ class DifferenceError(Exception):
 class Effort:
     """How far to look.
 
-    Up to so many `states`, computing so many effects of events (`values`), of one event in one state for so many
-    values of its `inputs`; where that is not all, on a random way of so many `steps`.
+    Up to so many `states`, and in memory so many `bits` of them; asking so often (`tries`) what an event does in a
+    state; of one event in one state for so many values of its `inputs`. Where that is not all, with so many `values` of
+    what events read, reachable or not; where that does not do, so many tries more on a random way.
     """
 
     states: int = 1_000_000
-    values: int = 2_000_000
+    bits: int = 1 << 28
+    tries: int = 50_000_000
     inputs: int = 100_000
-    steps: int = 10_000
+    values: int = 500_000
+    random: int = 500_000
 
 
 class Walked(NamedTuple):
-    """What was compared."""
+    """What was compared: so many states and events, whether these are all, and if not, in how many random steps.
+
+    Without them each event was compared in all states, reachable or not.
+    """
 
     states: int
     events: int
-    exhaustive: bool
+    is_whole: bool
+    steps: int
 
 
 class _Pair:
@@ -99,6 +111,7 @@ class _Layout:
             bits = (_size(domain) - 1).bit_length()
             self._places[slot] = place, (1 << bits) - 1
             place += bits
+        self.bits = max(place, 1)
 
     def mask(self, slots: Iterable[Slot]) -> int:
         """The bits of some slots."""
@@ -127,7 +140,7 @@ class Lockstep:
         _same_things(text, plants)
         self._effort = effort
         self._random = Random(0)  # noqa: S311 - the same values on every run
-        self._values = 0
+        self._tries = 0
         claims = list(zip(text.conditions, plants.conditions, strict=True))
         read = {slot for event in (*text.events.values(), *plants.events.values()) for slot in event.reads}
         read |= {slot for pair in claims for claim in pair for slot in claim.condition.reads}
@@ -145,39 +158,59 @@ class Lockstep:
 
     def run(self) -> Walked:
         """Compares all states, or as many as the effort allows and then some more; raises DifferenceError."""
-        states, is_whole = self._explore()
-        if not is_whole or any(pair.is_sampled for pair in self._pairs):
-            self._wander()
-            is_whole = False
-        return Walked(states, len(self._pairs), is_whole)
+        is_whole = self._explore() and not any(pair.is_sampled for pair in self._pairs)
+        steps = 0 if is_whole or self._is_same_everywhere() else max(1, self._effort.random // len(self._pairs))
+        self._wander(steps)
+        return Walked(len(self._before), len(self._pairs), is_whole, steps)
 
-    def _explore(self) -> tuple[int, bool]:
-        """Goes to all states by the fewest events."""
+    def _explore(self) -> bool:
+        """Goes to all states by the fewest events; whether these are all."""
         self._before = {self._initial: self._initial}
-        layer = [self._initial]
-        while layer:
-            reached: list[int] = []
-            for state in layer:
-                self._claimed(state, state)
-                for pair in self._pairs:
-                    key = state & pair.mask
-                    found = pair.known.get(key)
-                    if found is None:
-                        found = pair.known[key] = self._compared(pair, state)
-                    for kept, added in found:
-                        successor = state & kept | added
-                        if successor not in self._before:
-                            self._before[successor] = state
-                            reached.append(successor)
-                if len(self._before) > self._effort.states or self._values > self._effort.values:
-                    return len(self._before), False
-            layer = reached
-        return len(self._before), True
+        waiting = deque(self._before)
+        most = min(self._effort.states, self._effort.bits // self._layout.bits)
+        while waiting:
+            state = waiting.popleft()
+            self._claimed(state, state)
+            self._tries += len(self._pairs)
+            for pair in self._pairs:
+                key = state & pair.mask
+                found = pair.known.get(key)
+                if found is None:
+                    found = pair.known[key] = self._compared(pair, state)
+                for kept, added in found:
+                    successor = state & kept | added
+                    if successor not in self._before:
+                        self._before[successor] = state
+                        waiting.append(successor)
+            if len(self._before) > most or self._tries > self._effort.tries:
+                return False
+        return True
 
-    def _wander(self) -> None:
+    def _is_same_everywhere(self) -> bool:
+        """Whether there is no difference in any state; False also where there are too many to try."""
+        left = self._effort.values
+        asked: list[tuple[Sequence[Slot], _Pair | None, Sequence[Claim]]] = [(p.reads, p, ()) for p in self._pairs]
+        asked += [(reads, None, (claim, other)) for claim, other, _, reads, _ in self._claims]
+        for reads, pair, claims in asked:
+            domains = [self._layout.domains[slot] for slot in reads]
+            left -= prod(map(_size, [*domains, *(pair.domains.values() if pair else ())]))
+            if left < 0:
+                return False
+            for values in product(*domains):
+                held = dict(zip(reads, values, strict=True))
+                if len({_holds(claim, held) for claim in claims}) > 1:
+                    return False
+                try:
+                    for inputs in pair.choices(self._random) if pair else ():
+                        self._effect(cast("_Pair", pair), held, inputs, ())
+                except DifferenceError:
+                    return False  # It may be out of reach.
+        return True
+
+    def _wander(self, steps: int) -> None:
         """Goes on a random way, with random data."""
         state, trace = self._initial, list[TraceStep]()
-        for _ in range(self._effort.steps):
+        for _ in range(steps):
             self._claimed(state, trace)
             possible = []
             for pair in self._pairs:
@@ -196,7 +229,7 @@ class Lockstep:
         held = self._state(pair.reads, state)
         changes: dict[tuple[int, int], None] = {}
         for inputs in pair.choices(self._random):
-            self._values += 1
+            self._tries += _COMPUTED
             change = self._effect(pair, held, inputs, state)
             if change is not None:
                 changes[change] = None

@@ -86,6 +86,7 @@ class _Reading:
         self.names = Names(robot)
         self.plants = plants
         self.machine = Machine()
+        self.ports: dict[Plant, _Port] = {}
 
     def run(self) -> Machine:
         for instance in self.names:
@@ -108,6 +109,7 @@ class _Reading:
 
     def communication(self, instance: Instance, communication: robosc.CommunicationType) -> None:
         plant = _plant(instance, communication)
+        self.ports[plant] = instance, communication
         if isinstance(communication, robosc.Message):
             comes = communication.direction == robosc.MessageDirection.outgoing
             steps = {"u_response" if comes else "c_trigger": {"ready": "ready"}}
@@ -317,13 +319,7 @@ class _Reading:
 
     def carried(self, name: EventName, path: Sequence[str]) -> Domain:
         """The values of a part of what an event carries."""
-        communication = next(
-            communication
-            for instance in self.names
-            for communication in instance.of(robosc.CommunicationType)
-            if _plant(instance, communication) == name.plant
-        )
-        instance = next(instance for instance in self.names if name.plant.origin.startswith(f"{instance.name}."))
+        instance, communication = self.ports[name.plant]
         declared: Any = None
         if isinstance(communication, robosc.Message):
             declared = communication.type
