@@ -30,7 +30,7 @@ class SecondWriter(Writer):
             lines.append(f"condition q{number} = {condition}")
             self.conditions.append(f"q{number}")
         sent = [(c, m) for c in self.components for m in c.communications if m.kind != "outgoing"]
-        for number in self.many(2):
+        for number in self.many(1):
             lines.append(self.one([self.invariant, self.order])(number, sent))
         if self.conditions and sent:
             target = self.reference(*self.one(sent))
