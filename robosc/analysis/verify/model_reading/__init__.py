@@ -11,6 +11,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.analysis.verify.model_reading.lockstep import DifferenceError, Effort, Lockstep
+from robosc.analysis.verify.model_reading.names import NotReadError
 from robosc.analysis.verify.model_reading.plants import read_plants
 from robosc.analysis.verify.model_reading.text import UnlikeError, read_text
 from robosc.analysis.verify.verdict import Outcome, Verdict
@@ -32,6 +33,8 @@ def validate_model(robot: robosc.Base | None, model: sct.SupervisoryControlModel
     try:
         plants = read_plants(model)
         walked = Lockstep(read_text(robot, plants), plants, effort).run()
+    except NotReadError as unknown:
+        return Verdict(PROPERTY, Outcome.SKIPPED, "", str(unknown))
     except UnlikeError as unlike:
         source = unlike.source.source if unlike.source is not None else None
         line = f" (line {source.span.line})" if source is not None else ""

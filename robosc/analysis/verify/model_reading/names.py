@@ -26,6 +26,13 @@ _TOKEN = re.compile(r'"(?:[^"\\]|\\.)*"|\d+(?:\.\d+)?|\w+|\.\.|=>|!=|<=|>=|[^\s(
 OBSERVERS = (robosc.OrderRequirement, robosc.CountRequirement, robosc.AutomatonRequirement)
 
 
+class NotReadError(Exception):
+    """Something in the text that this reading does not know."""
+
+    def __init__(self, element: ex.Located) -> None:
+        super().__init__(f"`{type(element).__name__}` is not read a second time")
+
+
 @dataclass(frozen=True, eq=False)
 class Instance:
     """A component of the robot, and the component whose text it is made from."""
@@ -188,7 +195,8 @@ class Names:
                 return self.leaf(At(Slot(owner.plant), item.name))
             case robosc.Variable() if owner is not None:
                 return self.leaf(Slot(owner.plant, item.name))
-        assert isinstance(item, robosc.NamedExpression)
+        if not isinstance(item, robosc.Constant | robosc.Condition):
+            raise NotReadError(item)
         value: ex.Expression = yield item.value, self._inside(item, owner)
         if not isinstance(item, robosc.Constant):
             return value

@@ -24,7 +24,15 @@ from robosc.analysis.verify.model_reading.machine import (
     compiled,
     fitting,
 )
-from robosc.analysis.verify.model_reading.names import Data, Environment, Instance, Names, words_of
+from robosc.analysis.verify.model_reading.names import (
+    OBSERVERS,
+    Data,
+    Environment,
+    Instance,
+    Names,
+    NotReadError,
+    words_of,
+)
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc
 from robosc.semantics.walks import operands, walk, with_operands
@@ -363,6 +371,10 @@ class _Reading:
 
     def required(self) -> None:
         """On the start of what they name; an action is cancelled where one of its requirements does not hold."""
+        known = (robosc.CommunicationRequirement, robosc.StateInvariant, *OBSERVERS)
+        for requirement, _ in self.names.stated(robosc.Requirement):
+            if not isinstance(requirement, known):
+                raise NotReadError(requirement)
         starting: dict[EventName, list[Restriction]] = {}
         for stated, within in self.names.stated(robosc.CommunicationRequirement):
             wanted = not isinstance(stated, robosc.DisablesRequirement)
