@@ -86,7 +86,7 @@ def found(token: Token) -> str:
 
 def expected(wanted: Iterable[str], level: Level | None) -> str:
     """What the grammar wants, as an enumeration; its `end` is the next item of the level."""
-    words = list(wanted)
+    words = [word for word in wanted if word]  # Of what must not follow the parser says nothing.
     for name, rule, core in _GROUPS:
         if core <= set(words):
             words = [name if word in core else word for word in words if word in core or word not in _alike(rule)]

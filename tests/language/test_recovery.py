@@ -102,6 +102,7 @@ FAULTS = [
     ("on response from scan", "on respons from scan", "respons", "did you mean `response`?"),
     ("from scan do", "from scan do near := true if true do", "if", "stands before `do` and `goto`"),
     ("goto driving", "goto", "", "expected a name"),
+    ("and Scanner.driving", "and Scanner.on", "on", "found `on`, expected a name"),
     ("response: boolean", "respnse: boolean", "respnse", "did you mean `response`?"),
     ("feedback: double", "", "links", "expected `feedback`"),
     ("import EmergencyStop", "", "", "expected `import`"),
