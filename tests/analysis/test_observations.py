@@ -79,7 +79,7 @@ class Definitions:
         return {
             state
             for state in self.oracle.controlled
-            if self.oracle.edges(event, state) is not None and self.oracle.required(event, state)
+            if self.oracle.enabled(event, state) and self.oracle.required(event, state)
         } - self.allowed(event)
 
     def silent_restricted(self) -> list[sct.Event]:
@@ -171,9 +171,9 @@ def check_details(definitions: Definitions, observed: Observations) -> None:
     """What is said beside the event is true, too."""
     oracle = definitions.oracle
     for never in observed.never_enabled:
-        enabled = [state for state in oracle.controlled if oracle.edges(never.event, state) is not None]
+        enabled = [state for state in oracle.controlled if oracle.enabled(never.event, state)]
         required = [state for state in enabled if oracle.required(never.event, state)]
-        beyond = [state for state in oracle.uncontrolled if oracle.edges(never.event, state) is not None]
+        beyond = [state for state in oracle.uncontrolled if oracle.enabled(never.event, state)]
         states = enabled or beyond
         asked = any(oracle.required(never.event, state) for state in states)
         by_requirements = states and not asked
@@ -239,7 +239,7 @@ def check_hindrances(definitions: Definitions, observed: UnreachableState) -> No
     for hindrance in observed.hindrances:
         happens = hindrance.edge.event
         here = [s for s in oracle.controlled if s[oracle.places[component]] is hindrance.edge.eContainer()]
-        enabled = [state for state in here if oracle.edges(happens, state) is not None]
+        enabled = [state for state in here if oracle.enabled(happens, state)]
         required = [state for state in enabled if oracle.required(happens, state)]
         assert hindrance.forbidden is (
             Forbidden.BY_SYNTHESIS

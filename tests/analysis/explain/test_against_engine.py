@@ -202,7 +202,7 @@ def test_states_out_of_the_supervisors_reach_are_told_apart(model, requirement, 
     assert refusal.by in {Blocked.REQUIREMENT, Blocked.SYNTHESIS}
     assert Replay(model, told.situation.trace).after(len(told.situation.trace), requirements=False) == state
     # What the plants and the requirements say is true there, too.
-    assert bool(told.plants) == (oracle.edges(chosen, state) is None)
+    assert bool(told.plants) == (not oracle.enabled(chosen, state))
     assert bool(told.requirements) == (not oracle.required(chosen, state))
 
 
@@ -217,12 +217,12 @@ def test_what_never_happens(model):
         for asked in engine.roles.events:
             told = possibility(system, asked)
             ever = any(
-                oracle.allows(asked, state) if asked.controllable else oracle.edges(asked, state) is not None
+                oracle.allows(asked, state) if asked.controllable else oracle.enabled(asked, state)
                 for state in oracle.controlled
             )
             assert told.possible == ever
             if told.nearest is None:
-                assert not any(oracle.edges(asked, state) is not None for state in oracle.uncontrolled)
+                assert not any(oracle.enabled(asked, state) for state in oracle.uncontrolled)
                 assert told.plants
                 continue
             event(f"nearest {told.nearest.situation.reach} {told.nearest.by}")
@@ -242,11 +242,9 @@ def test_what_never_happens(model):
 def check_beyond(oracle: Oracle, chosen: sct.Event, beyond: Explanation | None) -> None:
     """It is there where plants and requirements allow the event in no controlled state, but in some other."""
     willing = [
-        state
-        for state in oracle.uncontrolled
-        if oracle.edges(chosen, state) is not None and oracle.required(chosen, state)
+        state for state in oracle.uncontrolled if oracle.enabled(chosen, state) and oracle.required(chosen, state)
     ]
-    enabled = any(oracle.edges(chosen, state) is not None for state in oracle.controlled)
+    enabled = any(oracle.enabled(chosen, state) for state in oracle.controlled)
     assert (beyond is not None) == (bool(willing) and enabled and not any(s in oracle.controlled for s in willing))
     if beyond is not None:
         replay = Replay(oracle.model, beyond.situation.trace)
@@ -256,7 +254,7 @@ def check_beyond(oracle: Oracle, chosen: sct.Event, beyond: Explanation | None) 
 
 def check_conflict(oracle: Oracle, asked: sct.Event, told: Possibility) -> None:
     """It is there where the requirements on the event allow it nowhere; what it names suffices for that."""
-    willing = [state for state in oracle.uncontrolled if oracle.edges(asked, state) is not None]
+    willing = [state for state in oracle.uncontrolled if oracle.enabled(asked, state)]
     assert bool(told.conflict) == (told.nearest.by is Blocked.REQUIREMENT and told.beyond is None)
     if told.conflict:
         assert not any(
@@ -320,7 +318,7 @@ def test_why_there_is_no_supervisor(model):
         requirement
         for requirement in model.requirements
         if any(
-            oracle.edges(requirement.event, state) is not None
+            oracle.enabled(requirement.event, state)
             and oracle.value(requirement.condition, state, {}) != (requirement.kind == sct.RequirementKind.needs)
             for state in onwards
         )

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 import robosc
-from robosc.analysis.explain.explaining import explored, requirement_texts
+from robosc.analysis.explain.explaining import explored
 from robosc.analysis.system import SynthesizedSystem
 from robosc.m2m import robosc_to_sct
 from robosc.metamodel import expression as ex
@@ -23,7 +23,7 @@ def test_without_each_requirement(path: Path) -> None:
     written = [definition for definition in robot.definitions if isinstance(definition, rsc.Requirement)]
 
     def look(system: SynthesizedSystem) -> list[tuple[int, int]]:
-        texts = requirement_texts(system)
+        texts = system.stated()
         assert len(texts) == len(written)
         counts = []
         for text in texts:

@@ -39,7 +39,7 @@ class Explicit:
         return all(self.oracle.value(part, state, {}) for part in parts)
 
     def allowed(self, event: sct.Event, state: State) -> bool:
-        return self.oracle.edges(event, state) is not None and self.guarded(event, state)
+        return self.oracle.enabled(event, state) and self.guarded(event, state)
 
     @cached_property
     def _moves(self) -> dict[State, list[Move]]:
@@ -200,7 +200,7 @@ class Explicit:
             state
             for state in self.states
             for event in self.oracle.events
-            if not event.controllable and self.oracle.edges(event, state) is not None
+            if not event.controllable and self.oracle.enabled(event, state)
             if not (self.guarded(event, state) and self.oracle.required(event, state))
         }
 
@@ -211,7 +211,7 @@ class Explicit:
             for state in self.states
             for event in self.oracle.events
             if event.kind in _INPUTS and self._ready(event, plant_of(event), state)
-            if self.oracle.edges(event, state) is None
+            if not self.oracle.enabled(event, state)
         }
 
     def _ready(self, event: sct.Event, plant: sct.Plant, state: State) -> bool:
