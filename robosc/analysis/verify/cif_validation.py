@@ -160,8 +160,11 @@ class _Comparison:
         """That the states which the invariants allow are others in CIF."""
         encoding = system.encoding
         valid = encoding.diagrams.all_of(encoding.in_domain(domain.element) for domain in self._layout.state)
-        asked = encoding.diagrams.any_of(~theirs.holds(one.condition) for one in self._their_invariants)
-        differ = (system.violating ^ asked) & valid
+        ours, asked = (
+            view.diagrams.any_of(~view.holds(one.condition) for one in invariants)
+            for view, invariants in ((encoding, self._model.invariants), (theirs, self._their_invariants))
+        )
+        differ = (ours ^ asked) & valid
         if not differ.satisfiable():
             return None
         codes = pick(differ, self._layout.state)
