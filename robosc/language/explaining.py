@@ -35,16 +35,36 @@ _FOREIGN = {
     "\N{RIGHT DOUBLE QUOTATION MARK}": '"',
     ";": "",
 }
-#: What other languages have words for: what RoboSC has instead.
+#: Words of other languages, and words of ours where they can't stand: what is written for what they seem to mean.
 _CONSTANT = "write `constant name: type = value`"
 _PARAMETER = "nothing is set on the robot itself; write `constant name: type = value`"
 _TIME = "write `after 3.0 s goto state` in a state, or `after 500 ms without message goto state` for its silence"
 _FUNCTION = "write `function name(parameter: type): type = expression`"
-_FOREIGN_WORDS = {
+_INVARIANT = "write `requirement never condition` or `requirement always condition`; `property` only verifies it"
+_ORDER = "write `requirement b after a`, or `requirement b after each a` where each `b` takes an `a` of its own"
+_COUNT = "write `requirement at most 3 b since a`"
+_TEMPLATE = "write `component name(parameter: type) { … }`, and `component other is name(argument)` for one made of it"
+_QUANTIFIER = "write `all`, `any` or `count`, a name, `in` and an array, or the name of a template, and a colon"
+_CASES = "write a transition for each case: the first whose condition holds is taken"
+_MODULO = "write `mod(a, b)`"
+_CHOICE = "write `if condition then value else value`"
+_MEANT = {
     **dict.fromkeys(("const", "let", "val", "define"), _CONSTANT),
     **dict.fromkeys(("param", "parameter"), _PARAMETER),
     **dict.fromkeys(("after", "timeout", "timer", "wait", "delay", "sleep", "every"), _TIME),
     **dict.fromkeys(("def", "fn", "func", "fun"), _FUNCTION),
+    **dict.fromkeys(("never", "always", "invariant", "assert", "require"), _INVARIANT),
+    **dict.fromkeys(("before", "each"), _ORDER),
+    **dict.fromkeys(("at", "most", "least", "since"), _COUNT),
+    **dict.fromkeys(("template", "extends", "new", "instance"), _TEMPLATE),
+    **dict.fromkeys(("forall", "exists", "foreach", "all", "any", "count"), _QUANTIFIER),
+    **dict.fromkeys(("else", "elif", "elseif"), _CASES),
+    **dict.fromkeys(("mod", "%"), _MODULO),
+    "reachable": "write `property reachable condition`, or `property reachable condition from condition`",
+    "automaton": "write `requirement name: automaton { … }`",
+    "then": _CHOICE,
+    "?": _CHOICE,
+    "not": "write `!` for `not`",
     "when": "write `if`",
     "unless": "write `if` and `!` before the condition",
     "var": "write `variable`",
@@ -121,6 +141,10 @@ def hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) -> Rep
         # A quotation mark has another one at the other end.
         text = None if own == '"' else own
         return Repair(f"write `{own}`" if own else "leave it out: nothing ends with a semicolon", text)
+    if (stated := _stated_hint(tokens, index, wanted, block)) is not None:
+        return stated
+    if token.text in _MEANT and token.kind is Kind.SYMBOL:
+        return _MEANT[token.text]
     if token.text == ":" and tokens[block.first].is_keyword("provide"):
         return "the properties of an object stand in braces"
     if before.is_name and before.text in wanted and is_reserved(before.text):
@@ -146,6 +170,27 @@ def _timed_hint(token: Token, before: Token, wanted: Sequence[str]) -> str | Non
     return None
 
 
+def _stated_hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) -> Repair | str | None:
+    """Of what has a name and a text, an automaton, arguments or a body by an expression."""
+    token, before, starter = tokens[index], tokens[index - 1], tokens[block.first]
+    if starter.is_keyword("requirement", "property") and ":" in wanted:
+        if before.kind is Kind.STRING or token.is_keyword("automaton"):
+            return "write `:` before it"
+    elif starter.is_keyword("requirement", "property") and before.kind is Kind.STRING:
+        return 'the text stands before the colon: `requirement name "text": …`'
+    if starter.is_keyword("requirement") and before.text == "every":
+        return _ORDER
+    if starter.is_keyword("requirement") and token.text in {"on", "transition", "after", "do", "variable"}:
+        return "the automaton of a requirement has states, and they have `on … if … goto …` only"
+    if starter.is_keyword("component") and "is" in wanted and token.text in {"=", ":"}:
+        return _TEMPLATE
+    if starter.is_keyword("function") and token.text == "{" and {"=", "=(?!>)"} & set(wanted):
+        return "write `=` and one expression instead of braces"
+    if "then" in wanted:
+        return _CHOICE
+    return None
+
+
 def _symbols(token: Token, wanted: Sequence[str]) -> list[str]:
     """The symbols that another symbol may have been meant to be."""
     if token.text == "->" and "=>" in wanted:
@@ -161,10 +206,9 @@ def _word_hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) 
     close = get_close_matches(token.text, sorted(words - {token.text}), n=1, cutoff=0.7)
     if list(wanted) in ([","], [":"]):
         return f"write `{wanted[0]}` before it"
-    if token.text in _FOREIGN_WORDS:
-        return _FOREIGN_WORDS[token.text]
-    if tokens[index - 1].text == "not":
-        return "write `!` for `not`"
+    for word in (token, tokens[index - 1]):  # Where a name can stand, a word that was meant otherwise is read as one.
+        if word.text in _MEANT and word.kind is Kind.WORD:
+            return _MEANT[word.text]
     if not token.text.removeprefix("^").isascii():
         return "a name is made of the letters a to z and A to Z, of digits and of `_`"
     if token.text == "if" and tokens[block.first].is_keyword("on"):

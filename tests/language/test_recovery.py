@@ -329,7 +329,7 @@ def test_a_nameless_declaration_may_be_the_missing_one_of_its_definition(tmp_pat
     assert {finding.rule for finding in reading(tmp_path, text).findings} == {"syntax"}
 
 
-#: What is written in other languages, and what the hint says of it.
+#: Words of other languages, and words of this one where they can't stand, with what the hint says of them.
 FOREIGN = [
     ("robot R { const speed: double = 0.5 }", "write `constant name: type = value`"),
     ("robot R { component C { behaviour { initial marked state s { timeout 3.0 goto s } } } }", "write `after 3.0 s"),
@@ -341,6 +341,54 @@ FOREIGN = [
     ("robot R { component C { behaviour { initial marked state s { transition when true } } } }", "write `if`"),
     ("robot R { component C { incoming message m with type: int } }", "write `integer`"),
     ("robot R { component C { incoming message m with type: float64 } }", "write `double`"),
+    ("robot R { never true }", "write `requirement never condition`"),
+    ("robot R { invariant true }", "write `requirement never condition`"),
+    (
+        "robot R { component C { behaviour { initial marked state s { never true } } } }",
+        "write `requirement never condition`",
+    ),
+    ("robot R { reachable true }", "write `property reachable condition`"),
+    ("robot R { property P: always reachable C.s }", "write `property reachable condition`"),
+    ("robot R { automaton T { } }", "write `requirement name: automaton { … }`"),
+    ("robot R { requirement T automaton { } }", "write `:` before it"),
+    ("robot R { requirement T: automaton { state s { on request to m do x := 1 } } }", "`on … if … goto …` only"),
+    ("robot R { requirement T: automaton { variable x: boolean } }", "`on … if … goto …` only"),
+    ("robot R { requirement m before n }", "write `requirement b after a`"),
+    ("robot R { requirement m after every n }", "write `requirement b after a`"),
+    ("robot R { requirement at least 3 m since n }", "write `requirement at most 3 b since a`"),
+    ("robot R { requirement at most m since n }", "write `requirement at most 3 b since a`"),
+    ('robot R { requirement "text" m needs C.s }', "write `:` before it"),
+    ('robot R { requirement N: "text" m needs C.s }', "the text stands before the colon"),
+    ("robot R { template B(x: integer) { } }", "write `component name(parameter: type)"),
+    ("robot R { component B = A() }", "`component other is name(argument)`"),
+    ("robot R { component B extends A { } }", "`component other is name(argument)`"),
+    ("robot R { function f(x: integer): integer { x } }", "one expression instead of braces"),
+    (
+        "robot R { component C { behaviour { initial marked state s { transition if forall r in x: r } } } }",
+        "write `all`, `any`",
+    ),
+    (
+        "robot R { component C { behaviour { initial marked state s { transition if all A A.s } } } }",
+        "write `all`, `any`",
+    ),
+    ("robot R { component C { behaviour { initial marked state s { transition if not x } } } }", "write `!` for `not`"),
+    (
+        "robot R { component C { behaviour { initial marked state s { transition if x % 2 = 0 } } } }",
+        "write `mod(a, b)`",
+    ),
+    (
+        "robot R { component C { behaviour { variable x: boolean = true ? true : false } } }",
+        "write `if condition then value",
+    ),
+    (
+        "robot R { component C { behaviour { variable x: boolean = if true 1 else 2 } } }",
+        "write `if condition then value",
+    ),
+    (
+        "robot R { component C { behaviour { initial marked state s { on error from m else goto s } } } }",
+        "a transition for each case",
+    ),
+    ("robot R { component C { behaviour { initial marked state s { every 3 s do x := 1 } } } }", "write `after 3.0 s"),
 ]
 
 
