@@ -134,21 +134,17 @@ def hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) -> Rep
     """How to mend what stands at a token of an item, where that can be told."""
     token, before = tokens[index], tokens[index - 1]
     symbols = _symbols(token, wanted)
-    if tokens[block.first].is_keyword("after") and (timed := _timed_hint(token, before, wanted)):
-        return timed
     if token.text in _FOREIGN:
         own = _FOREIGN[token.text]
         # A quotation mark has another one at the other end.
         text = None if own == '"' else own
         return Repair(f"write `{own}`" if own else "leave it out: nothing ends with a semicolon", text)
-    if (stated := _stated_hint(tokens, index, wanted, block)) is not None:
+    if (stated := _statement_hint(tokens, index, wanted, block)) is not None:
         return stated
-    if token.text in _MEANT and token.kind is Kind.SYMBOL:
-        return _MEANT[token.text]
-    if token.text == ":" and tokens[block.first].is_keyword("provide"):
-        return "the properties of an object stand in braces"
     if before.is_name and before.text in wanted and is_reserved(before.text):
         return f"is a name missing before `{before.text}`?"
+    if "then" in wanted:
+        return _CHOICE
     if before.is_keyword(",") and token.kind is Kind.SYMBOL:
         return "leave out the comma before it"
     if "->" in wanted and block.level is RULES and (token.is_first or before.text == "default"):
@@ -159,7 +155,7 @@ def hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) -> Rep
         return "a number has digits on both sides of its point, such as `0.5` or `1.0`"
     if token.kind is Kind.NUMBER and not token.text.replace(".", "").isdigit():
         return "a number has digits and a point only, no exponent and no letters"
-    return _word_hint(tokens, index, wanted, block) if token.kind is Kind.WORD else None
+    return _word_hint(tokens, index, wanted, block) if token.kind is Kind.WORD else _MEANT.get(token.text)
 
 
 def _timed_hint(token: Token, before: Token, wanted: Sequence[str]) -> str | None:
@@ -170,24 +166,31 @@ def _timed_hint(token: Token, before: Token, wanted: Sequence[str]) -> str | Non
     return None
 
 
-def _stated_hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) -> Repair | str | None:
-    """Of what has a name and a text, an automaton, arguments or a body by an expression."""
+def _statement_hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) -> str | None:
+    """How to mend what depends on the kind of definition that it stands in."""
     token, before, starter = tokens[index], tokens[index - 1], tokens[block.first]
-    if starter.is_keyword("requirement", "property") and ":" in wanted:
-        if before.kind is Kind.STRING or token.is_keyword("automaton"):
-            return "write `:` before it"
-    elif starter.is_keyword("requirement", "property") and before.kind is Kind.STRING:
-        return 'the text stands before the colon: `requirement name "text": …`'
-    if starter.is_keyword("requirement") and before.text == "every":
-        return _ORDER
-    if starter.is_keyword("requirement") and token.text in {"on", "transition", "after", "do", "variable"}:
-        return "the automaton of a requirement has states, and they have `on … if … goto …` only"
+    if starter.is_keyword("after"):
+        return _timed_hint(token, before, wanted)
+    if starter.is_keyword("provide") and token.text == ":":
+        return "the properties of an object stand in braces"
+    if starter.is_keyword("requirement", "property"):
+        return _requirement_hint(token, before, wanted)
     if starter.is_keyword("component") and "is" in wanted and token.text in {"=", ":"}:
         return _TEMPLATE
     if starter.is_keyword("function") and token.text == "{" and {"=", "=(?!>)"} & set(wanted):
         return "write `=` and one expression instead of braces"
-    if "then" in wanted:
-        return _CHOICE
+    return None
+
+
+def _requirement_hint(token: Token, before: Token, wanted: Sequence[str]) -> str | None:
+    if ":" in wanted and (before.kind is Kind.STRING or token.is_keyword("automaton")):
+        return "write `:` before it"
+    if before.kind is Kind.STRING:
+        return 'the text stands before the colon: `requirement name "text": …`'
+    if before.text == "every":
+        return _ORDER
+    if token.text in {"on", "transition", "after", "do", "variable"}:
+        return "the automaton of a requirement has states, and they have `on … if … goto …` only"
     return None
 
 
