@@ -1,0 +1,123 @@
+"""The models of docs/patterns.md: each draws nothing, does what the page says of it, and stands there word for word."""
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from robosc.cli import main
+
+PAGE = Path(__file__).parent.parent / "docs" / "patterns.md"
+PATTERNS = PAGE.with_suffix("")
+NAMES = sorted(path.stem for path in PATTERNS.glob("*.rscd"))
+EACH = pytest.mark.parametrize("name", NAMES)
+PASSED, REFUSED = ' {"value": {"success": true}}', ' {"value": {"success": false}}'
+
+
+def play(name: str, *lines: str) -> list[list[str]]:
+    """What the controller sends after each line of a script and the tick that follows it, by name, once each."""
+    script = "\n".join(f"{line}\ntick" for line in lines)
+    done = CliRunner().invoke(main, ["simulate", str(PATTERNS / f"{name}.rscd"), "--loop", "--script", "-"], script)
+    assert done.exit_code == 0, done.stderr
+    answers = [json.loads(line) for line in done.stdout.splitlines()]
+    assert [answer["by"] for answer in answers] == [None] * 2 * len(lines)
+    pairs = zip(answers[::2], answers[1::2], strict=True)
+    happened = [" ".join(line["happened"] + tick["happened"]) for line, tick in pairs]
+    return [[*dict.fromkeys(re.findall(r"(?:message|service)_(\w+)\.c_trigger", text))] for text in happened]
+
+
+def heard(name: str, value: object = None) -> str:
+    return f"message_{name}.u_response" + ("" if value is None else " " + json.dumps({"value": value}))
+
+
+def answered(name: str, result: str = "") -> str:
+    return f"service_{name}.u_response{result}"
+
+
+@EACH
+def test_nothing_is_said_of_it(name: str) -> None:
+    for command in ("check", "synthesize", "verify"):
+        done = CliRunner().invoke(main, [command, str(PATTERNS / f"{name}.rscd")])
+        assert (done.exit_code, done.stderr) == (0, ""), done.output
+
+
+def test_the_page_shows_each_model() -> None:
+    shown = re.findall(r"^```\n(.*?)^```$", PAGE.read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL)
+    assert sorted(shown) == sorted((PATTERNS / f"{name}.rscd").read_text(encoding="utf-8") for name in NAMES)
+    assert len(NAMES) == 12
+
+
+def test_the_spindle_turns_behind_the_closed_guard() -> None:
+    lines = ("tick", heard("closed", True), heard("closed", True), heard("closed", False))
+    assert play("interlock", *lines) == [["brake"], ["spin"], ["spin"], ["brake"]]
+
+
+def test_one_arm_is_in_the_zone() -> None:
+    sent = play("mutual_exclusion", "tick", "service_Left_enter.u_error", answered("Left_leave"), "tick")
+    assert sent[0] == ["Left_enter", "Left_leave"]
+    assert "Right_enter" not in sent[0] + sent[1]
+
+
+def test_the_part_is_held_by_one_hand_at_least() -> None:
+    steps = ("grip", "take", "release", "put")
+    assert play("hand_over", "tick", *map(answered, steps)) == [["grip"], ["take"], ["release"], ["put"], ["grip"]]
+    assert play("hand_over", "tick", "service_grip.u_error")[1] == ["grip"]
+
+
+def test_docking_is_tried_three_times_with_pauses() -> None:
+    refused = answered("dock", REFUSED)
+    lines = ("tick", refused, "wait 1.9", "wait 0.1", "service_dock.u_error", "wait 2", refused, "wait 60")
+    assert play("retry", *lines) == [["dock"], [], [], ["dock"], [], ["dock"], [], []]
+    assert play("retry", *lines, heard("again"), answered("dock", PASSED), "wait 60")[8:] == [["dock"], [], []]
+
+
+def test_a_silent_lidar_halts_the_robot() -> None:
+    lines = ("tick", heard("scan"), "wait 0.4", heard("scan"), "wait 0.4", "wait 0.1", heard("scan"))
+    assert play("lost_sensor", *lines) == [["halt"], *[["move"]] * 4, ["halt"], ["move"]]
+
+
+def test_the_switch_says_who_drives() -> None:
+    lines = ("tick", heard("Planner_wish"), heard("automatic", True), heard("Stick_wish"), heard("automatic", False))
+    assert play("modes", *lines, "wait 0.5") == [["halt"], ["halt"], ["drive"], ["drive"], ["drive"], ["halt"]]
+
+
+def test_two_hands_close_the_press_within_half_a_second() -> None:
+    left, right = heard("left", True), heard("right", True)
+    assert play("two_hands", left, "wait 0.4", right, heard("left", False), left)[2:] == [["close"], ["open"], ["open"]]
+    off = (heard("left", False), heard("right", False))
+    assert play("two_hands", left, "wait 0.5", right, *off, right, left)[2:] == [*[["open"]] * 4, ["close"]]
+
+
+def test_a_contact_that_bounces_is_not_closed() -> None:
+    shut, open_ = heard("closed", True), heard("closed", False)
+    lines = ("tick", shut, "wait 0.04", open_, shut, "wait 0.04", "wait 0.01", open_, "wait 0.01", shut, "wait 1")
+    assert play("debounce", *lines) == [*[["rest"]] * 6, *[["run"]] * 5]
+
+
+def test_after_three_portions_the_hopper_is_filled() -> None:
+    lines = (*[heard("order")] * 4, *[answered("dispense")] * 3, heard("filled"))
+    assert play("limit", *lines) == [["dispense"], [], [], [], ["dispense"], ["dispense"], [], ["dispense"]]
+
+
+def test_a_route_is_driven_to_its_end() -> None:
+    poses = [{"pose": {"position": {"x": float(x)}}} for x in range(2)]
+    route, arrived = heard("route", {"poses": poses}), heard("arrived")
+    assert play("route", "tick", route, arrived, arrived, route) == [[], ["go"], ["go"], [], ["go"]]
+
+
+def test_the_button_comes_before_the_joystick_and_that_before_the_planner() -> None:
+    lines = ("tick", heard("Planner_wish"), heard("Stick_wish"), heard("stop"), heard("continue"))
+    assert play("priority", *lines) == [["halt"], ["follow"], ["obey"], ["halt"], ["obey"]]
+    lines = (*lines[:3], "wait 0.4", heard("Planner_wish"), "wait 0.1")
+    assert play("priority", *lines)[3:] == [["obey"], ["obey"], ["follow"]]
+
+
+def test_nothing_moves_before_the_test_has_passed() -> None:
+    begin = ("tick", heard("scan"))
+    lines = (*begin, answered("test", PASSED), answered("enable"))
+    assert play("start_up", *lines) == [["test"], [], ["enable"], ["move"]]
+    assert play("start_up", *begin, answered("test", REFUSED), "wait 60", heard("start"))[2:] == [[], [], ["test"]]
+    assert play("start_up", "tick", answered("test", PASSED), heard("scan"))[1:] == [[], ["enable"]]
+    assert play("start_up", "tick", "wait 10", heard("start"), answered("test"))[1:] == [[], [], ["test"]]
