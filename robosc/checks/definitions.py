@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from robosc.metamodel import robosc as rsc
 from robosc.semantics.communication import carried, event_of
@@ -12,6 +12,15 @@ if TYPE_CHECKING:
 
     from robosc.metamodel import expression as ex
 
+
+class Text(Protocol):
+    """A robot, a library, or a part of one."""
+
+    @property
+    def definitions(self) -> Iterable[Any]:
+        """What stands in it."""
+
+
 _Element = TypeVar("_Element", bound="ex.Located")
 
 
@@ -20,21 +29,21 @@ def of_kind(kind: type[_Element] | tuple[type[_Element], ...], elements: Iterabl
     return [element for element in elements if isinstance(element, kind)]
 
 
-def components(base: rsc.Base) -> Iterator[tuple[rsc.Component, rsc.LocalComponent]]:
+def components(base: Text) -> Iterator[tuple[rsc.Component, rsc.LocalComponent]]:
     """The components that are not imported."""
     for component in of_kind(rsc.Component, base.definitions):
         if isinstance(component.type, rsc.LocalComponent):
             yield component, component.type
 
 
-def statements(kind: type[_Element], base: rsc.Base) -> Iterator[_Element]:
+def statements(kind: type[_Element], base: Text) -> Iterator[_Element]:
     """The definitions of a kind outside of components, then those in these components."""
     yield from of_kind(kind, base.definitions)
     for _, local in components(base):
         yield from of_kind(kind, local.definitions)
 
 
-def behaviours(base: rsc.Base) -> Iterator[tuple[rsc.Component, rsc.ComponentBehaviour]]:
+def behaviours(base: Text) -> Iterator[tuple[rsc.Component, rsc.ComponentBehaviour]]:
     """Every behaviour of these components, of one component all of them."""
     for component, local in components(base):
         for behaviour in of_kind(rsc.ComponentBehaviour, local.definitions):
@@ -42,7 +51,7 @@ def behaviours(base: rsc.Base) -> Iterator[tuple[rsc.Component, rsc.ComponentBeh
                 yield component, behaviour
 
 
-def transitions(base: rsc.Base) -> Iterator[tuple[rsc.Component, rsc.Transition]]:
+def transitions(base: Text) -> Iterator[tuple[rsc.Component, rsc.Transition]]:
     """Every transition of these behaviours, with its component."""
     for component, behaviour in behaviours(base):
         for definition in behaviour.automaton.definitions:
@@ -52,13 +61,13 @@ def transitions(base: rsc.Base) -> Iterator[tuple[rsc.Component, rsc.Transition]
                 yield component, definition
 
 
-def variables(base: rsc.Base) -> Iterator[rsc.Variable]:
+def variables(base: Text) -> Iterator[rsc.Variable]:
     """The variables of these behaviours."""
     for _, behaviour in behaviours(base):
         yield from of_kind(rsc.Variable, behaviour.automaton.definitions)
 
 
-def communications(base: rsc.Base) -> Iterator[rsc.CommunicationType]:
+def communications(base: Text) -> Iterator[rsc.CommunicationType]:
     """The messages, services and actions of these components."""
     for _, local in components(base):
         yield from of_kind(rsc.CommunicationType, local.definitions)
@@ -126,7 +135,7 @@ def communication_of(reference: rsc.CommunicationReference | None) -> rsc.Commun
     return reference.communicationType if reference else None
 
 
-def data_types(base: rsc.Base) -> Iterator[rsc.DataType]:
+def data_types(base: Text) -> Iterator[rsc.DataType]:
     """Every type that stands in the text of a base, those within arrays too."""
     for outermost in _outermost(base):
         around: rsc.DataType | None = outermost
@@ -135,7 +144,7 @@ def data_types(base: rsc.Base) -> Iterator[rsc.DataType]:
             around = around.type if isinstance(around, rsc.Array) else None
 
 
-def _outermost(base: rsc.Base) -> Iterator[rsc.DataType | None]:
+def _outermost(base: Text) -> Iterator[rsc.DataType | None]:
     for definition in base.definitions:
         if isinstance(definition, rsc.EnumDataType):
             yield definition.type

@@ -7,13 +7,17 @@ from contextvars import ContextVar
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from robosc.checks.rule import Finding, on_line
 from robosc.metamodel import robosc as rsc
+from robosc.semantics.expansion import constant_value
 from robosc.semantics.instances import Instances, imported, libraries
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Callable, Iterable, Iterator, Sequence
 
-    from robosc.semantics.instances import Resolved
+    from robosc.metamodel import expression as ex
+    from robosc.semantics.evaluation import Value
+    from robosc.semantics.instances import Instance, Resolved
 
     #: Says whether a robot or library by itself has what a rule looks for.
     Holds = Callable[[rsc.Base], bool]
@@ -63,6 +67,39 @@ def instances(base: rsc.Base) -> Instances:
     if base not in memory.instances:
         memory.instances[base] = Instances(base, memory.resolved)
     return memory.instances[base]
+
+
+@dataclass(frozen=True)
+class Meaning:
+    """The text of a robot or library; or that of a template, as an instance of it means it by its arguments."""
+
+    definitions: Sequence[rsc.Definition]
+    made: Instance | None = None
+
+    def values(self, *expressions: ex.Expression | None) -> list[Value | None]:
+        """The value of each constant expression, None where it has none.
+
+        An instance has values only where arguments take part: of all others the template's own text has them.
+        """
+        alone = [constant_value(expression) for expression in expressions]
+        if self.made is None or None not in alone:
+            return alone if self.made is None else [None] * len(alone)
+        return [constant_value(expression, self.made) for expression in expressions]
+
+    def finding(self, element: ex.Located, message: str, hint: str) -> Finding:
+        """Found at an element; what the arguments of an instance lead to is found there."""
+        if self.made is None:
+            return Finding(element, message, hint)
+        message = f"with these arguments, {message}{on_line(element)}"
+        return Finding(self.made.component, message, "give other arguments")
+
+
+def meanings(base: rsc.Base) -> Iterator[Meaning]:
+    """The text of a robot or library, then that of each component in it that is made with arguments."""
+    yield Meaning(base.definitions)
+    for instance in instances(base):
+        if instance.arguments:
+            yield Meaning([instance.definition], instance)
 
 
 def fact(find: Callable[[_Base], _Fact], base: _Base) -> _Fact:

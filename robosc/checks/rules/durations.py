@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robosc.checks.definitions import behaviours, common_transitions, of_kind
-from robosc.checks.libraries import instances
+from robosc.checks.definitions import behaviours, common_transitions, of_kind, transitions
+from robosc.checks.libraries import meanings
 from robosc.checks.rule import Finding, rule
 from robosc.metamodel import robosc as rsc
 from robosc.semantics.durations import LONGEST, SHORTEST, milliseconds
@@ -26,17 +26,14 @@ def duration(base: rsc.Base) -> Iterator[Finding]:
                     " starts anew, expected `without` and a message",
                     "write it in the state whose time is meant, or `after … without message`",
                 )
-    reported = set()
-    for instance in instances(base):
-        own = [transition for transition, _ in instance.transitions] if instance.unit is base else []
-        for transition in of_kind(rsc.TimedTransition, own):
-            if transition not in reported:
-                found = milliseconds(transition, instance)
-                if found is not None and not SHORTEST <= found <= LONGEST:
-                    reported.add(transition)
-                    yield Finding(
-                        transition.duration or transition,
-                        f"this time is {'longer than 24 days' if found > LONGEST else 'shorter than 1 ms'}, expected"
-                        " 1 ms to 24 days",
-                        "the units are `ms`, `s` and `min`",
-                    )
+    for meaning in meanings(base):
+        for transition in of_kind(rsc.TimedTransition, [transition for _, transition in transitions(meaning)]):
+            (value,) = meaning.values(transition.duration)
+            found = None if value is None else milliseconds(transition, meaning.made)
+            if found is not None and not SHORTEST <= found <= LONGEST:
+                yield meaning.finding(
+                    transition.duration or transition,
+                    f"this time is {'longer than 24 days' if found > LONGEST else 'shorter than 1 ms'}, expected"
+                    " 1 ms to 24 days",
+                    "the units are `ms`, `s` and `min`",
+                )

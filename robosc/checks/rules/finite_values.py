@@ -14,13 +14,13 @@ from robosc.checks.definitions import (
     transitions,
     variables,
 )
+from robosc.checks.libraries import Meaning, meanings
 from robosc.checks.rule import Finding, rule
 from robosc.checks.supervised import Fault, function_faults, readings, supervised_faults, table_faults
 from robosc.metamodel import robosc as rsc
+from robosc.ros_types.wire import INTEGER_RANGES
 from robosc.semantics.communication import sent_type
 from robosc.semantics.cone_of_influence import ConeOfInfluence, accesses
-from robosc.semantics.evaluation import evaluate
-from robosc.semantics.expansion import constant_value
 from robosc.semantics.inputs import Computed, Data, property_path
 from robosc.semantics.instances import MOST
 from robosc.semantics.printing import RoboscPrinter
@@ -43,6 +43,8 @@ if TYPE_CHECKING:
     from robosc.metamodel import expression as ex
     from robosc.semantics.cone_of_influence import Reading
     from robosc.semantics.instances import Instances
+
+LEAST, LARGEST = INTEGER_RANGES["int64"]
 
 
 @rule("variable-type")
@@ -144,21 +146,36 @@ def integer_range(base: rsc.Base) -> Iterator[Finding]:
     """Integers that the supervisor needs have a range, ranges are not empty, and constants keep to them."""
     yield from supervised_faults(base, _without_range)
     yield from supervised_faults(base, table_faults)
-    for declared in of_kind(rsc.IntegerDataType, data_types(base)):
-        if _is_reversed(declared):
-            yield Finding(
-                declared,
-                f"the range {_text(declared)} is empty, expected the lower bound first",
-                f"write `integer({declared.maximum}..{declared.minimum})`",
-            )
-    for count in statements(rsc.CountRequirement, base):
-        most = constant_value(count.bound)
-        if type(most) is int and not 1 <= most <= MOST:
-            message = f"`at most` counts to {most}, expected a number from 1 to {MOST:,}"
-            hint = "write a larger one" if most < 1 else "write a smaller one"
-            yield Finding(count.bound, message, f"{hint}, or another requirement")
-    for constant, kind, name in _constants(base):
-        yield from _outside(constant, kind, name)
+    for meaning in meanings(base):
+        yield from _too_large(meaning)
+        for declared in of_kind(rsc.IntegerDataType, data_types(meaning)):
+            low, high = _bounds(declared, meaning)
+            if low is not None and high is not None and low > high:
+                yield meaning.finding(
+                    declared,
+                    f"the range {low}..{high} is empty, expected the lower bound first",
+                    f"write `integer({high}..{low})`",
+                )
+        for count in statements(rsc.CountRequirement, meaning):
+            (most,) = meaning.values(count.bound)
+            if type(most) is int and not 1 <= most <= MOST:
+                message = f"`at most` counts to {most}, expected a number from 1 to {MOST:,}"
+                hint = "write a larger one" if most < 1 else "write a smaller one"
+                yield meaning.finding(count.bound, message, f"{hint}, or another requirement")
+        for constant, kind, name in _constants(meaning):
+            yield from _outside(constant, kind, name, meaning)
+
+
+def _too_large(meaning: Meaning) -> Iterator[Finding]:
+    """What a robot computes with are integers of 64 bits."""
+    computed: list[ex.Expression | None] = [constant.value for constant in statements(rsc.Constant, meaning)]
+    for declared in of_kind(rsc.IntegerDataType, data_types(meaning)):
+        computed += [declared.lower, declared.upper]
+    for expression in computed:
+        (value,) = meaning.values(expression)
+        if expression is not None and type(value) is int and not LEAST <= value <= LARGEST:
+            message = f"an integer lies between {LEAST} and {LARGEST}, and this is {value}"
+            yield meaning.finding(expression, message, "write another expression")
 
 
 # Ranges that are missing
@@ -205,14 +222,18 @@ def _is_unbounded(declared: rsc.DataType | None) -> bool:
     return isinstance(declared, rsc.IntegerDataType) and (declared.minimum is None or declared.maximum is None)
 
 
-def _is_reversed(declared: rsc.IntegerDataType) -> bool:
-    return declared.minimum is not None and declared.maximum is not None and declared.minimum > declared.maximum
+def _bounds(declared: rsc.IntegerDataType, meaning: Meaning) -> tuple[int | None, int | None]:
+    """The bounds of a range; None where they are not known, or the template's own text has them."""
+    if declared.lower is None:
+        return (None, None) if meaning.made else (declared.minimum, declared.maximum)
+    low, high = meaning.values(declared.lower, declared.upper)
+    return (low, high) if type(low) is int and type(high) is int else (None, None)
 
 
 # Constants outside their range
 
 
-def _constants(base: rsc.Base) -> Iterator[tuple[ex.Expression | None, rsc.DataType | None, str]]:
+def _constants(base: Meaning) -> Iterator[tuple[ex.Expression | None, rsc.DataType | None, str]]:
     """Every expression that becomes the value of something, with the type and the name of that."""
     for variable in variables(base):
         yield variable.initial, variable.type, variable.name
@@ -238,22 +259,18 @@ def _provided(
             yield from _provided(given.value, given.property.type, given.property.name)
 
 
-def _outside(constant: ex.Expression | None, declared: rsc.DataType | None, name: str) -> Iterator[Finding]:
-    if constant is None or not isinstance(declared, rsc.IntegerDataType) or _is_reversed(declared):
+def _outside(
+    constant: ex.Expression | None, declared: rsc.DataType | None, name: str, meaning: Meaning
+) -> Iterator[Finding]:
+    if constant is None or not isinstance(declared, rsc.IntegerDataType) or infer(constant) != INTEGER:
         return
-    low, high = declared.minimum, declared.maximum
-    if low is None or high is None or infer(constant) != INTEGER or next(accesses(constant), None) is not None:
-        return
-    value = evaluate(constant, lambda access: access)
-    assert isinstance(value, int)
-    if not low <= value <= high:
-        nearest = low if value < low else high
-        yield Finding(
+    if declared.lower is not None:
+        value, low, high = meaning.values(constant, declared.lower, declared.upper)
+    else:
+        (value,), low, high = meaning.values(constant), declared.minimum, declared.maximum
+    if type(value) is int and type(low) is int and type(high) is int and not low <= value <= high and low <= high:
+        yield meaning.finding(
             constant,
-            f"{value} is not in the range {_text(declared)} of `{name}`, expected a value that is",
-            f"write `{nearest}`, or widen the range of `{name}`",
+            f"{value} is not in the range {low}..{high} of `{name}`, expected a value that is",
+            f"write `{low if value < low else high}`, or widen the range of `{name}`",
         )
-
-
-def _text(declared: rsc.IntegerDataType) -> str:
-    return f"{declared.minimum}..{declared.maximum}"

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from robosc.checks.definitions import of_kind, statements
 from robosc.checks.expression_types import CONSTANT, ExpressionCheck
-from robosc.checks.libraries import instances
+from robosc.checks.libraries import Meaning, instances, meanings
 from robosc.checks.rule import Finding, on_line, rule
 from robosc.checks.type_repairs import repair
 from robosc.diagnostics import Severity
@@ -20,6 +20,8 @@ from robosc.semantics.typing import INTEGER, UNKNOWN, declared_type, type_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
+
+    from robosc.semantics.operators import Operator
 
 
 @rule("cyclic-definition")
@@ -89,6 +91,9 @@ def arguments(base: rsc.Base) -> Iterator[Finding]:
             case rsc.ComplexDataTypeReference() if isinstance(element.type, rsc.EnumDataType | rsc.ObjectDataType):
                 yield from _of_type(element)
     yield from _defaults(base)
+    for meaning in meanings(base):
+        if meaning.made is not None:
+            yield from _made(meaning)
 
 
 def _called(call: rsc.Call) -> Iterator[Finding]:
@@ -193,20 +198,31 @@ def _built_in(element: ex.FunctionCall) -> Iterator[Finding]:
         yield _wrong_number(element, row.symbol, len(given), "abcdef"[: row.parameters])
         return
     for position in sorted(row.divisors):
-        if _is_no_divisor(given[position]):
-            yield Finding(
-                given[position],
-                f"argument {position + 1} of `{row.symbol}` must be a positive constant",
-                "write an integer from 1 on, such as `10`",
-            )
+        divisor = given[position]
+        if not _reads_parameter(divisor) and type_of(divisor) == INTEGER and not _is_positive(constant_value(divisor)):
+            yield Finding(divisor, *_wrong_divisor(row, position))
 
 
-def _is_no_divisor(expression: ex.Expression) -> bool:
-    """Whether an integer has no constant value, or one below 1; what is no integer the rule `type` reports."""
-    value = constant_value(expression)
-    return (
-        type_of(expression) == INTEGER and not _reads_parameter(expression) and not (type(value) is int and value > 0)
-    )
+def _made(meaning: Meaning) -> Iterator[Finding]:
+    """What built-in functions divide by, with the arguments of a template."""
+    assert meaning.made is not None
+    for call in (part for _, part in tree(meaning.made.local) if isinstance(part, ex.FunctionCall)):
+        row = operator_of(call)
+        if row is None or len(call.arguments) != row.parameters:
+            continue
+        for position in sorted(row.divisors):
+            (value,) = meaning.values(call.arguments[position])
+            if type(value) is int and value < 1:
+                yield meaning.finding(call.arguments[position], *_wrong_divisor(row, position))
+
+
+def _wrong_divisor(row: Operator, position: int) -> tuple[str, str]:
+    message = f"argument {position + 1} of `{row.symbol}` must be a positive constant"
+    return message, "write an integer from 1 on, such as `10`"
+
+
+def _is_positive(value: object) -> bool:
+    return type(value) is int and value > 0
 
 
 def _reads_parameter(expression: ex.Expression) -> bool:
