@@ -340,7 +340,7 @@ class _Transformation:
         for variable, places in origins(self.graph).items():
             if holds_objects(variable.type):
                 variable.reception, path = next(iter(places))
-                variable.path.extend("0" if step == EACH or step.isdigit() else step for step in path)
+                variable.path.extend(["0" if step == EACH or step.isdigit() else step for step in path])
 
     def data(self, transition: robosc.Transition, instance: Instance) -> Carried | None:
         """What `value` means in a transition; None where its event brings no data."""

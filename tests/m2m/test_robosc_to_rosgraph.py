@@ -282,3 +282,31 @@ def test_linked_basic_data_goes_to_the_only_field(robot: Callable, tmp_path: Pat
     # Without the definitions it is a guess.
     unknown = robosc_to_rosgraph.transform(trace, RosTypes())
     assert {step.name for reaction in unknown.reactions for step in reaction.assignments[0].value.steps} == {"data"}
+
+
+def test_kept_objects_are_where_they_came_from(robot: Callable) -> None:
+    """`do route := value.poses`: objects, and arrays of them, have the ROS type of what is stored in them, in one step
+    or several."""
+    model = robot("""
+        robot R {
+          component Mission {
+            outgoing message route with type: nav_msgs/Path
+            behaviour {
+              variable route: array(geometry_msgs/PoseStamped)
+              variable whole: nav_msgs/Path
+              variable third: geometry_msgs/PoseStamped
+              variable place: geometry_msgs/Point
+              on response from route do route := value.poses, whole := value, third := route[2], place := third.pose.position
+              initial marked state idle { }
+            }
+          }
+        }
+    """)
+    _, trace = robosc_to_sct.transform(model)
+    graph = robosc_to_rosgraph.transform(trace)
+    assert {variable.name: (variable.reception.event.name, list(variable.path)) for variable in graph.variables} == {
+        "route": ("u_response", ["poses"]),
+        "whole": ("u_response", []),
+        "third": ("u_response", ["poses", "0"]),
+        "place": ("u_response", ["poses", "0", "pose", "position"]),
+    }
