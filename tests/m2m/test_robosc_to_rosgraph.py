@@ -296,7 +296,8 @@ def test_kept_objects_are_where_they_came_from(robot: Callable) -> None:
               variable whole: nav_msgs/Path
               variable third: geometry_msgs/PoseStamped
               variable place: geometry_msgs/Point
-              on response from route do route := value.poses, whole := value, third := route[2], place := third.pose.position
+              on response from route
+                do route := value.poses, whole := value, third := route[2], place := third.pose.position
               initial marked state idle { }
             }
           }
