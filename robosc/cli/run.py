@@ -41,7 +41,8 @@ def command(
     """Be a robot's controller: the node that `transform` would generate, straight from the model.
 
     MODEL is a .rscd file with a robot, or a .rosgraph.xmi file that `transform --to xmi` wrote. ROS 2 needs no
-    installation: pip install 'robosc[ros2]'. Ctrl-C stops the robot as the configuration says, then the node.
+    installation: pip install -e '.[ros2]' in robosc's repository brings it. Ctrl-C stops the robot as the
+    configuration says, then the node.
 
     \b
     Examples:

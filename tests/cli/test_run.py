@@ -28,7 +28,10 @@ def test_wants_to_know_which_ros() -> None:
 
 @pytest.mark.parametrize(
     ("option", "module", "repair"),
-    [("--ros2", "rclpy", "pip install 'robosc[ros2]'"), ("--ros1", "rospy", "apt install python3-rospy")],
+    [
+        ("--ros2", "rclpy", "pip install -e '.[ros2]' in robosc's repository"),
+        ("--ros1", "rospy", "apt install python3-rospy"),
+    ],
 )
 def test_names_the_repair_where_ros_is_missing(option: str, module: str, repair: str) -> None:
     done = run(MODEL, option, blocked=module)

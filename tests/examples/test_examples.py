@@ -9,6 +9,8 @@ from click.testing import CliRunner
 
 from robosc.cli import main
 from robosc.diagrams import behaviour_graph, diagram, ros_graph
+from robosc.language import read
+from robosc.metamodel import robosc as rsc
 
 from .conftest import EXAMPLES, MODELS, SCENARIOS, models_of
 
@@ -30,6 +32,20 @@ def test_nothing_is_wrong(name: str) -> None:
     answer = CliRunner().invoke(main, ["check", "--format", "json", str(MODELS[name])])
     assert answer.exit_code == 0
     assert {load["rule"] for load in json.loads(answer.stdout)} <= EXPECTED
+
+
+@EACH
+def test_a_robot_that_gets_messages_says_what_stops_it(name: str) -> None:
+    """A goal is cancelled when the node ends; a message, such as a velocity, holds on."""
+    messages = [
+        definition.name
+        for component in read(MODELS[name]).base.definitions
+        if isinstance(component, rsc.Component) and isinstance(component.type, rsc.LocalComponent)
+        for definition in component.type.definitions
+        if isinstance(definition, rsc.Message) and definition.direction == rsc.MessageDirection.incoming
+    ]
+    settings = json.loads((MODELS[name].parent / "controller-config.json").read_text())
+    assert not messages or "onShutdown" in settings
 
 
 @EACH

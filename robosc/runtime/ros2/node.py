@@ -44,7 +44,8 @@ try:
 except ImportError as error:
     raise StartError(
         f"ROS 2 is not there for this Python: {error}",
-        "pip install 'robosc[ros2]' brings it; or start robosc with the Python of a ROS 2 installation, with its setup",
+        "pip install -e '.[ros2]' in robosc's repository brings it; or start robosc with the Python of a ROS 2"
+        " installation, with its setup",
     ) from error
 
 from robosc.runtime.ros2.actions import LateAnswer, Ros2ActionProxy, SentGoal, settle
