@@ -161,7 +161,9 @@ class _JsonData(NodeData):
     def leaf(self, value: Any, kind: ex.Type | None) -> Any:
         if isinstance(kind, rosgraph.ArrayType):
             return super().leaf(_list(value), kind)
-        return super().leaf(_basic(value[0], kind, value[1]), kind) if kind is not None else value
+        if kind is None or not isinstance(value, tuple):
+            return value  # an object, or an element of an array that was read as a whole
+        return super().leaf(_basic(value[0], kind, value[1]), kind)
 
 
 class _Array(Sequence[Any]):

@@ -25,7 +25,7 @@ DEMANDS = [
     ("object_finder", "requirement move needs Lidar.front = front_clear", ""),
     ("object_finder", " and !ObjectDetector.found", ""),
     ("maze_solver", "requirement EmergencyStop.stopped disables { move, rotate_left, rotate_right }", ""),
-    ("maze_solver", "    Lidar.front = wall_ahead\n    and (", "    ("),
+    ("maze_solver", "Lidar.front = wall_ahead and on_its_way", "on_its_way"),
     ("push_ball", "    EmergencyStop.in_service\n    and !Ball", "    !Ball"),
     ("push_ball", "BallDetector.offset) / 200", "BallDetector.offset) / 250"),
     ("person_follower", " and PersonDetector.detected", ""),

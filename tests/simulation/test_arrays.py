@@ -38,3 +38,23 @@ def test_a_script_says_what_comes_in(simulation: Simulation, data: dict[str, Any
     happened = simulation.perform("message_scan.u_response", {"value": data})
     assert happened.accepted is accepted
     assert (None if happened.by is None else str(happened.by)) == (None if accepted else "data")
+
+
+@pytest.mark.parametrize(("ranges", "accepted"), [([2.0, 1.5], "far"), ([2.0, 0.4], "near"), ([], "near")])
+def test_a_condition_of_each_number_in_an_array(tmp_path: Path, ranges: list[float], accepted: str) -> None:
+    path = tmp_path / "watch.rscd"
+    path.write_text(
+        """robot Watch { component Lidar {
+          outgoing message scan with type: sensor_msgs/LaserScan
+          behaviour {
+            on response from scan if size(value.ranges) > 0 and all r in value.ranges: r > 0.5 goto far
+            on response from scan goto near
+            initial marked state unknown {} marked state near {} marked state far {}
+          } } }"""
+    )
+    robot = robosc.load(path)
+    model = robosc.to_sct(robot)
+    robosc.synthesize(model)
+    watched = Simulation(model, robosc.to_rosgraph(robot))
+    assert watched.perform("message_scan.u_response", {"value": {"ranges": ranges}}).accepted
+    assert watched.engine.state["component_Lidar"] == accepted
