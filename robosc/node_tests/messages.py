@@ -81,17 +81,29 @@ def wire_type(distribution: RosDistribution, interface: rosgraph.Interface, sect
 def data_read(reads: Iterable[tuple[Path, Read]], prefix: Path = ()) -> Iterator[tuple[Path, ex.Type]]:
     """All data in a message that is read, also by conversions; repeated where it is read again."""
     for general, read in reads:
-        for path in _some(general):
+        for path in _some(general, _ends(read.reference)):
             if read.conversion is not None:
                 yield from data_read(all_reads([rule.condition for rule in read.conversion.rules]), prefix + path)
             else:
                 yield prefix + path, read.type or rosgraph.ObjectType()
 
 
-def _some(path: Path) -> Iterator[Path]:
-    """The path, or those to the first elements where it may go to any."""
-    choices = [range(_ELEMENTS) if step == EACH else [step] for step in path]
+def _some(path: Path, ends: Iterable[int]) -> Iterator[Path]:
+    """The path, or those to the first elements and these where it may go to any."""
+    elements = sorted({*range(_ELEMENTS), *ends})
+    choices = [elements if step == EACH else [step] for step in path]
     yield from (tuple(map(str, chosen)) for chosen in product(*choices))
+
+
+def _ends(read: ex.Expression) -> Iterator[int]:
+    """Where slices of what is read begin and end, as far as that is constant."""
+    access: ex.Expression | None = read.argument if isinstance(read, rosgraph.ConversionCall) else read
+    while isinstance(access, rosgraph.WireAccess):
+        for step in access.steps:
+            if isinstance(step, rosgraph.SliceStep):
+                ends = (end.value for end in (step.first, step.last) if isinstance(end, ex.IntegerLiteral))
+                yield from (end for end in ends if end < LONGEST)
+        access = access.quantifier.array if access.quantifier else None
 
 
 def message(fields: Mapping[Path, Field], values: Mapping[Path, Leaf]) -> Any:

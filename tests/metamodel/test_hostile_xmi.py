@@ -34,20 +34,20 @@ ROBOT, GRAPH = "LineFollower.robosc.xmi", "LineFollower.rosgraph.xmi"
 CHANGES = {
     "communication of another component": (
         ROBOT,
-        r'(<communicationTypes [^>]*component="//@definitions)\.6"',
-        r'\1.3"',
+        r'(<communicationTypes [^>]*component="//@definitions)\.7"',
+        r'\1.4"',
         "'move' is no communication of 'LineDetector'",
     ),
     "state of another component": (
         ROBOT,
-        r'(component="//@definitions)\.4" (item="//@definitions.4/)',
-        r'\1.3" \2',
+        r'(component="//@definitions)\.5" (item="//@definitions.5/)',
+        r'\1.4" \2',
         "is no state or variable of 'LineDetector'",
     ),
     "target in another component": (
         ROBOT,
-        r'target="//@definitions.4/([^"]*)"',
-        r'target="//@definitions.3/@type/@definitions.2/@automaton/@definitions.1"',
+        r'target="//@definitions.5/([^"]*)"',
+        r'target="//@definitions.4/@type/@definitions.2/@automaton/@definitions.1"',
         "is another component's state",
     ),
     "property of another object": (
