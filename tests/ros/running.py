@@ -24,6 +24,7 @@ MODELS = {
     "line_follower_controller": PROJECT / "examples" / "line_follower" / "line_follower.rscd",
     "courier_controller": HERE.parent / "m2t" / "cpp" / "courier.rscd",
     "patience_controller": HERE / "times" / "patience.rscd",
+    "keeper_controller": HERE / "kept" / "keeper.rscd",
 }
 #: What the packages of `interfaces/ros1` depend on.
 KNOWN = ("actionlib_msgs", "geometry_msgs", "std_msgs")
