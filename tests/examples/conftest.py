@@ -9,8 +9,12 @@ from robosc.m2t.models import Models
 EXAMPLES = Path(__file__).parents[2] / "examples"
 #: Every model, by its name.
 MODELS = {path.stem: path for path in sorted(EXAMPLES.rglob("*.rscd"))}
-#: The eight scenarios: folders with a page.
-SCENARIOS = sorted(path.parent.name for path in EXAMPLES.glob("*/README.md"))
+#: Robots of the second edition; too large to look at every state.
+SHOWCASES = ["sprayer", "warehouse_robot"]
+#: All examples: folders with a page.
+PAGES = sorted(path.parent.name for path in EXAMPLES.glob("*/README.md"))
+#: The eight scenarios of the thesis.
+SCENARIOS = [name for name in PAGES if name not in SHOWCASES]
 
 
 @cache

@@ -10,11 +10,12 @@ from robosc.engine.state import State
 from robosc.metamodel import expression as ex
 from robosc.semantics.roles import event_name
 
-from .conftest import MODELS, models_of
+from .conftest import MODELS, SHOWCASES, models_of
 
-EACH = pytest.mark.parametrize("name", MODELS)
+SMALL = [name for name in MODELS if name not in SHOWCASES]
+EACH = pytest.mark.parametrize("name", SMALL)
 STOP = "component_EmergencyStop"
-STOPPABLE = pytest.mark.parametrize("name", [model for model in MODELS if model != "line_stepper"])
+STOPPABLE = pytest.mark.parametrize("name", [model for model in SMALL if model != "line_stepper"])
 #: While this plant is in one of these locations, somebody else drives the wheels.
 TURNING = {
     "maze_solver": ("component_Platform", {"turning_left", "turning_right"}),

@@ -12,7 +12,7 @@ from click.testing import CliRunner
 
 from robosc.cli import main
 
-from .conftest import MODELS, SCENARIOS
+from .conftest import MODELS, SCENARIOS, SHOWCASES
 
 ROOT = Path(__file__).parents[2]
 LISTINGS = ROOT.parent / "shared" / "thesis" / "models"
@@ -31,7 +31,9 @@ def answer(path: Path) -> Mapping[str, Any]:
 def test_all_is_proved(path: Path) -> None:
     said = answer(path)
     assert said["proved"]
-    assert {answered["outcome"] for answered in said["properties"]} == {"proved"}
+    sampled = {answered["property"] for answered in said["properties"] if answered["outcome"] == "sampled"}
+    assert {answered["outcome"] for answered in said["properties"]} <= {"proved", "sampled"}
+    assert sampled <= ({"c-translation", "model-translation"} if path.stem in SHOWCASES else set())
 
 
 def test_the_page_shows_the_table() -> None:

@@ -48,7 +48,7 @@ def documented() -> dict[str, str]:
 
 def test_it_is_what_the_page_lists(tmp_path: Path) -> None:
     models = [supervised(path) for path in EXAMPLES]
-    assert len(models) == 8
+    assert len(models) == 10
     folders = [tmp_path / name for name in ("examples", "others", "large")]
     for folder in folders:
         folder.mkdir()

@@ -1,0 +1,140 @@
+"""The two showcases in the control loop: each does its work, and what its page forbids does not happen on the way."""
+
+import json
+import re
+
+from click.testing import CliRunner
+
+from robosc.cli import main
+
+from .conftest import MODELS
+
+DONE = ' {"value": {"success": true}}'
+REFUSED = ' {"value": {"success": false}}'
+FREE = ' {"value": {"ranges": [2.0, 1.5]}}'
+
+
+def play(name: str, *lines: str) -> list[list[str]]:
+    """What the controller asks for after each line of a script and the tick that follows it, once each."""
+    script = "\n".join(f"{line}\ntick" for line in lines)
+    done = CliRunner().invoke(main, ["simulate", str(MODELS[name]), "--loop", "--script", "-"], script)
+    assert done.exit_code == 0, done.stderr
+    answers = [json.loads(line) for line in done.stdout.splitlines()]
+    assert [answer["by"] for answer in answers] == [None] * 2 * len(lines)
+    pairs = zip(answers[::2], answers[1::2], strict=True)
+    happened = [" ".join(line["happened"] + tick["happened"]) for line, tick in pairs]
+    sent = [re.findall(r"(?:message|service|action)_(\w+)\.c_(trigger|cancel)", text) for text in happened]
+    return [[*dict.fromkeys(name if way == "trigger" else f"cancel {name}" for name, way in names)] for names in sent]
+
+
+def heard(name: str, value: object = None) -> str:
+    return f"message_{name}.u_response" + ("" if value is None else " " + json.dumps({"value": value}))
+
+
+def scans() -> list[str]:
+    return [f"message_{name}_scan.u_response{FREE}" for name in ("Ahead", "Behind")]
+
+
+def shelved() -> list[str]:
+    """The robot is ready for its way to a shelf, in the aisle, but for its lidars."""
+    return [
+        *(heard(f"{name}_pressed", False) for name in ("Front", "Rear", "Left", "Right")),
+        heard("charge", {"percentage": 0.8}),
+        heard("order"),
+        f"service_undock.u_response{DONE}",
+        f"service_enter.u_response{DONE}",
+    ]
+
+
+def work(sent: list[list[str]]) -> list[list[str]]:
+    return [[name for name in names if name != "speed_limit"] for names in sent]
+
+
+def test_the_warehouse_robot_serves_an_order() -> None:
+    lines = [*shelved(), *scans(), "action_navigate.u_response"]
+    served = [f"service_leave.u_response{DONE}", f"service_raise.u_response{DONE}", heard("served")]
+    back = [f"service_lower.u_response{DONE}", f"service_enter.u_response{DONE}", "action_navigate.u_response"]
+    home = [f"service_leave.u_response{DONE}", f"service_dock.u_response{DONE}"]
+    sent = work(play("warehouse_robot", *lines, *served, *back, *home))
+    assert sent[:10] == [[], [], [], [], [], ["undock"], ["enter"], [], [], ["navigate"]]
+    assert sent[10:14] == [["leave"], ["raise"], [], ["lower"]]
+    assert sent[14:16] == [["enter"], ["navigate"]]
+    assert sorted(sent[16]) == ["dock", "leave"]
+    assert sent[17:] == [[], []]
+
+
+def test_the_warehouse_robot_stops_for_what_it_touches_or_no_longer_sees() -> None:
+    under_way = [*shelved(), *scans()]
+    for trouble in (heard("Left_pressed", True), heard("stop"), "wait 0.6"):
+        assert work(play("warehouse_robot", *under_way, trouble))[-1] == ["cancel navigate"]
+
+
+def test_the_warehouse_robot_turns_back_where_its_power_is_low() -> None:
+    low = heard("charge", {"percentage": 0.1})
+    lines = [*shelved(), *scans(), low, "action_navigate.u_response"]
+    sent = work(play("warehouse_robot", *lines))
+    assert sent[-2:] == [["cancel navigate", "navigate"], ["leave", "dock"]]
+
+
+def test_the_warehouse_robot_asks_for_its_dock_three_times() -> None:
+    under_way = [*shelved(), *scans(), "action_navigate.u_response", f"service_leave.u_response{DONE}"]
+    home = [f"service_raise.u_response{REFUSED}", f"service_lower.u_response{DONE}", f"service_enter.u_response{DONE}"]
+    refused = f"service_dock.u_response{REFUSED}"
+    docking = [
+        refused,
+        "wait 4.9",
+        "wait 0.1",
+        refused,
+        "wait 29.9",
+        "wait 0.1",
+        refused,
+        "wait 60",
+        heard("try_again"),
+    ]
+    lines = [*under_way, *home, *scans(), "action_navigate.u_response", *docking]
+    sent = ["dock" in names for names in play("warehouse_robot", *lines)]
+    assert sent[-len(docking) :] == [False, False, True, False, False, True, False, False, True]
+
+
+def route(length: int) -> str:
+    return heard("route", {"poses": [{"pose": {"position": {"x": float(x)}}} for x in range(length)]})
+
+
+def at(x: float, y: float = 0.0) -> str:
+    return heard("odometry", {"pose": {"pose": {"position": {"x": x, "y": y}}}})
+
+
+AUTOMATIC = [heard("automatic", True), heard("heartbeat"), at(0.0)]
+
+
+def wheels(sent: list[list[str]]) -> list[list[str]]:
+    return [[name for name in names if not name.endswith(("_open", "_shut"))] for names in sent]
+
+
+def test_the_sprayer_drives_a_route_to_its_end() -> None:
+    arrived = "action_drive.u_response"
+    sent = wheels(play("sprayer", *AUTOMATIC, route(3), arrived, arrived, arrived, route(0)))
+    assert ["drive" in names for names in sent] == [False, False, False, True, True, True, False, False]
+    assert "halt" in sent[0]
+    assert "halt" in sent[-1]
+
+
+def test_the_sprayer_gives_up_its_way_where_it_may_not_go_on() -> None:
+    for trouble in (heard("stop"), at(100.5), at(0.0, -40.5), heard("automatic", False), "wait 1"):
+        assert wheels(play("sprayer", *AUTOMATIC, route(3), trouble))[-1] == ["cancel drive", "halt"]
+
+
+def test_the_stick_waits_for_the_end_of_the_way() -> None:
+    lines = [*AUTOMATIC, route(3), heard("wish"), heard("automatic", False)]
+    sent = wheels(play("sprayer", *lines))
+    assert not any("obey" in names for names in sent[:-1])
+    assert sent[-1] == ["cancel drive", "obey"]
+
+
+def test_a_section_sprays_where_it_is_due_in_the_field() -> None:
+    ready = [*AUTOMATIC, heard("level", 0.8), heard("Left_sprayed", False), route(1)]
+    sent = play("sprayer", *ready)
+    assert [name for name in sent[-1] if name.endswith("_open")] == ["Left_open"]
+    for end in (heard("Left_sprayed", True), heard("level", 0.01), at(101.0), heard("stop")):
+        assert "Left_open" not in play("sprayer", *ready, end)[-1]
+        assert "Left_shut" in play("sprayer", *ready, end)[-1]
