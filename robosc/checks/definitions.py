@@ -153,5 +153,6 @@ def _outermost(base: Text) -> Iterator[rsc.DataType | None]:
     for communication in communications(base):
         yield from (declared for _, declared in carried(communication))
     yield from (variable.type for variable in variables(base))
+    yield from (parameter.type for parameter in statements(rsc.Parameter, base))
     for component in of_kind(rsc.Component, base.definitions):
         yield from (parameter.type for parameter in component.parameters)

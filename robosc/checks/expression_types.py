@@ -63,8 +63,9 @@ _FITTING: Mapping[Rule, tuple[Callable[[Type], bool], str]] = {
         "an array of integers or doubles",
     ),
 }
-#: What constant expressions read.
+#: What constant expressions read, and what the rules of enums and functions do.
 _CONSTANT_ITEMS = (rsc.EnumValue, rsc.Constant, rsc.FormalParameter, rsc.ArrayElement)
+_SET_ITEMS = (*_CONSTANT_ITEMS, rsc.Parameter)
 CONSTANT = Place(None, restriction=Restriction.CONSTANT)
 ENUM_RULE = Restriction.ENUM_RULE
 
@@ -227,14 +228,14 @@ class ExpressionCheck:
                 f"{self.place.what} must be a constant, found {_describe(access)}",
                 "use literals, constants, operators and enum values; a transition can assign the rest",
             )
-        if restriction is Restriction.ENUM_RULE and item and not isinstance(item, _CONSTANT_ITEMS):
+        if restriction is Restriction.ENUM_RULE and item and not isinstance(item, _SET_ITEMS):
             return (
-                f"an enum rule reads `value`, literals, constants and enum values only, found {_describe(access)}",
+                f"an enum rule reads `value`, constants, parameters and enum values only, found {_describe(access)}",
                 "compare `value` with literals; requirements and guards can combine the enum with the rest",
             )
-        if restriction is Restriction.FUNCTION and item and not isinstance(item, _CONSTANT_ITEMS):
+        if restriction is Restriction.FUNCTION and item and not isinstance(item, _SET_ITEMS):
             return (
-                f"a function reads its parameters, constants and enum values only, found {_describe(access)}",
+                f"a function reads parameters, constants and enum values only, found {_describe(access)}",
                 "give it a parameter for what it shall read, or declare a `condition`",
             )
         if access.value and self.place.value is None:

@@ -195,6 +195,14 @@ def function_faults(instances: Instances, result: ConeOfInfluence) -> Iterator[F
                 yield Fault(part, reason, message, "let a variable remember a part of it")
 
 
+def supervised_accesses(instances: Instances, result: ConeOfInfluence) -> Iterator[tuple[rsc.Access, _Where]]:
+    """Each access in what the supervisor computes itself, with where it stands."""
+    for expression, where in _computed(instances, result):
+        for part in _supervised_parts(expression, where):
+            if isinstance(part, rsc.Access):
+                yield part, where
+
+
 def _supervised_parts(expression: ex.Expression, where: _Where) -> Iterator[ex.Expression]:
     """The parts of an expression that the supervisor computes: not those that the node does for it."""
     pending = [expression]

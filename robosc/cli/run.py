@@ -9,6 +9,7 @@ import click
 
 from robosc.cli import CallError, interruption
 from robosc.cli.options import Paths, configuration, findings_format, model, paths
+from robosc.cli.parameters import parameters, set_parameters
 from robosc.cli.reading import read_configuration, read_models, supervise_models
 from robosc.cli.report import Report
 from robosc.m2t.targets import TARGETS
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
 @click.option("--layer", is_flag=True, help="Be the supervisory layer between an existing controller and the robot.")
 @configuration
 @findings_format
+@parameters
 @paths
 @click.argument("arguments", nargs=-1, type=click.UNPROCESSED, metavar="[ROS ARGUMENTS]")
 def command(
@@ -35,6 +37,7 @@ def command(
     layer: bool,
     chosen: str | None,
     form: str,
+    given: Sequence[str],
     paths: Paths,
     arguments: Sequence[str],
 ) -> None:
@@ -59,6 +62,7 @@ def command(
         models = read_models(model, paths, report)
         if models.rosgraph is None:
             raise CallError(f"{model} has no ROS graph: give its .rosgraph.xmi or .rscd")
+        set_parameters(models.rosgraph, given)
         settings = read_configuration(model, chosen, report)
         supervise_models(models, report)
         target = TARGETS[f"ros{version}-layer" if layer else f"ros{version}"]

@@ -13,6 +13,7 @@ import click
 from robosc.analysis.wording import with_words
 from robosc.cli import put, say
 from robosc.cli.options import FILE, Paths, model, paths
+from robosc.cli.parameters import parameters, set_parameters
 from robosc.cli.reading import read_configuration, read_models, supervise_models
 from robosc.cli.report import Report
 from robosc.engine import Settings
@@ -24,7 +25,7 @@ from robosc.simulation.script import RULE
 from robosc.simulation.session import Session, trace_line
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from robosc.m2t.models import Models
 
@@ -36,6 +37,7 @@ if TYPE_CHECKING:
 @click.option("--random", "number", type=click.IntRange(0), metavar="N", help="Let N random events happen; print them.")
 @click.option("--seed", type=int, default=0, show_default=True, help="Of everything random.")
 @click.option("--config", "chosen", type=FILE, help="For --loop: the configuration, if not the one near the model.")
+@parameters
 @paths
 def command(
     model: str,
@@ -44,6 +46,7 @@ def command(
     number: int | None,
     seed: int,
     chosen: str | None,
+    given: Sequence[str],
     paths: Paths,
 ) -> None:
     """Try a supervised robot: step by step by hand, by a script, or at random.
@@ -67,6 +70,7 @@ def command(
         raise click.UsageError("--loop needs a --script")
     with Report(aside=True) as report:
         models = read_models(model, paths, report)
+        set_parameters(models.rosgraph, given)
         settings = _settings(model, chosen, report) if loop else None
         supervise_models(models, report)
         if script is not None:

@@ -88,6 +88,8 @@ class Builder:
             self.references[element] = {"type": Name(name, start, end)}
         elif isinstance(element, rsc.IntegerDataType) and element.lower is not None:
             self.bounded.append(element)
+        elif isinstance(element, rsc.Parameter):
+            element.description = self._text.comment_above(node.position + self._offset)
         elif isinstance(element, ex.IntegerLiteral) and element.value > _LARGEST:
             self._unsigned[element] = node
         elif isinstance(element, ex.UnaryMinus):

@@ -41,11 +41,11 @@ class Declared(Enum):
     ENUM_VALUE = auto()
     COMMUNICATION = auto()
     MEMBER = auto()  # a variable or a state
-    NAMED = auto()  # a constant, a condition or a function
+    NAMED = auto()  # a constant, a parameter, a condition or a function
 
 
 #: Definitions that an expression reads by their names.
-NAMED_VALUES = (rsc.Constant, rsc.Condition)
+NAMED_VALUES = (rsc.Constant, rsc.Parameter, rsc.Condition)
 
 
 @dataclass

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import codecs
 import os
+import re
 from bisect import bisect_right
 from dataclasses import dataclass
 from functools import cached_property
@@ -16,6 +17,9 @@ from robosc.metamodel.places import Place, SourceFile
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+
+#: A line that is a comment and nothing else.
+_COMMENT = re.compile(r"[ \t]*(?://(?P<words>[^\n]*))")
 
 
 class Repair(NamedTuple):
@@ -52,6 +56,18 @@ class Text:
     def span(self, start: int, end: int) -> Span:
         """The span between two offsets."""
         return Span(*self._place(start), *self._place(end))
+
+    def comment_above(self, offset: int) -> str | None:
+        """The words of the comments in the lines right above an offset, as one line; None where there are none."""
+        line, _ = self._place(offset)
+        words: list[str] = []
+        while line > 1:
+            line -= 1
+            found = _COMMENT.fullmatch(self.content, self._line_starts[line - 1], self._line_starts[line] - 1)
+            if found is None:
+                break
+            words[:0] = found["words"].split()
+        return " ".join(words) or None
 
     def _place(self, offset: int) -> tuple[int, int]:
         offset = min(offset, len(self.content))  # Braces that are missing are added behind the end.

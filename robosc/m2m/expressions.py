@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from robosc.m2m.declarations import Declarations
     from robosc.m2m.trace import Trace
-    from robosc.semantics.instances import Instance, InstanceVariable
+    from robosc.semantics.instances import Instance, InstanceParameter, InstanceVariable
 
     #: What an access with segments means, whose indices are translated: the expression, and the type of what it reads.
     Wire = Callable[
@@ -49,10 +49,12 @@ class _Expressions:
         trace: Trace,
         declarations: Declarations,
         variables: Mapping[InstanceVariable, rosgraph.NodeVariable],
+        parameters: Mapping[InstanceParameter, rosgraph.Parameter],
     ) -> None:
         self._trace = trace
         self._declarations = declarations
         self._variables = variables
+        self._parameters = parameters
         self._types = Types()
 
     def _reference(self, access: robosc.Access, within: Instance | None) -> ex.Expression:
@@ -66,6 +68,8 @@ class _Expressions:
             return sct.LocationReference(
                 location=self._trace.requirement_locations[within if inner else None, access.item]
             )
+        if isinstance(access.item, robosc.Parameter):
+            return rosgraph.NodeVariableReference(variable=self._parameters[instances.parameter(access, within)])
         if isinstance(access.item, robosc.EnumValue):
             return ex.EnumerationLiteralReference(literal=self._declarations.literal(access.item))
         owned = instances.variable(access, within)
@@ -82,7 +86,7 @@ class SctExpressions(_Expressions):
     """Translates the expressions that the supervisor needs; what they read is in the trace already."""
 
     def __init__(self, trace: Trace) -> None:
-        super().__init__(trace, trace.declarations, {})
+        super().__init__(trace, trace.declarations, {}, {})
 
     def __call__(
         self,
@@ -134,7 +138,8 @@ class SctExpressions(_Expressions):
 class NodeExpressions(_Expressions):
     """Translates expressions and makes every conversion from integer to double explicit.
 
-    `variables` are the node's own, those that the supervisor does not need; `wire` says what reads data of ROS.
+    `variables` are the node's own, those that the supervisor does not need, `parameters` what is set on the robot;
+    `wire` says what reads data of ROS.
     """
 
     def __init__(
@@ -142,9 +147,10 @@ class NodeExpressions(_Expressions):
         trace: Trace,
         declarations: Declarations,
         variables: Mapping[InstanceVariable, rosgraph.NodeVariable],
+        parameters: Mapping[InstanceParameter, rosgraph.Parameter],
         wire: Wire,
     ) -> None:
-        super().__init__(trace, declarations, variables)
+        super().__init__(trace, declarations, variables, parameters)
         self._wire = wire
 
     def __call__(

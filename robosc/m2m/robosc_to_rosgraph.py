@@ -11,6 +11,7 @@ from robosc.metamodel import robosc, rosgraph, sct
 from robosc.ros_types import RosTypes
 from robosc.semantics.communication import data_type, event_of, events
 from robosc.semantics.cone_of_influence import guard_of
+from robosc.semantics.expansion import constant_value
 from robosc.semantics.inputs import Data
 from robosc.semantics.instances import bound_arguments
 from robosc.semantics.messages import EACH, holds_objects, is_structured, origins, reads_elements
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
 
     from robosc.m2m.trace import Trace
     from robosc.semantics.communication import PortEvent
-    from robosc.semantics.instances import Instance, InstanceVariable, PortInstance
+    from robosc.semantics.instances import Instance, InstanceParameter, InstanceVariable, PortInstance
 
 #: The wire types of basic data without `links`, all of std_msgs.
 _BASIC = {
@@ -64,14 +65,17 @@ class _Transformation:
         self.graph = rosgraph.RosGraph(name=robot.name, model=trace.model, source=robot.source)
         self.interfaces: dict[tuple[str, str, str], rosgraph.Interface] = {}
         self.variables: dict[InstanceVariable, rosgraph.NodeVariable] = {}
+        self.parameters: dict[InstanceParameter, rosgraph.Parameter] = {}
         self.conversions: dict[tuple[robosc.EnumDataType, tuple[str, ...]], rosgraph.Conversion] = {}
         self.declarations = Declarations(self.graph, trace.declarations)
         self.conversion_names = Names()
         self.subscriptions: dict[tuple[str, rosgraph.Interface], rosgraph.Subscription] = {}
         self.publishers: dict[tuple[str, rosgraph.Interface], rosgraph.Publisher] = {}
-        self.expressions = NodeExpressions(trace, self.declarations, self.variables, self.wire)
+        self.expressions = NodeExpressions(trace, self.declarations, self.variables, self.parameters, self.wire)
 
     def run(self) -> rosgraph.RosGraph:
+        for set_on_robot in self.instances.parameters:
+            self.parameter(set_on_robot)
         for instance in self.instances:
             for owned in instance.variables:
                 if owned not in self.trace.variables:
@@ -99,6 +103,22 @@ class _Transformation:
             variable.initial = self.declarations.initial(owned)
         self.variables[owned] = variable
         self.graph.variables.append(variable)
+
+    def parameter(self, owned: InstanceParameter) -> None:
+        declared, within = owned.parameter, owned.instance
+        kind = declared.type if within is None else within.data_type(declared.type)
+        parameter = rosgraph.Parameter(
+            name=declared.name,
+            component=within.name if within else None,
+            description=declared.description,
+            type=self.declarations.type(kind),
+            initial=self.instances.expanded.constant(declared.value, within),
+            source=declared.source,
+        )
+        for bound in ("lowest", "highest"):
+            setattr(parameter, bound, constant_value(getattr(declared, bound), within))
+        self.parameters[owned] = parameter
+        self.graph.parameters.append(parameter)
 
     # Communication
 

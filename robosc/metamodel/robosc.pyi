@@ -44,6 +44,14 @@ class Constant(NamedExpression, AccessibleItem):
     type: DataType
     def __init__(self, *, type: DataType | None = ..., value: expression.Expression | None = ..., source: Place | None = ..., name: str | None = ...) -> None: ...
 
+class Parameter(NamedExpression, AccessibleItem):
+    """A value that is set on the robot: a ROS parameter of the node. Its own value is the one that it has where none is set. What the supervisor evaluates does not read it."""
+    type: DataType
+    lowest: expression.Expression | None
+    highest: expression.Expression | None
+    description: str | None
+    def __init__(self, *, type: DataType | None = ..., lowest: expression.Expression | None = ..., highest: expression.Expression | None = ..., description: str | None = ..., value: expression.Expression | None = ..., source: Place | None = ..., name: str | None = ...) -> None: ...
+
 class Condition(NamedExpression, AccessibleItem):
     """A name for a boolean expression over states and variables."""
     def __init__(self, *, value: expression.Expression | None = ..., source: Place | None = ..., name: str | None = ...) -> None: ...

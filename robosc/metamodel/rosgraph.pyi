@@ -18,7 +18,8 @@ class RosGraph(expression.NamedElement):
     serviceClients: MutableSequence[ServiceClient]
     actionClients: MutableSequence[ActionClient]
     reactions: MutableSequence[Reaction]
-    def __init__(self, *, model: sct.SupervisoryControlModel | None = ..., interfaces: Iterable[Interface] = ..., enumerations: Iterable[expression.Enumeration] = ..., conversions: Iterable[Conversion] = ..., variables: Iterable[NodeVariable] = ..., subscriptions: Iterable[Subscription] = ..., publishers: Iterable[Publisher] = ..., serviceClients: Iterable[ServiceClient] = ..., actionClients: Iterable[ActionClient] = ..., reactions: Iterable[Reaction] = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
+    parameters: MutableSequence[Parameter]
+    def __init__(self, *, model: sct.SupervisoryControlModel | None = ..., interfaces: Iterable[Interface] = ..., enumerations: Iterable[expression.Enumeration] = ..., conversions: Iterable[Conversion] = ..., variables: Iterable[NodeVariable] = ..., subscriptions: Iterable[Subscription] = ..., publishers: Iterable[Publisher] = ..., serviceClients: Iterable[ServiceClient] = ..., actionClients: Iterable[ActionClient] = ..., reactions: Iterable[Reaction] = ..., parameters: Iterable[Parameter] = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class Interface(expression.Located):
     """A ROS type."""
@@ -36,12 +37,19 @@ class InterfaceKind:
 
 class NodeVariable(expression.NamedElement):
     """A variable of a component that the supervisor does not need."""
-    component: str
+    component: str | None
     type: expression.Type
     initial: expression.Expression | None
     reception: Reception | None
     path: MutableSequence[str]
     def __init__(self, *, component: str | None = ..., type: expression.Type | None = ..., initial: expression.Expression | None = ..., reception: Reception | None = ..., path: Iterable[str] = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
+
+class Parameter(NodeVariable):
+    """A value that is set on the robot, as a ROS parameter; its first value is the one that it has where none is set. Nothing is assigned to it."""
+    description: str | None
+    lowest: float | None
+    highest: float | None
+    def __init__(self, *, description: str | None = ..., lowest: float | None = ..., highest: float | None = ..., component: str | None = ..., type: expression.Type | None = ..., initial: expression.Expression | None = ..., reception: Reception | None = ..., path: Iterable[str] = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class Conversion(expression.NamedElement):
     """Turns data into a literal of an enumeration; the first rule that matches decides. A rule that reads past the end of an array does not match."""

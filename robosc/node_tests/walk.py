@@ -20,7 +20,7 @@ from robosc.runtime.core.node_data import NodeData
 from robosc.runtime.core.port import Outcome
 from robosc.runtime.core.settings import Settings
 from robosc.semantics.messages import kept_reads
-from robosc.semantics.parameters import controller_parameters
+from robosc.semantics.parameters import Value, controller_parameters
 from robosc.semantics.roles import event_name
 
 if TYPE_CHECKING:
@@ -53,7 +53,7 @@ def parameters(graph: rosgraph.RosGraph, configuration: Configuration) -> dict[s
     return {"period_ms": period, **rounded, "watchdog_stops": False}
 
 
-def _defaults(graph: rosgraph.RosGraph, configuration: Configuration) -> dict[str, bool | int | str]:
+def _defaults(graph: rosgraph.RosGraph, configuration: Configuration) -> dict[str, Value]:
     return {parameter.name: parameter.default for parameter in controller_parameters(graph, configuration, "")}
 
 

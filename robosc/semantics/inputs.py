@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc
@@ -19,7 +19,18 @@ if TYPE_CHECKING:
     from robosc.semantics.typing import Type
 
 #: What an expression over the data of an event may read besides: it is the same in all states.
-_FIXED = (robosc.EnumValue, robosc.Constant, robosc.FormalParameter, robosc.ArrayElement)
+_FIXED = (robosc.EnumValue, robosc.Constant, robosc.Parameter, robosc.FormalParameter, robosc.ArrayElement)
+
+
+class _Reads(NamedTuple):
+    """What an expression reads: `data` of an event, or what the supervisor has no finite values of (`beyond`).
+
+    `fixed`: it reads nothing that the robot's state changes.
+    """
+
+    data: bool
+    fixed: bool
+    beyond: bool
 
 
 @dataclass(frozen=True)
@@ -63,18 +74,17 @@ def inputs_in(
     `bounds` are those of the variable that the expression is assigned to.
     """
     types = Types(declared_type(data_type(port.communication, event)))
-    reads: dict[ex.Expression, tuple[bool, bool]] = {}
+    reads: dict[ex.Expression, _Reads] = {}
     fold(lambda part, inside: _reads(part, inside, port, event), expression, memo=reads)
     pending = [(expression, bounds)]
     while pending:
         part, limits = pending.pop()
-        fixed, beyond = reads[part]
         # A condition and its negation are one input.
-        kind = types(part) if fixed and beyond and not isinstance(part, ex.Negation) else None
+        kind = types(part) if all(reads[part]) and not isinstance(part, ex.Negation) else None
         if kind in {BOOLEAN, INTEGER} or isinstance(kind, EnumType):
             yield part, Computed(port, event, RoboscPrinter()(part), limits if kind == INTEGER else None, part, kind)
         elif isinstance(part, robosc.Access) and part.value:
-            yield part, None if beyond else Data(port, event, property_path(part) or ())
+            yield part, None if reads[part].beyond else Data(port, event, property_path(part) or ())
         else:
             # The branches of a conditional are assigned where it is.
             inside = operands(part)
@@ -82,18 +92,16 @@ def inputs_in(
             pending += reversed(list(zip(inside, kept, strict=True)))
 
 
-def _reads(
-    part: ex.Expression, inside: Sequence[tuple[bool, bool]], port: PortInstance, event: PortEvent
-) -> tuple[bool, bool]:
-    """Whether an expression reads data and nothing that changes, and whether it reads data without finite domain."""
-    if isinstance(part, robosc.Access):
-        # Inside are the indices.
-        fixed = all(index for index, _ in inside)
-        if not part.value:
-            return fixed and isinstance(part.item, _FIXED), False
-        path = property_path(part)
-        return fixed, path is None or not _is_finite(Data(port, event, path).type)
-    return all(fixed for fixed, _ in inside), any(beyond for _, beyond in inside)
+def _reads(part: ex.Expression, inside: Sequence[_Reads], port: PortInstance, event: PortEvent) -> _Reads:
+    """What an expression reads, from what its operands do; of an access these are the indices."""
+    data, fixed = any(read.data for read in inside), all(read.fixed for read in inside)
+    beyond = any(read.beyond for read in inside)
+    if not isinstance(part, robosc.Access):
+        return _Reads(data, fixed, beyond)
+    if not part.value:
+        return _Reads(data, fixed and isinstance(part.item, _FIXED), beyond or isinstance(part.item, robosc.Parameter))
+    path = property_path(part)
+    return _Reads(True, fixed, path is None or not _is_finite(Data(port, event, path).type))
 
 
 def _is_finite(declared: robosc.DataType | None) -> bool:

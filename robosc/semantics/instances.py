@@ -126,6 +126,19 @@ class InstanceVariable:
 
 
 @dataclass(frozen=True)
+class InstanceParameter:
+    """A parameter of one instance; None: of the robot or a library."""
+
+    instance: Instance | None
+    parameter: robosc.Parameter
+
+    @property
+    def name(self) -> str:
+        """How it is named on the robot: `speed`, or `Base.speed` in a component."""
+        return self.parameter.name if self.instance is None else f"{self.instance.name}.{self.parameter.name}"
+
+
+@dataclass(frozen=True)
 class Statement(Generic[_Element]):
     """A definition, such as a requirement, and the instance whose text it is; None: it stands outside of components."""
 
@@ -205,6 +218,27 @@ class Instances:
         if instance is None or not isinstance(access.item, robosc.Variable):
             return None
         return InstanceVariable(instance, access.item)
+
+    @property
+    def parameters(self) -> list[InstanceParameter]:
+        """What is set on the robot: by its own text, by that of its libraries, in each instance."""
+        texts: list[tuple[Iterable[Any], Instance | None]] = [
+            (base.definitions, None) for base in (self.base, *libraries(self.base))
+        ]
+        texts += ((instance.local.definitions, instance) for instance in self)
+        return [
+            InstanceParameter(within, definition)
+            for definitions, within in texts
+            for definition in definitions
+            if isinstance(definition, robosc.Parameter)
+        ]
+
+    def parameter(self, access: robosc.Access, within: Instance | None) -> InstanceParameter:
+        """The parameter that an access reads."""
+        parameter = access.item
+        assert isinstance(parameter, robosc.Parameter)
+        is_member = isinstance(parameter.eContainer(), robosc.LocalComponent)
+        return InstanceParameter(self.instance(access.component, within) if is_member else None, parameter)
 
     def assignments(self, transition: robosc.Transition, within: Instance) -> dict[InstanceVariable, robosc.Assignment]:
         """What a transition of an instance assigns to which variable; of several to one variable the last counts."""

@@ -66,6 +66,17 @@ def reads_elements(expression: ex.Expression) -> bool:
     )
 
 
+def reads_parameters(conversion: rosgraph.Conversion) -> bool:
+    """Whether a rule of an enumeration reads what is set on the robot, by itself or by another enumeration."""
+    for rule in conversion.rules:
+        for _, part in tree(rule.condition):
+            if isinstance(part, rosgraph.NodeVariableReference):
+                return True
+            if isinstance(part, rosgraph.ConversionCall) and reads_parameters(part.conversion):
+                return True
+    return False
+
+
 def _is_partial(part: ex.Located) -> bool:
     row = operator_of(part) if isinstance(part, ex.FunctionCall) else None
     return row is not None and row.is_partial

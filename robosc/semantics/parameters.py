@@ -7,24 +7,28 @@ from dataclasses import dataclass
 from itertools import chain, count
 from typing import TYPE_CHECKING, TypeAlias
 
+from robosc.metamodel import expression as ex
+from robosc.semantics.expansion import constant_value
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from robosc.configuration import Configuration
     from robosc.metamodel import rosgraph
 
-Value: TypeAlias = bool | int | str
+Value: TypeAlias = bool | int | float | str
 Topic: TypeAlias = "rosgraph.Subscription | rosgraph.Publisher"
 
 
 @dataclass(frozen=True)
 class Parameter:
-    """A parameter of a node; a number lies between its bounds."""
+    """A parameter of a node; a number lies between its bounds. `changes`: it may be set while the node runs."""
 
     name: str
     default: Value
     meaning: str
-    bounds: tuple[int, int] | None = None
+    bounds: tuple[float, float] | None = None
+    changes: bool = False
 
 
 _DAY = 24 * 3600 * 1000
@@ -63,7 +67,23 @@ def controller_parameters(graph: rosgraph.RosGraph, configuration: Configuration
             for subscription in graph.subscriptions
         ),
         _event_log(log),
+        *model_parameters(graph).values(),
     ]
+
+
+def model_parameters(graph: rosgraph.RosGraph) -> dict[rosgraph.Parameter, Parameter]:
+    """The parameters that the model declares; one of a component has its name before it."""
+    found = {}
+    for declared in graph.parameters:
+        name = declared.name if declared.component is None else f"{declared.component}.{declared.name}"
+        low, high = declared.lowest, declared.highest
+        if isinstance(declared.type, ex.IntegerType):
+            low, high = declared.type.minimum, declared.type.maximum
+        bounds = None if low is None or high is None else (low, high)
+        default = constant_value(declared.initial)
+        assert isinstance(default, (bool, int, float, str))
+        found[declared] = Parameter(name, default, declared.description or "", bounds, changes=True)
+    return found
 
 
 def watchdog(words: Mapping[Topic, str], topic: rosgraph.Subscription) -> str:
@@ -89,6 +109,7 @@ def layer_parameters(graph: rosgraph.RosGraph, configuration: Configuration, log
         Parameter("period_ms", period, "Time from one report of the state to the next.", (1, _DAY)),
         *_timeouts(graph, configuration),
         _event_log(log),
+        *model_parameters(graph).values(),
     ]
 
 

@@ -191,7 +191,7 @@ def item_type(item: rsc.AccessibleItem | None) -> Type:
     match item:
         case rsc.State() | rsc.RequirementState():
             return BOOLEAN
-        case rsc.Variable() | rsc.Constant() | rsc.FormalParameter():
+        case rsc.Variable() | rsc.Constant() | rsc.Parameter() | rsc.FormalParameter():
             return declared_type(item.type)
         case rsc.Condition():
             return BOOLEAN

@@ -167,6 +167,6 @@ def test_enum_rules_read_nothing_that_changes(item: rsc.AccessibleItem) -> None:
     (finding,) = check(rsc.Robot(name="House", definitions=[enum]))
     assert finding.rule == "type"
     assert finding.message == (
-        f"an enum rule reads `value`, literals, constants and enum values only, "
+        f"an enum rule reads `value`, constants, parameters and enum values only, "
         f"found {type(item).__name__.lower()} `{item.name}`"
     )

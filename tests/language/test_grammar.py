@@ -46,6 +46,7 @@ UNRESERVED = {
     "most",
     "ms",
     "never",
+    "parameter",
     "s",
     "property",
     "reachable",
@@ -60,10 +61,11 @@ MADE_BY_TRANSFORMATIONS = {
 }
 #: Features that no rule sets: reading sets them from the file, and the operators' left operands from their precedence.
 SET_OTHERWISE = {"source", "file", "left"}
-#: Those that linking sets in elements of one class.
+#: Those that linking, or the comment above, sets in elements of one class.
 MADE_BY_LINKING = {
     "InterfaceTypeReference": {"arguments", "definition", "interface", "type"},
     "Access": {"enumeration"},
+    "Parameter": {"description"},
 }
 
 

@@ -65,6 +65,7 @@ def _packages(target: str) -> list[Package]:
         Package("courier_controller", CPP / "courier.rscd", target),
         Package("porter_controller", CPP / "porter.rscd", target, CPP / "porter-config.json", with_tests=True),
         Package("scout_controller", HERE / "faults" / "scout.rscd", target),
+        Package("cruise_controller", HERE.parent / "runtime" / "cruise.rscd", target),
         Package("patience_controller", HERE / "times" / "patience.rscd", target),
         Package("keeper_controller", HERE / "kept" / "keeper.rscd", target),
         Package("usher_layer", USHER / "usher.rscd", f"{target}-layer", USHER / "controller-config.json"),

@@ -94,6 +94,11 @@ def _named(named: rsc.NamedExpression) -> Iterator[Finding]:
         case rsc.Constant():
             yield from _of_one_value(named.type, f"constant {name}")
             yield from _constant(named.value, declared_type(named.type), f"the value of {name}")
+        case rsc.Parameter():
+            yield from _of_one_value(named.type, f"parameter {name}")
+            yield from _constant(named.value, declared_type(named.type), f"the value of {name}")
+            for bound in (named.lowest, named.highest):
+                yield from _constant(bound, DOUBLE, f"a bound of {name}")
         case rsc.Function():
             for parameter in named.parameters:
                 yield from _of_one_value(parameter.type, f"parameter `{parameter.name}` of {name}")

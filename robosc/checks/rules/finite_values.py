@@ -148,6 +148,7 @@ def integer_range(base: rsc.Base) -> Iterator[Finding]:
     yield from supervised_faults(base, table_faults)
     for meaning in meanings(base):
         yield from _too_large(meaning)
+        yield from _parameters(meaning)
         for declared in of_kind(rsc.IntegerDataType, data_types(meaning)):
             low, high = _bounds(declared, meaning)
             if low is not None and high is not None and low > high:
@@ -164,6 +165,32 @@ def integer_range(base: rsc.Base) -> Iterator[Finding]:
                 yield meaning.finding(count.bound, message, f"{hint}, or another requirement")
         for constant, kind, name in _constants(meaning):
             yield from _outside(constant, kind, name, meaning)
+
+
+def _parameters(meaning: Meaning) -> Iterator[Finding]:
+    """A parameter that is an integer has a range; its own value lies in its range."""
+    for parameter in statements(rsc.Parameter, meaning):
+        if meaning.made is None and declared_type(parameter.type) == INTEGER and _is_unranged(parameter.type):
+            yield Finding(
+                parameter.type,
+                f"parameter `{parameter.name}` is an integer without range, expected what may be set",
+                "write a range, such as `integer(0..100)`",
+            )
+        elif meaning.made is None and parameter.lowest is not None and declared_type(parameter.type) != DOUBLE:
+            message = f"parameter `{parameter.name}` is {declared_type(parameter.type)} and has no range"
+            yield Finding(parameter.lowest, message, "leave it out, or declare it double")
+        low, value, high = meaning.values(parameter.lowest, parameter.value, parameter.highest)
+        if isinstance(low, float) and isinstance(high, float) and parameter.lowest is not None:
+            if low > high:
+                message = f"the range {low}..{high} is empty, expected the lower bound first"
+                yield meaning.finding(parameter.lowest, message, f"write `double({high}..{low})`")
+            elif isinstance(value, float) and parameter.value is not None and not low <= value <= high:
+                message = f"{value} is not in the range {low}..{high} of `{parameter.name}`, expected a value that is"
+                yield meaning.finding(parameter.value, message, f"write `{low if value < low else high}`, or widen it")
+
+
+def _is_unranged(declared: rsc.DataType) -> bool:
+    return isinstance(declared, rsc.IntegerDataType) and declared.minimum is None and declared.lower is None
 
 
 def _too_large(meaning: Meaning) -> Iterator[Finding]:
@@ -237,6 +264,8 @@ def _constants(base: Meaning) -> Iterator[tuple[ex.Expression | None, rsc.DataTy
     """Every expression that becomes the value of something, with the type and the name of that."""
     for variable in variables(base):
         yield variable.initial, variable.type, variable.name
+    for parameter in statements(rsc.Parameter, base):
+        yield parameter.value, parameter.type, parameter.name
     for _, transition in transitions(base):
         for assignment in transition.assignments if not sends_message(transition) else ():
             assigned = assigned_variable(assignment)

@@ -44,6 +44,7 @@ def _states(base: rsc.Base) -> Iterator[tuple[str, list[Any]]]:
 _KINDS = {
     rsc.State: "state",
     rsc.Constant: "constant",
+    rsc.Parameter: "parameter",
     rsc.Condition: "condition",
     rsc.Function: "function",
     rsc.Variable: "variable",

@@ -49,6 +49,7 @@ CLAUSES: dict[str, tuple[set[str], set[str]]] = {
     "ProvideStatement": ({"if"}, set()),
     "Conditional": ({"then", "else"}, set()),
     "Constant": (set(), {"="}),
+    "Parameter": (set(), {"="}),
     "Condition": (set(), {"="}),
     "Function": (set(), {"="}),
 }

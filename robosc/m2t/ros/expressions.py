@@ -8,6 +8,7 @@ from robosc.m2t.c.comments import string_literal
 from robosc.m2t.c.expressions import number
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
+from robosc.semantics.messages import reads_parameters
 from robosc.semantics.operators import ARITHMETIC, PRECEDENCE, SYMBOLS, Rule, operator_of
 from robosc.semantics.printing import Printed, Printer
 from robosc.semantics.typing import DOUBLE, Types
@@ -84,7 +85,8 @@ class CppPrinter(Printer):
                 return Printed(converted(self.wire(expression, texts), expression.type))
             case rosgraph.ConversionCall():
                 read = self.wire(expression.argument, texts)
-                return Printed(f"{self._names.conversion(expression.conversion)}({read})")
+                kept = f", {self._node}" if reads_parameters(expression.conversion) else ""
+                return Printed(f"{self._names.conversion(expression.conversion)}({read}{kept})")
             case rosgraph.ArrayQuantifier():
                 array, body = texts
                 element = f"[[maybe_unused]] const auto& {_element(expression)}"

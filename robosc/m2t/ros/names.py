@@ -35,13 +35,15 @@ class CppNames:
         components = Names(KEYWORDS | _MACROS)
         self.components = {
             name: components.fresh(identifier(name))
-            for name in dict.fromkeys(variable.component for variable in graph.variables)
+            for name in dict.fromkeys(variable.component or "" for variable in graph.variables)
         }
+        #: What is set on the robot stands beside the components.
+        self.parameters = components.fresh("parameters")
         self._variables = {
             variable: name
             for component in self.components
             for variable, name in _fresh(kept_for(graph.variables, component)).items()
-        }
+        } | _fresh(graph.parameters)
         self._words = topic_words(graph)
 
     def enumeration(self, enumeration: ex.Enumeration) -> str | None:
@@ -68,7 +70,9 @@ class CppNames:
 
     def variable(self, variable: rosgraph.NodeVariable) -> str:
         """A variable of the node, in the struct of all."""
-        return f"{self.components[variable.component]}.{self.member(variable)}"
+        if isinstance(variable, rosgraph.Parameter):
+            return f"{self.parameters}.{self.member(variable)}"
+        return f"{self.components[variable.component or '']}.{self.member(variable)}"
 
     def word(self, topic: rosgraph.Subscription | rosgraph.Publisher) -> str:
         """A word for a subscription or publisher: its topic's name, as far as C++ can write it."""

@@ -20,9 +20,11 @@ from robosc.semantics.messages import (
     parts_with_headers,
     paths_set,
     reads_elements,
+    reads_parameters,
 )
 from robosc.semantics.naming import Names
 from robosc.semantics.operators import PRECEDENCE
+from robosc.semantics.parameters import model_parameters
 from robosc.semantics.roles import Roles
 from robosc.semantics.typing import DOUBLE, ArrayType, infer
 from robosc.semantics.walks import parts
@@ -187,6 +189,7 @@ class Conversion:
     type: str
     rules: list[Rule]
     default: str
+    reads_parameters: bool
 
 
 @dataclass(frozen=True)
@@ -241,6 +244,13 @@ class Node:
         self.components = [
             (member, [self._variable(variable) for variable in kept_for(graph.variables, component)])
             for component, member in self._names.components.items()
+        ]
+        if graph.parameters:
+            self.components.append((self._names.parameters, list(map(self._variable, graph.parameters))))
+        #: What is set on the robot: its name there, its type, and where the node keeps it.
+        self.parameters = [
+            (known.name, self._type(parameter.type), self._names.variable(parameter))
+            for parameter, known in model_parameters(graph).items()
         ]
         self.subscriptions = [self._subscription(subscription) for subscription in graph.subscriptions]
         self.publishers = [self._publisher(publisher) for publisher in graph.publishers]
@@ -307,7 +317,7 @@ class Node:
         return Enumeration(str(self._names.enumeration(enumeration)).rpartition("::")[2], literals)
 
     def _conversion(self, conversion: rosgraph.Conversion) -> Conversion:
-        printer = CppPrinter(self._names, data="value")
+        printer = CppPrinter(self._names, data="value", node="kept")
         return Conversion(
             conversion.name,
             self._names.conversion(conversion),
@@ -317,6 +327,7 @@ class Node:
                 for rule in conversion.rules
             ],
             self._names.literal(conversion.default),
+            reads_parameters(conversion),
         )
 
     @staticmethod

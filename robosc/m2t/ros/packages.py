@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from robosc.diagnostics import Diagnostic
     from robosc.m2t.models import Models, TraceTest
     from robosc.metamodel import rosgraph
+    from robosc.semantics.parameters import Parameter
 
     Values = Mapping[str, Any]
 
@@ -132,6 +133,7 @@ class RosTarget:
             "included": sorted([*own, *(f"{header}.hpp" for header in included)]),
             "settings": configuration,
             "parameters": {parameter.name: parameter for parameter in declared},
+            "parameter_groups": _groups(declared),
             "publishes_state": configuration.publish_state_information,
             "writes_log": configuration.write_events_to_log,
             "definition": definition_text(graph),
@@ -170,6 +172,15 @@ class RosTarget:
         }
         features = {feature for feature, is_there in present.items() if is_there}
         return [name.format(ros=self.ros.version) for name, needed in _HEADERS.items() if needed <= features]
+
+
+def _groups(declared: Iterable[Parameter]) -> dict[str, dict[str, Parameter]]:
+    """Parameters by what stands before the point in their names: nothing, first of all."""
+    found: dict[str, dict[str, Parameter]] = {"": {}}
+    for parameter in declared:
+        group, _, name = parameter.name.rpartition(".")
+        found.setdefault(group, {})[name] = parameter
+    return found
 
 
 def shipped(headers: Iterable[str]) -> dict[str, str]:

@@ -13,6 +13,7 @@ from robosc.runtime.core.reports import StateReporter, Throttle
 from robosc.runtime.core.times import Times
 from robosc.semantics.messages import receptions
 from robosc.semantics.operators import UnreadableError
+from robosc.semantics.parameters import model_parameters
 from robosc.semantics.roles import event_name
 
 if TYPE_CHECKING:
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from robosc.runtime.core.event_loop import EventLoop
     from robosc.runtime.core.port import Client, Message, Port
     from robosc.runtime.core.settings import Settings
+    from robosc.semantics.parameters import Value
 
 
 class EventHandler:
@@ -48,6 +50,8 @@ class EventHandler:
         hooks = Hooks(self._before, self._after, self._report_livelock)
         self._control = ControlLoop(graph.model, loop, hooks)
         self._data = NodeData(graph, self._control.engine)
+        self._parameters = {known.name: parameter for parameter, known in model_parameters(graph).items()}
+        self.set_parameters(settings.parameters)
         self._times = Times(self._control.timers, event_loop, self._expire)
         self._reports = StateReporter(graph, self._control.engine, self._data, port, settings.configuration)
         self._warn = Throttle(port.warn, event_loop.clock)
@@ -66,6 +70,12 @@ class EventHandler:
         return ReceivedData([given.value for given in reception.inputs] + self._data.values_read(reception.event))
 
     # The node's life
+
+    def set_parameters(self, values: Mapping[str, Value]) -> None:
+        """Takes the values of parameters that the model declares, by their names on the robot; never within a batch."""
+        for name, value in values.items():
+            if name in self._parameters:
+                self._data.variables[self._parameters[name]] = value
 
     def log_to(self, log: EventLog) -> None:
         """Has the event log written there; before the start."""

@@ -60,6 +60,7 @@ class Node(ControllerPort, ABC):
         self._graph = graph
         self._types = {interface: self._load_type(interface) for interface in graph.interfaces}
         self._reports: dict[str, Any] = {}
+        self._changing: dict[str, Parameter] = {}
         self._publishers: dict[rosgraph.Publisher, Any] = {}
         self._clients: dict[Client, Any] = {}
 
@@ -90,6 +91,7 @@ class Node(ControllerPort, ABC):
                 values[parameter.name] = check(parameter, value)
             except ValueError as error:
                 raise StartError(f"parameter {error}") from None
+        self._changing = {parameter.name: parameter for parameter in declared if parameter.changes}
         return values
 
     def connect(self, handler: Controller | Layer, settings: Settings) -> None:
@@ -101,6 +103,10 @@ class Node(ControllerPort, ABC):
                 self._connect_controller(handler)
         except self.refusals as error:
             raise StartError(str(error)) from None
+        self._follow_parameters(handler)
+
+    def _follow_parameters(self, handler: EventHandler) -> None:
+        """Has the handler told of parameters that change while the node runs, between batches; in ROS 1 none does."""
 
     def _connect_controller(self, controller: Controller) -> None:
         for publisher in self._graph.publishers:

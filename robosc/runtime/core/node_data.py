@@ -81,7 +81,7 @@ class NodeData:
         self._engine = engine
         self._programs: dict[ex.Expression, Program[Value]] = {}
         self.variables: dict[rosgraph.NodeVariable, Value] = {}
-        for variable in graph.variables:
+        for variable in (*graph.variables, *graph.parameters):
             self.variables[variable] = (
                 self.value(variable.initial)
                 if variable.initial is not None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import isfinite
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -16,10 +17,14 @@ if TYPE_CHECKING:
 def check(parameter: Parameter, value: object) -> Value:
     """A value for the parameter. Raises ValueError, in words for the user, where it does not fit."""
     expected = type(parameter.default)
-    if type(value) is not expected or not isinstance(value, (bool, int, str)):
-        names = {bool: "true or false", int: "a whole number", str: "a text"}
+    if expected is float and type(value) is int:
+        value = float(value)
+    if type(value) is not expected or not isinstance(value, (bool, int, float, str)):
+        names = {bool: "true or false", int: "a whole number", float: "a number", str: "a text"}
         raise ValueError(f"{parameter.name} is {value!r}, not {names[expected]}")
-    if parameter.bounds is not None and isinstance(value, int):
+    if isinstance(value, float) and not isfinite(value):
+        raise ValueError(f"{parameter.name} is {value}, not finite")
+    if parameter.bounds is not None and isinstance(value, (int, float)):
         low, high = parameter.bounds
         if not low <= value <= high:
             raise ValueError(f"{parameter.name} is {value}, not between {low} and {high}")

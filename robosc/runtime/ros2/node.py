@@ -13,6 +13,7 @@ from robosc.runtime.core.clients import POLL
 from robosc.runtime.core.event_loop import EventLoop
 from robosc.runtime.core.node import FAREWELL, LONGEST_WAIT, Node, StartError
 from robosc.runtime.core.port import CallHandlers, Endpoint, GoalHandlers
+from robosc.runtime.core.settings import check
 from robosc.semantics.communication import QUEUE_DEPTH, is_sensor_data
 from robosc.semantics.naming import below_layer
 
@@ -20,7 +21,7 @@ try:
     import rclpy
     import rclpy.action
     import rclpy.exceptions
-    from rcl_interfaces.msg import IntegerRange, ParameterDescriptor
+    from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor, SetParametersResult
     from rclpy.clock import Clock, ClockType
     from rclpy.executors import SingleThreadedExecutor
     from rclpy.qos import (
@@ -54,6 +55,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from robosc.configuration import Configuration
+    from robosc.runtime.core.event_handler import EventHandler
     from robosc.runtime.core.layer import Layer
     from robosc.runtime.core.port import Client, Goal, Message
     from robosc.runtime.core.proxies import ActionProxy, Answer
@@ -123,12 +125,31 @@ class Ros2Node(Node):
         return f"~/{below_layer(name)}"
 
     def _parameter(self, parameter: Parameter) -> object:
-        descriptor = ParameterDescriptor(description=parameter.meaning, read_only=True)
+        descriptor = ParameterDescriptor(description=parameter.meaning, read_only=not parameter.changes)
         if parameter.bounds is not None:
             low, high = parameter.bounds
-            descriptor.integer_range = [IntegerRange(from_value=low, to_value=high, step=1)]
+            if isinstance(parameter.default, float):
+                descriptor.floating_point_range = [FloatingPointRange(from_value=float(low), to_value=float(high))]
+            else:
+                descriptor.integer_range = [IntegerRange(from_value=int(low), to_value=int(high), step=1)]
         value: object = self.node.declare_parameter(parameter.name, parameter.default, descriptor).value
         return value
+
+    def _follow_parameters(self, handler: EventHandler) -> None:
+        """Services of parameters are called between batches, in the thread of the event loop."""
+
+        def accept(given: Sequence[Any]) -> SetParametersResult:
+            try:
+                for parameter in given:
+                    if parameter.name in self._changing:
+                        check(self._changing[parameter.name], parameter.value)
+            except ValueError as error:
+                return SetParametersResult(successful=False, reason=str(error))
+            handler.set_parameters({parameter.name: parameter.value for parameter in given})
+            return SetParametersResult(successful=True)
+
+        if self._changing:
+            self.node.add_on_set_parameters_callback(accept)
 
     def _is_up(self) -> bool:
         return bool(rclpy.ok())

@@ -184,20 +184,24 @@ class Names:
                 return cast("ex.Expression", given)
             case robosc.EnumValue():
                 return self.leaf(Literal(item.name))
+            case robosc.Parameter():
+                # As data, it is part of what the node computes: the supervisor reads none.
+                owner = (access.component.name, ".") if access.component else ()
+                return self.leaf(Data((*owner, item.name), None))
             case robosc.RequirementState():
                 automaton = item.eContainer()
                 inside = isinstance(automaton.eContainer(), robosc.LocalComponent)
                 plant = self.observers[automaton, place.within if inside else None]
                 return self.leaf(At(Slot(plant), item.name))
-        owner = self._meant(access.component, place) if access.component or _is_member(item) else None
+        instance = self._meant(access.component, place) if access.component or _is_member(item) else None
         match item:
-            case robosc.State() if owner is not None:
-                return self.leaf(At(Slot(owner.plant), item.name))
-            case robosc.Variable() if owner is not None:
-                return self.leaf(Slot(owner.plant, item.name))
+            case robosc.State() if instance is not None:
+                return self.leaf(At(Slot(instance.plant), item.name))
+            case robosc.Variable() if instance is not None:
+                return self.leaf(Slot(instance.plant, item.name))
         if not isinstance(item, robosc.Constant | robosc.Condition):
             raise NotReadError(item)
-        value: ex.Expression = yield item.value, self._inside(item, owner)
+        value: ex.Expression = yield item.value, self._inside(item, instance)
         if not isinstance(item, robosc.Constant):
             return value
         folded = evaluate(value, self._meanings.__getitem__)

@@ -2,6 +2,7 @@
 #ifndef ROBOSC_ROS1_PARAMETERS_HPP_
 #define ROBOSC_ROS1_PARAMETERS_HPP_
 
+#include <cmath>
 #include <cstddef>
 #include <stdexcept>
 #include <string>
@@ -19,9 +20,10 @@ template <typename Value>
 Value parameter(const ros::NodeHandle& node, const std::string& name, const Value& value, const char* = "") {
   Value found = value;
   if (node.getParam(name, found) || !node.hasParam(name)) return found;
-  const char* type = std::is_same_v<Value, bool>  ? "true or false"
-                     : std::is_same_v<Value, int> ? "a whole number"
-                                                  : "a text";
+  const char* type = std::is_same_v<Value, bool>     ? "true or false"
+                     : std::is_same_v<Value, int>    ? "a whole number"
+                     : std::is_same_v<Value, double> ? "a number"
+                                                     : "a text";
   throw std::invalid_argument("the parameter " + node.resolveName(name) + " must be " + type);
 }
 
@@ -29,6 +31,29 @@ Value parameter(const ros::NodeHandle& node, const std::string& name, const Valu
 inline int parameter(const ros::NodeHandle& node, const std::string& name, int value, int low, int high,
                      const char* = "") {
   const int found = parameter(node, name, value);
+  if (found >= low && found <= high) return found;
+  throw std::invalid_argument("the parameter " + node.resolveName(name) + " is " + std::to_string(found) +
+                              ", not between " + std::to_string(low) + " and " + std::to_string(high));
+}
+
+/// A parameter of the model, which keeps the value with which the node starts; throws std::invalid_argument where it
+/// has another type or is not finite.
+template <typename Value>
+Value model_parameter(const ros::NodeHandle& node, const std::string& name, const Value& value, const char* meaning) {
+  const Value found = parameter(node, name, value, meaning);
+  if constexpr (std::is_same_v<Value, double>) {
+    if (!std::isfinite(found)) {
+      throw std::invalid_argument("the parameter " + node.resolveName(name) + " is not finite");
+    }
+  }
+  return found;
+}
+
+/// The same for a number between two bounds.
+template <typename Number>
+Number model_parameter(const ros::NodeHandle& node, const std::string& name, Number value, const char* meaning,
+                       Number low, Number high) {
+  const Number found = model_parameter(node, name, value, meaning);
   if (found >= low && found <= high) return found;
   throw std::invalid_argument("the parameter " + node.resolveName(name) + " is " + std::to_string(found) +
                               ", not between " + std::to_string(low) + " and " + std::to_string(high));

@@ -1,0 +1,44 @@
+"""`--param`: what is set on the robot, for commands that run a model."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING
+
+import click
+
+from robosc.cli import CallError
+from robosc.language.explaining import did_you_mean
+from robosc.runtime.core.settings import check
+from robosc.semantics.evaluation import literal
+from robosc.semantics.parameters import model_parameters
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from robosc.metamodel import rosgraph
+
+parameters = click.option(
+    "--param", "given", multiple=True, metavar="NAME=VALUE", help="Set a parameter of the model; may be repeated."
+)
+
+
+def set_parameters(graph: rosgraph.RosGraph | None, given: Sequence[str]) -> None:
+    """Gives parameters of a graph other values than the model does. Raises CallError for one that does not fit."""
+    known = {} if graph is None else {found.name: (place, found) for place, found in model_parameters(graph).items()}
+    for text in given:
+        name, _, value = text.partition("=")
+        if name not in known:
+            repair = did_you_mean(name, known, cutoff=0.6)
+            found = f"the model has no parameter {name}"
+            raise CallError(f"--param {text}: {found}; {repair.hint}" if repair else f"--param {text}: {found}")
+        place, parameter = known[name]
+        try:
+            read = value if isinstance(parameter.default, str) else json.loads(value)
+            place.initial = literal(check(parameter, read))
+        except json.JSONDecodeError:
+            raise CallError(
+                f"--param {text}: write {name}=VALUE, such as {name}={json.dumps(parameter.default)}"
+            ) from None
+        except ValueError as error:
+            raise CallError(f"--param {text}: {error}") from None

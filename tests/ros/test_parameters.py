@@ -1,0 +1,46 @@
+"""Parameters of a model over a real ROS: set at the start, and in ROS 2 while the node runs."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from tests.ros.processes import PATIENCE
+from tests.ros.reactions import one_process
+from tests.ros.workspaces import middleware
+
+if TYPE_CHECKING:
+    from tests.ros.running import Runner
+    from tests.ros.workspaces import Workspace
+
+HERE = Path(__file__).parent
+
+
+def test_they_change_while_the_node_runs(nodes: Workspace | Runner, tmp_path: Path) -> None:
+    """Declared with range and description, changed between batches, a value that does not fit refused with why."""
+    if nodes.ros.version == 1:
+        pytest.skip("ROS 1 reads parameters at the start")
+    folder = tmp_path / "run"
+    with middleware(nodes, folder) as processes:
+        processes.start("node", one_process(nodes, "cruise_controller"))
+        out = folder / "heard.json"
+        world = processes.start("world", [nodes.ros.python, HERE / "set_parameters.py", "2", out])
+        processes.wait_until(lambda: world.poll() is not None, "all is set", seconds=10 * PATIENCE)
+        assert world.returncode == 0, processes.logs()
+        heard = json.loads(out.read_text())
+    assert heard["told"] == {
+        "speed": {
+            "description": "How fast the robot drives, in metres per second.",
+            "read_only": False,
+            "bounds": [[0.05, 1.0]],
+        },
+        "least": {"description": "", "read_only": False, "bounds": [[1, 5]]},
+        "reach": {"description": "", "read_only": False, "bounds": []},
+        "Base.factor": {"description": "", "read_only": False, "bounds": [[-2.0, 2.0]]},
+    }
+    assert all(heard["refused"]), heard["refused"]
+    assert heard["taken"] == [None, None, None]
+    assert heard["silent"] == []
