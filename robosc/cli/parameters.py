@@ -10,6 +10,7 @@ import click
 from robosc.cli import CallError
 from robosc.language.explaining import did_you_mean
 from robosc.runtime.core.settings import check
+from robosc.semantics.durations import set_milliseconds
 from robosc.semantics.evaluation import literal
 from robosc.semantics.parameters import model_parameters
 
@@ -35,7 +36,10 @@ def set_parameters(graph: rosgraph.RosGraph | None, given: Sequence[str]) -> Non
         place, parameter = known[name]
         try:
             read = value if isinstance(parameter.default, str) else json.loads(value)
-            place.initial = literal(check(parameter, read))
+            fitting = check(parameter, read)
+            place.initial = literal(fitting)
+            for duration in place.durations:
+                duration.milliseconds = set_milliseconds(float(fitting), duration.unit)
         except json.JSONDecodeError:
             raise CallError(
                 f"--param {text}: write {name}=VALUE, such as {name}={json.dumps(parameter.default)}"

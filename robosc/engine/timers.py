@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from robosc.engine.interpreter import Engine
+    from robosc.metamodel import sct
 
 
 class Timers:
@@ -24,6 +25,10 @@ class Timers:
         self._events = [timer.event.name for timer in timers]
         self._of = {event: position for position, event in enumerate(self._events)}
         self._length = [timer.milliseconds for timer in timers]
+        self._set = {
+            duration: [place for place, timer in enumerate(timers) if timer.duration is duration]
+            for duration in engine.executed.model.durations
+        }
         self._plant = [None if timer.location is None else timer.location.eContainer() for timer in timers]
         self._restarts = {
             event.name: [
@@ -53,6 +58,11 @@ class Timers:
         """Starts all that run anew."""
         for number in self._up:
             self._start(number)
+
+    def set_duration(self, duration: sct.Duration, milliseconds: int) -> None:
+        """How long timers run that are started from now on, where that is set on the robot."""
+        for number in self._set[duration]:
+            self._length[number] = milliseconds
 
     def before(self, event: str) -> None:
         """Starts and stops timers as an event does that is about to happen."""

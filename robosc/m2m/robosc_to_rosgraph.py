@@ -117,6 +117,8 @@ class _Transformation:
         )
         for bound in ("lowest", "highest"):
             setattr(parameter, bound, constant_value(getattr(declared, bound), within))
+        durations = self.trace.durations.items()
+        parameter.durations.extend(duration for (place, _), duration in durations if place == owned)
         self.parameters[owned] = parameter
         self.graph.parameters.append(parameter)
 

@@ -12,7 +12,8 @@ from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc, sct
 from robosc.semantics.communication import CONTROLLABLE, events
 from robosc.semantics.cone_of_influence import cone_of_influence, guard_of
-from robosc.semantics.durations import milliseconds
+from robosc.semantics.durations import UNITS, bounds, milliseconds, set_milliseconds, set_on_robot
+from robosc.semantics.expansion import constant_value
 from robosc.semantics.inputs import Data
 from robosc.semantics.instances import Instance, Instances, InstanceVariable, PortInstance, Statement
 from robosc.semantics.naming import Names
@@ -232,18 +233,35 @@ class _Transformation:
                     entries.setdefault(edge.target, []).append(edge)
         for transition, state in instance.transitions:
             if isinstance(transition, robosc.TimedTransition):
-                length = milliseconds(transition, instance)
-                assert length is not None
                 within = None if state is None else self.trace.locations[instance, state]
                 ports = (self.instances.port(reference, instance) for reference in transition.without)
                 without = (self.trace.event(port, sct.EventKind.response) for port in ports if port is not None)
                 self.trace.own[instance, transition].timer = sct.Timer(
-                    milliseconds=length,
+                    milliseconds=milliseconds(transition, instance),
+                    duration=self.duration(transition, instance),
                     location=within,
                     entries=[] if within is None else entries.get(within, []),
                     without=list(dict.fromkeys(without)),
                     source=transition.source,
                 )
+
+    def duration(self, transition: robosc.TimedTransition, instance: Instance) -> sct.Duration | None:
+        """How long a transition waits, where that is set on the robot."""
+        access = set_on_robot(transition.duration)
+        if access is None:
+            return None
+        owned, unit = self.instances.parameter(access, instance), UNITS[transition.unit]
+        if (owned, unit) not in self.trace.durations:
+            values = (constant_value(owned.parameter.value, owned.instance), *bounds(owned.parameter, owned.instance))
+            numbers = (value for value in values if isinstance(value, int | float))
+            length, shortest, longest = (set_milliseconds(number, unit) for number in numbers)
+            made = sct.Duration(
+                parameter=owned.name, milliseconds=length, shortest=shortest, longest=longest, unit=unit
+            )
+            made.source = owned.parameter.source
+            self.trace.durations[owned, unit] = made
+            self.trace.model.durations.append(made)
+        return self.trace.durations[owned, unit]
 
     def first(
         self, transition: robosc.Transition, others: Sequence[robosc.Transition], instance: Instance

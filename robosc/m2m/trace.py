@@ -14,7 +14,14 @@ if TYPE_CHECKING:
     from robosc.metamodel import sct
     from robosc.semantics.cone_of_influence import ConeOfInfluence
     from robosc.semantics.inputs import Told
-    from robosc.semantics.instances import Instance, Instances, InstanceVariable, PortInstance, Statement
+    from robosc.semantics.instances import (
+        Instance,
+        InstanceParameter,
+        Instances,
+        InstanceVariable,
+        PortInstance,
+        Statement,
+    )
 
 
 @dataclass
@@ -35,6 +42,7 @@ class Trace:
         default_factory=dict
     )
     variables: dict[InstanceVariable, sct.DiscreteVariable] = field(default_factory=dict)
+    durations: dict[tuple[InstanceParameter, int], sct.Duration] = field(default_factory=dict)
     provided: dict[Statement[robosc.ProvideStatement], sct.Location] = field(default_factory=dict)
     origins: dict[ex.Located, ex.Located] = field(default_factory=dict)
 

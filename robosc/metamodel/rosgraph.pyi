@@ -49,7 +49,8 @@ class Parameter(NodeVariable):
     description: str | None
     lowest: float | None
     highest: float | None
-    def __init__(self, *, description: str | None = ..., lowest: float | None = ..., highest: float | None = ..., component: str | None = ..., type: expression.Type | None = ..., initial: expression.Expression | None = ..., reception: Reception | None = ..., path: Iterable[str] = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
+    durations: MutableSequence[sct.Duration]
+    def __init__(self, *, description: str | None = ..., lowest: float | None = ..., highest: float | None = ..., durations: Iterable[sct.Duration] = ..., component: str | None = ..., type: expression.Type | None = ..., initial: expression.Expression | None = ..., reception: Reception | None = ..., path: Iterable[str] = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class Conversion(expression.NamedElement):
     """Turns data into a literal of an enumeration; the first rule that matches decides. A rule that reads past the end of an array does not match."""

@@ -14,7 +14,8 @@ class SupervisoryControlModel(expression.NamedElement):
     invariants: MutableSequence[StateInvariant]
     properties: MutableSequence[Property]
     supervisor: Supervisor | None
-    def __init__(self, *, enumerations: Iterable[expression.Enumeration] = ..., plants: Iterable[Plant] = ..., requirements: Iterable[Requirement] = ..., invariants: Iterable[StateInvariant] = ..., properties: Iterable[Property] = ..., supervisor: Supervisor | None = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
+    durations: MutableSequence[Duration]
+    def __init__(self, *, enumerations: Iterable[expression.Enumeration] = ..., plants: Iterable[Plant] = ..., requirements: Iterable[Requirement] = ..., invariants: Iterable[StateInvariant] = ..., properties: Iterable[Property] = ..., supervisor: Supervisor | None = ..., durations: Iterable[Duration] = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class Plant(expression.NamedElement):
     """An automaton with variables. Of the edges of a location with one event, the guards exclude each other."""
@@ -61,11 +62,21 @@ class EventKind:
 
 class Timer(expression.Located):
     """A time that runs while a component is in a location, or always, and what starts it anew. When it is up, its event happens once. To synthesis the event is possible at any time."""
-    milliseconds: int
+    milliseconds: int | None
+    duration: Duration | None
     location: Location | None
     entries: MutableSequence[Edge]
     without: MutableSequence[Event]
-    def __init__(self, *, milliseconds: int | None = ..., location: Location | None = ..., entries: Iterable[Edge] = ..., without: Iterable[Event] = ..., source: Place | None = ...) -> None: ...
+    def __init__(self, *, milliseconds: int | None = ..., duration: Duration | None = ..., location: Location | None = ..., entries: Iterable[Edge] = ..., without: Iterable[Event] = ..., source: Place | None = ...) -> None: ...
+
+class Duration(expression.Located):
+    """How long timers run, as a parameter of the robot says. It has no part in synthesis. A timer that runs keeps what it had when it started."""
+    parameter: str
+    milliseconds: int
+    shortest: int
+    longest: int
+    unit: int
+    def __init__(self, *, parameter: str | None = ..., milliseconds: int | None = ..., shortest: int | None = ..., longest: int | None = ..., unit: int | None = ..., source: Place | None = ...) -> None: ...
 
 class Input(expression.NamedElement):
     """Data that comes with an event. Only guards and updates of edges of an event that names the input read it."""

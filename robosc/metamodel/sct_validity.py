@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 from robosc.metamodel.model_checks import around, demand, fitting_operands, repeated, typed, unique
-from robosc.semantics.durations import LONGEST, SHORTEST
+from robosc.semantics.durations import LONGEST, SHORTEST, UNITS
 from robosc.semantics.edges import edges_of
 from robosc.semantics.typing import declared_type
 
@@ -122,7 +122,9 @@ def _guards(supervisor: sct.Supervisor, model: Model) -> Iterator[Fault]:
 
 def _timer(timer: sct.Timer, model: Model) -> Iterator[Fault]:
     """What starts a time anew is of the same model, and in the location in which it runs."""
-    if not SHORTEST <= timer.milliseconds <= LONGEST:
+    if (timer.milliseconds is None) == (timer.duration is None):
+        yield timer, "a time has either milliseconds or a duration"
+    if timer.milliseconds is not None and not SHORTEST <= timer.milliseconds <= LONGEST:
         yield timer, f"a time is {SHORTEST} to {LONGEST} ms long, found {timer.milliseconds}"
     if timer.location is not None and timer.location.eContainer() is not around(timer, sct.Plant):
         yield timer, f"the location '{timer.location.name}' is another plant's"
@@ -135,6 +137,13 @@ def _timer(timer: sct.Timer, model: Model) -> Iterator[Fault]:
             yield timer, f"'{message.name}' is no message of this model that a component sends"
 
 
+_SETTABLE = demand(
+    lambda duration: (
+        SHORTEST <= duration.shortest <= duration.milliseconds <= duration.longest <= LONGEST
+        and duration.unit in UNITS.values()
+    ),
+    f"'{{0.parameter}}' is set within its range, in ms, s or min, and the range lies in {SHORTEST} to {LONGEST} ms",
+)
 _TIMED = demand(
     lambda event: (
         (event.timer is not None) == (event.kind == sct.EventKind.timeout) and not (event.timer and event.controllable)
@@ -178,6 +187,7 @@ CHECKS: Checks = {
     ex.Division: [_FOREIGN],
     sct.Event: [_carried, _TIMED],
     sct.Timer: [_timer],
+    sct.Duration: [_SETTABLE],
     sct.Edge: [_OWN_TARGET, typed("guard"), _updated_once],
     sct.Update: [_OWN_VARIABLE, typed("value", lambda update: declared_type(update.variable.type))],
     sct.Requirement: [_RESTRICTABLE, typed("condition")],

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from math import isfinite
+from math import floor, isfinite
 from typing import TYPE_CHECKING
 
+from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc
 from robosc.semantics.expansion import constant_value
 
@@ -15,7 +16,29 @@ if TYPE_CHECKING:
 
 #: The shortest and the longest time; times on a clock of 32 bits can be told apart up to some hours more.
 SHORTEST, LONGEST = 1, 24 * 24 * 3600 * 1000
-_FACTORS = {robosc.TimeUnit.ms: 1, robosc.TimeUnit.s: 1000, robosc.TimeUnit.min: 60_000}
+#: How many milliseconds a unit is.
+UNITS = {robosc.TimeUnit.ms: 1, robosc.TimeUnit.s: 1000, robosc.TimeUnit.min: 60_000}
+
+
+def set_on_robot(duration: ex.Expression | None) -> robosc.Access | None:
+    """The access to the parameter that a duration is; None where it is a constant expression."""
+    if isinstance(duration, robosc.Access) and isinstance(duration.item, robosc.Parameter):
+        return duration
+    return None
+
+
+def bounds(parameter: robosc.Parameter, within: Instance | None) -> tuple[float | None, float | None]:
+    """The least and the largest value of a number that is set on the robot; None where its text does not say."""
+    declared = parameter.type if within is None else within.data_type(parameter.type)
+    if isinstance(declared, robosc.IntegerDataType):
+        return declared.minimum, declared.maximum
+    low, high = (constant_value(bound, within) for bound in (parameter.lowest, parameter.highest))
+    return (low, high) if isinstance(low, float) and isinstance(high, float) else (None, None)
+
+
+def set_milliseconds(value: float, unit: int) -> int:
+    """A parameter's value in units of so many milliseconds, rounded as `duration_ms` of the generated nodes does."""
+    return floor(value * unit + 0.5)
 
 
 def milliseconds(transition: robosc.TimedTransition, within: Instance | None) -> int | None:
@@ -28,14 +51,24 @@ def milliseconds(transition: robosc.TimedTransition, within: Instance | None) ->
         return None
     if not isfinite(value):
         return LONGEST + 1
-    return int((Fraction(value) * _FACTORS[transition.unit] * 2 + 1) // 2)
+    return int((Fraction(value) * UNITS[transition.unit] * 2 + 1) // 2)
+
+
+def duration_text(duration: sct.Duration) -> str:
+    """What is set on the robot, such as `Base.pause s`."""
+    unit = next(unit.name for unit, factor in UNITS.items() if factor == duration.unit)
+    return f"{duration.parameter} {unit}"
 
 
 def timer_text(timer: sct.Timer) -> str:
-    """A timer in words, such as `3 s` or `500 ms without Lidar.scan`."""
-    unit, factor = next(
-        (unit.name, factor) for unit, factor in reversed(_FACTORS.items()) if timer.milliseconds % factor == 0
-    )
+    """A timer in words, such as `3 s`, `pause s` or `500 ms without Lidar.scan`."""
+    if timer.duration is not None:
+        length = duration_text(timer.duration)
+    else:
+        assert timer.milliseconds is not None
+        factors = reversed(UNITS.items())
+        unit, factor = next((unit.name, factor) for unit, factor in factors if timer.milliseconds % factor == 0)
+        length = f"{timer.milliseconds // factor} {unit}"
     plants = [message.eContainer() for message in timer.without]
     messages = ", ".join(plant.origin or plant.name for plant in plants)
-    return f"{timer.milliseconds // factor} {unit}" + (f" without {messages}" if messages else "")
+    return length + (f" without {messages}" if messages else "")

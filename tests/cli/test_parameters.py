@@ -23,6 +23,15 @@ def test_data_is_read_with_what_is_set(given: list[str], state: str) -> None:
     assert json.loads(answer.stdout)["state"]["component_Lidar"] == state
 
 
+@pytest.mark.parametrize(("given", "state"), [([], "dark"), (["--param", "Lamp.pause=0.5"], "lit")])
+def test_a_time_is_what_is_set(given: list[str], state: str) -> None:
+    """Durations: `--param` of `simulate` sets them, too."""
+    call = ["simulate", str(CRUISE), "--loop", *given, "--script", "-"]
+    answer = CliRunner().invoke(main, call, input="wait 1.0\n")
+    assert answer.exit_code == 0, answer.output
+    assert json.loads(answer.stdout)["state"]["component_Lamp"] == state
+
+
 REFUSED = [
     ("reech=1", "--param reech=1: the model has no parameter reech; did you mean `reach`?"),
     ("zzz=1", "--param zzz=1: the model has no parameter zzz"),

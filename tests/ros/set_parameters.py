@@ -24,6 +24,8 @@ class World:
         self.heard = []
         self.topics = connect(version, "world")
         self.topics.listen("/move", "std_msgs/Float32", lambda message: self.heard.append(round(message.data, 3)))
+        self.lit = False
+        self.topics.listen("/lamp", "std_msgs/Bool", lambda message: setattr(self, "lit", message.data))
         self.range = self.topics.publisher("/range", "std_msgs/Float32")
         self.setting = self.topics.node.create_client(SetParameters, f"{NODE}/set_parameters")
         self.describing = self.topics.node.create_client(DescribeParameters, f"{NODE}/describe_parameters")
@@ -57,7 +59,7 @@ class World:
 
     def run(self):
         self.wait_until(lambda: self.setting.service_is_ready() and self.topics.heard(), "the node is there")
-        told = {name: self.described(name) for name in ("speed", "least", "reach", "Base.factor")}
+        told = {name: self.described(name) for name in ("speed", "least", "reach", "Base.factor", "Lamp.pause")}
         self.expect(-0.2)
         refused = [self.set("speed", 1.5), self.set("speed", "fast"), self.set("reach", math.nan), self.set("least", 9)]
         self.expect(-0.2)
@@ -72,7 +74,11 @@ class World:
         silent = list(self.heard)
         self.range(data=1.5)
         self.expect(0.5)
-        return {"told": told, "refused": refused, "taken": taken, "silent": silent}
+        lit = [self.lit]
+        taken.append(self.set("Lamp.pause", 0.02))
+        self.range(data=1.5)  # starts the time anew, which is short now
+        self.wait_until(lambda: self.lit, "the lamp is lit")
+        return {"lit": [*lit, self.lit], "told": told, "refused": refused, "taken": taken, "silent": silent}
 
 
 if __name__ == "__main__":

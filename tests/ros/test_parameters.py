@@ -40,7 +40,13 @@ def test_they_change_while_the_node_runs(nodes: Workspace | Runner, tmp_path: Pa
         "least": {"description": "", "read_only": False, "bounds": [[1, 5]]},
         "reach": {"description": "", "read_only": False, "bounds": []},
         "Base.factor": {"description": "", "read_only": False, "bounds": [[-2.0, 2.0]]},
+        "Lamp.pause": {
+            "description": "How long no range has come when the lamp goes on.",
+            "read_only": False,
+            "bounds": [[0.02, 60.0]],
+        },
     }
     assert all(heard["refused"]), heard["refused"]
-    assert heard["taken"] == [None, None, None]
+    assert heard["taken"] == [None, None, None, None]
     assert heard["silent"] == []
+    assert heard["lit"] == [False, True]

@@ -36,6 +36,7 @@ def test_each_has_its_name_default_range_and_the_comment_above_it() -> None:
         "greeting": ("hello", None),
         "doubled": (False, None),
         "Base.factor": (-1.0, (-2.0, 2.0)),
+        "Lamp.pause": (60.0, (0.02, 60.0)),
     }
     assert known["speed"].meaning == "How fast the robot drives, in metres per second."
     assert known["reach"].meaning == ""
@@ -72,6 +73,26 @@ def test_a_change_counts_from_the_next_data_on(tmp_path: Path) -> None:
     assert sent(made, "/name") is None
     made.hear("load", data=3)
     assert sent(made, "/name") == "hello"
+
+
+def test_a_time_that_runs_keeps_its_value(tmp_path: Path) -> None:
+    """One that starts afterwards has the new one; so has each unit of a parameter."""
+    made = world(tmp_path)
+    made.controller.set_parameters({"Lamp.pause": 0.5})
+    made.wait(59.0)
+    assert sent(made, "/lamp") is None
+    made.wait(1.0)
+    assert sent(made, "/lamp") is True
+    made.wait(29.5)  # half a minute since it is lit
+    assert sent(made, "/lamp") is None
+
+
+def test_a_time_is_set_at_the_start(tmp_path: Path) -> None:
+    made = world(tmp_path, **{"Lamp.pause": 2.0})
+    made.wait(1.5)
+    assert sent(made, "/lamp") is None
+    made.wait(0.5)
+    assert sent(made, "/lamp") is True
 
 
 def test_names_that_are_none_of_the_model_are_left_alone(tmp_path: Path) -> None:

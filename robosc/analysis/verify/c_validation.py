@@ -143,6 +143,7 @@ class _Trial:
             )
             return " ".join(told)
 
+        durations = (f"DO({number}, {names.setting(one)})" for number, one in enumerate(self._model.durations))
         events = " ".join(f"{string_literal(event_name(event))}," for event in self._events)
         return (
             f'#include "{names.prefix}_supervisor.h"\n'
@@ -152,6 +153,7 @@ class _Trial:
             f"#define FOR_INPUTS(DO) {for_all(self._inputs)}\n"
             f"#define ENGINE(name) {names.prefix}_##name\n"
             f"#define ENGINE_EVENTS {names.macro}_EVENT_COUNT\n"
+            f"#define FOR_DURATIONS(DO) {' '.join(durations)}\n"
             + ("#define TIMES\n" if any(event.timer for event in self._events) else "")
         )
 

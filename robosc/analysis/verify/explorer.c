@@ -22,6 +22,7 @@
  *     EVENT_NAMES                  the initializers of the events' names
  *     FOR_CELLS(DO), FOR_INPUTS(DO)  DO(number, member of the struct, least value) for all of them
  *     ENGINE(name), ENGINE_EVENTS  `name` with the supervisor's prefix; how many events the supervisor has
+ *     FOR_DURATIONS(DO)            DO(number, member of the settings) for the times that are set on the robot
  *     TIMES                        where the model has timers, so that the supervisor takes the time
  */
 #include "model.h"
@@ -65,6 +66,7 @@ static ENGINE(supervisor) robot, placed;
 
 #define PUT_CELL(number, member, least) robot.state.member = (int64_t)(code[number] + UINT64_C(least));
 #define GET_CELL(number, member, least) code[number] = (uint64_t)(int64_t)robot.state.member - UINT64_C(least);
+#define SET_DURATION(place, member) if (duration == (place)) robot.settings.member = milliseconds;
 #define PUT_INPUT(number, member, least) robot.inputs.member = (int64_t)(chosen[number] + UINT64_C(least));
 
 /* Puts the robot into a state; `placed` keeps it as it is then. */
@@ -462,7 +464,7 @@ static void follow(void)
         bool result = false;
         ENGINE(event) event;
         if (operation == 'n') {
-            ENGINE(settings) settings;
+            ENGINE(settings) settings = ENGINE(default_settings);
             settings.events_per_tick = (uint16_t)number();
             settings.reactions_per_tick = (uint16_t)number();
             settings.react_immediately = number() != 0U;
@@ -488,6 +490,12 @@ static void follow(void)
 #ifdef TIMES
         if (operation == 'c') {
             now = (uint32_t)number();
+            continue;
+        }
+        if (operation == 'd') {
+            const uint64_t duration = number();
+            const uint32_t milliseconds = (uint32_t)number();
+            FOR_DURATIONS(SET_DURATION)
             continue;
         }
 #endif

@@ -95,6 +95,10 @@ class LoopWalk:
     def _wait(self) -> None:
         """Lets time go by, mostly until something is up or nearly so, and now and then backwards; then asks once."""
         timers = self._loop.timers
+        for number, duration in enumerate(self._model.durations):
+            length = self._random.choice((duration.shortest, duration.milliseconds, duration.longest))
+            timers.set_duration(duration, length)
+            self.script.append(f"d {number} {length}")
         steps = [timers.wait or 0, (timers.wait or 0) - 1, self._random.randrange(_LONGEST), -self._random.randrange(9)]
         timers.at(max(timers.now + self._random.choice(steps), 0))
         self.script.append(f"c {timers.now % 2**32}")

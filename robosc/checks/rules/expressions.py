@@ -20,6 +20,7 @@ from robosc.checks.expression_types import CONSTANT, ENUM_RULE, ExpressionCheck,
 from robosc.checks.rule import Finding, rule
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
+from robosc.semantics.durations import set_on_robot
 from robosc.semantics.typing import (
     BOOLEAN,
     DOUBLE,
@@ -165,7 +166,7 @@ def _transition(transition: rsc.Transition) -> Iterator[Finding]:
 
 
 def _duration(value: ex.Expression | None) -> Iterator[Finding]:
-    check = ExpressionCheck(replace(CONSTANT, what="a duration"))
+    check = ExpressionCheck(Place(None) if set_on_robot(value) else replace(CONSTANT, what="a duration"))
     found = check.type(value)
     if value is not None and found not in {INTEGER, DOUBLE, UNKNOWN}:
         check.report(value, f"a duration must be integer or double, found {found}", "write a number, such as `3.0 s`")

@@ -27,7 +27,9 @@ def lower_timers(model: engine.EngineModel, edges: EdgeTable, lower: Lowering) -
         if timed is None:
             continue
         initial = timed.location is None or timed.location.initial
-        made = engine.Timer(event=event, milliseconds=timed.milliseconds, location=timed.location, initial=initial)
+        length = (timed.duration or timed).milliseconds
+        made = engine.Timer(event=event, milliseconds=length, location=timed.location, initial=initial)
+        made.duration = timed.duration
         model.timers.append(made)
         if timed.location is not None:
             of_plant = located.setdefault(plant_of(event.event), {})

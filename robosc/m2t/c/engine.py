@@ -14,6 +14,7 @@ from robosc.m2t.templates import environment
 from robosc.metamodel import engine, sct
 from robosc.metamodel import expression as ex
 from robosc.metamodel.reflection import tree
+from robosc.semantics.durations import duration_text
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -238,6 +239,17 @@ class _Preparation:
                     "initial": timer.initial,
                 }
                 for timer, number in numbers.items()
+            ],
+            "durations": [
+                {
+                    "member": self._names.setting(duration),
+                    "name": comment_text(duration_text(duration)),
+                    "default": duration.milliseconds,
+                    "shortest": duration.shortest,
+                    "longest": duration.longest,
+                    "timers": [number for timer, number in numbers.items() if timer.duration is duration],
+                }
+                for duration in self._model.model.durations
             ],
             "timer_index": unsigned_type(len(timers)),
             "timeouts": len(self._model.events) - len(timers),

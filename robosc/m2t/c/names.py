@@ -29,6 +29,7 @@ KEYWORDS = frozenset(_KEYWORDS.split())
 _API = """
 nothing event state inputs settings hooks set supervisor default_settings init enabled perform begin end tick event_name
 """
+_SETTINGS = "events_per_tick reactions_per_tick react_immediately resolution_ms"
 
 
 class CNames:
@@ -49,6 +50,11 @@ class CNames:
         self._name_globals(model)
         self._members = self._named(model, lambda plant: [plant, *plant.variables])
         self._members |= self._named(model, lambda plant: plant.inputs)
+        settings = Names([*KEYWORDS, *_SETTINGS.split()])
+        self._settings = {
+            duration: settings.fresh(_identifier(f"{duration.parameter.replace('.', '_')}_ms"))
+            for duration in model.durations
+        }
 
     def _name_globals(self, model: sct.SupervisoryControlModel) -> None:
         names = Names(f"{self.prefix}_{name}" for name in _API.split())
@@ -80,6 +86,10 @@ class CNames:
     def member(self, element: sct.Plant | sct.DiscreteVariable | sct.Input) -> str:
         """The member of the state (a plant's location, a variable) or of the inputs: `component_LidarSensor`."""
         return self._members[element]
+
+    def setting(self, duration: sct.Duration) -> str:
+        """The member of the settings: `pause_ms`."""
+        return self._settings[duration]
 
     def of(self, declared: engine.StateVariable | engine.Input) -> str:
         """The member for what an engine model keeps."""

@@ -252,6 +252,12 @@ class Node:
             (known.name, self._type(parameter.type), self._names.variable(parameter))
             for parameter, known in model_parameters(graph).items()
         ]
+        #: The times that these set: where the node keeps the parameter, its unit in milliseconds, the engine's setting.
+        self.durations = [
+            {"place": self._names.variable(parameter), "unit": duration.unit, "member": self._names.c.setting(duration)}
+            for parameter in graph.parameters
+            for duration in parameter.durations
+        ]
         self.subscriptions = [self._subscription(subscription) for subscription in graph.subscriptions]
         self.publishers = [self._publisher(publisher) for publisher in graph.publishers]
         self.services = [self._client(client, None, None) for client in graph.serviceClients]

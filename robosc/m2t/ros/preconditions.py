@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -14,6 +15,7 @@ from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph
 from robosc.metamodel.places import place
 from robosc.metamodel.reflection import tree
+from robosc.semantics.parameters import controller_parameters, layer_parameters, model_parameters
 from robosc.semantics.typing import DOUBLE, infer
 
 if TYPE_CHECKING:
@@ -31,6 +33,8 @@ _NAMESPACE = re.compile(r"/?[A-Za-z][A-Za-z0-9_]*(/[A-Za-z][A-Za-z0-9_]*)*")
 _FILE = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.+-]*(/[A-Za-z0-9_][A-Za-z0-9_.+-]*)*")
 _FIELD = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 _TOPIC = re.compile(r"(/_*)?[A-Za-z][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*")
+#: Parameters that every node has, by version of ROS.
+_OWN_PARAMETERS = {1: ("log_level",), 2: ("use_sim_time", "start_type_description_service")}
 #: What would end a string, or mean something in it, where the build tools copy it into CMake code.
 _RISKY = re.compile(r'["\\$;\n\r]')
 
@@ -45,6 +49,7 @@ def preconditions(models: Models, configuration: Configuration, kind: str, ros: 
         message = "there is no ROS graph beside this model: generate from the .rscd or the .rosgraph.xmi"
         return [Diagnostic(models.sct.name, START, Severity.ERROR, RULE, message)]
     found = [*engine_preconditions(models.sct), *_names(graph), *_types(graph)]
+    found += _parameters(graph, configuration, kind, ros)
     if kind == "controller":
         name = configuration.package_name(graph)
         return [*found, *_package(graph, configuration, name), *_settings(graph, configuration)]
@@ -91,6 +96,20 @@ def _names(graph: rosgraph.RosGraph) -> Iterator[Diagnostic]:
     for element, name in _fields(graph):
         if not _FIELD.fullmatch(name):
             yield _error(element, f'"{name}" is no name of a field in ROS')
+
+
+def _parameters(graph: rosgraph.RosGraph, configuration: Configuration, kind: str, ros: int) -> Iterator[Diagnostic]:
+    """Parameters of the model whose name the node needs itself, or whose numbers ROS can't hold."""
+    declared = (layer_parameters if kind == "layer" else controller_parameters)(graph, configuration, "")
+    names = Counter([*_OWN_PARAMETERS[ros], *(parameter.name for parameter in declared)])
+    for element, parameter in model_parameters(graph).items():
+        if names[parameter.name] > 1:
+            yield _error(element, f"the node has a parameter {parameter.name} of its own", "give it another name")
+        if ros == 1 and isinstance(parameter.default, int) and parameter.bounds is not None:
+            low, high = parameter.bounds
+            if low < -(2**31) or high >= 2**31:
+                message = f"{parameter.name} may be set to {low}..{high}, and parameters of ROS 1 have 32 bits"
+                yield _error(element, message, "narrow its range")
 
 
 def _types(graph: rosgraph.RosGraph) -> Iterator[Diagnostic]:

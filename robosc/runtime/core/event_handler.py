@@ -11,6 +11,7 @@ from robosc.runtime.core.event_log import EventLog, ReceivedData
 from robosc.runtime.core.node_data import NodeData
 from robosc.runtime.core.reports import StateReporter, Throttle
 from robosc.runtime.core.times import Times
+from robosc.semantics.durations import set_milliseconds
 from robosc.semantics.messages import receptions
 from robosc.semantics.operators import UnreadableError
 from robosc.semantics.parameters import model_parameters
@@ -75,7 +76,10 @@ class EventHandler:
         """Takes the values of parameters that the model declares, by their names on the robot; never within a batch."""
         for name, value in values.items():
             if name in self._parameters:
-                self._data.variables[self._parameters[name]] = value
+                parameter = self._parameters[name]
+                self._data.variables[parameter] = value
+                for duration in parameter.durations:
+                    self._control.timers.set_duration(duration, set_milliseconds(float(value), duration.unit))
 
     def log_to(self, log: EventLog) -> None:
         """Has the event log written there; before the start."""

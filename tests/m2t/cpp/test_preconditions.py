@@ -18,7 +18,7 @@ ROBOT = """\
 robot %(robot)s {
   interface odometry use %(type)s from %(package)s
   datatype object Odometry { %(field)s: double }
-
+  %(set)s
   component Base {
     outgoing message where with identifier: "%(topic)s", type: Odometry links odometry
     %(more)s
@@ -37,6 +37,7 @@ GOOD = {
     "field": "x",
     "topic": "/base/odometry",
     "more": "",
+    "set": "",
 }
 
 
@@ -83,6 +84,12 @@ def test_nothing_against_a_good_model(tmp_path: Path) -> None:
         (
             {"more": 'incoming message tell with identifier: "base/odometry", type: boolean'},
             'cart.rscd:7: "base/odometry" is a topic of nav_msgs/Odometry already, and can\'t be one of std_msgs/Bool',
+        ),
+        ({"set": "parameter period_ms: boolean = true"}, "cart.rscd:4: the node has a parameter period_ms of its own"),
+        ({"set": "parameter log_level: boolean = true"}, "cart.rscd:4: the node has a parameter log_level of its own"),
+        (
+            {"set": "parameter far: integer(0..2147483648) = 1"},
+            "cart.rscd:4: far may be set to 0..2147483648, and parameters of ROS 1 have 32 bits",
         ),
     ],
 )

@@ -52,6 +52,17 @@ static %(p)s_event event(void)
     return (%(p)s_event)number;
 }
 
+static void set(%(p)s_supervisor *robot)
+{
+    unsigned value;
+    int number;
+    if (scanf(" %%d %%u", &number, &value) != 2) abort();
+    switch (number) {
+%(settings_set)s
+    default: (void)robot; abort();
+    }
+}
+
 static void input(%(p)s_supervisor *robot)
 {
     long long value;
@@ -74,6 +85,7 @@ int main(int arguments, char **argument)
     %(p)s_init(&robot, %(chosen)s, &hooks%(now)s);
     while (scanf(" %%19s", command) == 1) {
         if (strcmp(command, "input") == 0) { input(&robot); continue; }
+        if (strcmp(command, "set") == 0) { set(&robot); continue; }
         if (strcmp(command, "withhold") == 0) { %(p)s_event e = event(); withheld[e] = !withheld[e]; continue; }
         if (strcmp(command, "now") == 0) { if (scanf(" %%u", &now) != 1) abort(); continue; }
         printf("%%s:", command);
@@ -125,6 +137,10 @@ def program(model: sct.SupervisoryControlModel) -> str:
         "p": names.prefix,
         "u": names.macro,
         "state": "\n".join(f"        {value}" for value in values),
+        "settings_set": "\n".join(
+            f"    case {number}: robot->settings.{names.setting(duration)} = value; break;"
+            for number, duration in enumerate(model.durations)
+        ),
         "inputs": "\n".join(
             f"    case {number}: {member} = (__typeof__({member}))value; break;" for number, member in enumerate(inputs)
         ),

@@ -15,6 +15,7 @@ from tests.m2t.supervisor.driver import build, run
 
 pytestmark = pytest.mark.build
 
+CRUISE = Path(__file__).parents[2] / "runtime" / "cruise.rscd"
 GUARD = Path(__file__).parents[2] / "runtime" / "guard.rscd"
 
 
@@ -50,6 +51,19 @@ def test_a_time_that_goes_back_starts_all_times_anew(tmp_path: Path) -> None:
     script = ["now 200", "tick", f"now {2**32 - 5}", "tick", "expire"]
     lines = run(build(made(GUARD), tmp_path), script, "100")
     assert [line.split("; ")[1].split(";")[0] for line in lines] == ["400", "500", "500"]
+
+
+@pytest.mark.parametrize(("length", "expired"), [(None, 60_000), (70, 70)])
+def test_the_struct_says_how_long_a_time_is_that_is_set_on_the_robot(
+    tmp_path: Path, length: int | None, expired: int
+) -> None:
+    """The C supervisor takes such durations in its struct, and has no other parameter."""
+    model = made(CRUISE)
+    assert [duration.parameter for duration in model.durations] == ["Lamp.pause", "Lamp.pause"]
+    script = [] if length is None else [f"set 0 {length}"]
+    script += ["begin", "perform message_range.u_response", "end"]
+    line = run(build(model, tmp_path), script)[-1]
+    assert line.split("; ")[1].split(";")[0] == str(expired)
 
 
 def test_without_times_nothing_is_added() -> None:

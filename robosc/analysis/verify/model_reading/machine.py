@@ -95,9 +95,12 @@ class Restriction(NamedTuple):
 
 
 class Timer(NamedTuple):
-    """A time in milliseconds, the location in which it runs, if in one, and the messages that start it anew."""
+    """A time, the location in which it runs, if in one, and the messages that start it anew.
 
-    milliseconds: int
+    Its length is in milliseconds, or a parameter and how many milliseconds one of it is.
+    """
+
+    length: int | tuple[str, int]
     location: str | None
     without: frozenset[EventName]
 

@@ -132,6 +132,13 @@ class Names:
         """The value of a constant expression; that of an enum is a Literal."""
         return evaluate(self.written_out(expression, place), self._meanings.__getitem__)
 
+    def parameter(self, expression: ex.Expression, place: Environment) -> str | None:
+        """How the parameter that an expression is, without anything else, is named on the robot; None: it is none."""
+        if not isinstance(expression, robosc.Access) or not isinstance(expression.item, robosc.Parameter):
+            return None
+        owner = f"{self._meant(expression.component, place).name}." if _is_member(expression.item) else ""
+        return f"{owner}{expression.item.name}"
+
     def domain(self, declared: robosc.DataType, place: Environment) -> Domain | None:
         """The values of a type; None where there is no end of them."""
         if isinstance(declared, robosc.BooleanDataType):

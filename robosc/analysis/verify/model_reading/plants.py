@@ -97,7 +97,9 @@ class _Reading:
         if timer is None:
             return None
         without = frozenset(map(self.name, timer.without))
-        return Timer(timer.milliseconds, None if timer.location is None else timer.location.name, without)
+        duration = timer.duration
+        length = timer.milliseconds or 0 if duration is None else (duration.parameter, duration.unit)
+        return Timer(length, None if timer.location is None else timer.location.name, without)
 
     def meaning(self, reference: ex.Expression) -> Meaning:
         match reference:

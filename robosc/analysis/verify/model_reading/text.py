@@ -214,9 +214,12 @@ class _Reading:
             self.machine.events[name].participants.append(self.reaction(name, ordered, instance, ignored))
 
     def timer(self, transition: robosc.TimedTransition, where: str | None, instance: Instance) -> Timer:
-        length = self.names.constant(transition.duration, Environment(instance, instance.arguments))
-        exact = Fraction(length) * _UNITS[transition.unit]
         without = frozenset(self.of(message, "u_response", instance) for message in transition.without)
+        environment, unit = Environment(instance, instance.arguments), _UNITS[transition.unit]
+        parameter = self.names.parameter(transition.duration, environment)
+        if parameter is not None:
+            return Timer((parameter, unit), where, without)
+        exact = Fraction(self.names.constant(transition.duration, environment)) * unit
         return Timer(int(exact + Fraction(1, 2)), where, without)
 
     def reaction(

@@ -96,6 +96,11 @@ inline double magnitude(double a) { return std::fabs(a); }
 inline double smaller(double a, double b) { return b < a || std::isnan(a) ? b : a; }
 inline double larger(double a, double b) { return b > a || std::isnan(a) ? b : a; }
 
+/// A time in milliseconds that is set in units of so many.
+inline std::uint32_t duration_ms(double value, double unit) {
+  return static_cast<std::uint32_t>(std::floor(value * unit + 0.5));
+}
+
 /// How many characters a text in UTF-8 has.
 inline Integer size_of(const std::string& text) {
   return std::count_if(text.begin(), text.end(), [](char byte) { return (byte & 0xC0) != 0x80; });

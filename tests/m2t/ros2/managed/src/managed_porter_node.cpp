@@ -480,6 +480,7 @@ class Controller : public rclcpp_lifecycle::LifecycleNode {
         std::chrono::milliseconds(parameter(*this, "retry_ms", 1000, 1, 86400000,
         "From the failure of a service or action to its reset."));
 
+    data_ = decltype(data_)();
     porter_hooks hooks = {};
     hooks.context = this;
     hooks.before = [](void* self, porter_event event) { return static_cast<Controller*>(self)->before(event); };
@@ -488,7 +489,6 @@ class Controller : public rclcpp_lifecycle::LifecycleNode {
       RCLCPP_ERROR(static_cast<Controller*>(self)->get_logger(), "internal transitions follow each other without end");
     };
     porter_init(&supervisor_, &settings, &hooks);
-    data_ = decltype(data_)();
     withheld_.clear();
 
     monitor_.emplace(*this, guard_);
