@@ -107,7 +107,7 @@ def _instructions(found: Sequence[Results]) -> str:
                 machine["title"],
                 machine["events"],
                 *(number for what in ("perform", "batch", "tick") for number in _count(machine[what])),
-                "-" if machine["idle"] is None else machine["idle"],
+                "-" if machine["idle"] is None else f"{machine['idle']:,}",
                 machine["steps"]["most"],
                 f"{machine['bound']:,}",
             ]
@@ -117,7 +117,7 @@ def _instructions(found: Sequence[Results]) -> str:
 
 
 def _count(count: Results | None) -> list[str]:
-    return ["-", "-"] if count is None else [f"{count['mean']:.0f}", f"{count['most']:,}"]
+    return ["-", "-"] if count is None else [f"{count['mean']:,.0f}", f"{count['most']:,}"]
 
 
 def _bytes(found: Sequence[Results]) -> str:
