@@ -120,7 +120,10 @@ def _part(whole: ex.Expression, found: Type, wanted: Type) -> str:
     if not isinstance(found, ObjectType):
         return "leave it out: this event carries no data"
     properties = list(found.definition.properties)
-    fitting = [part for part in properties if declared_type(part.type) == wanted] or properties
+    fitting = [part for part in properties if declared_type(part.type) == wanted]
+    if isinstance(wanted, ObjectType) and not fitting:
+        return f"declare what gives the data and what takes it with one type, such as `{found.written}`"
+    fitting = fitting or properties
     return (
         f"read one of its properties, such as `{_text(whole)}.{written(fitting[0].name)}`"
         if fitting

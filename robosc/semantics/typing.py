@@ -15,6 +15,7 @@ from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
 from robosc.metamodel import rosgraph, sct
 from robosc.semantics.communication import data_type, event, sent_type
+from robosc.semantics.naming import written
 from robosc.semantics.operators import CONDITIONS, Operator, Rule, operator_of
 from robosc.semantics.walks import fold
 
@@ -63,6 +64,14 @@ class ObjectType:
         owner = unit.eContainer()
         parts = ("requestType", "responseType", "feedbackType")
         return unit.package, unit.rosType, next((part for part in parts if getattr(owner, part, None) is unit), "")
+
+    @property
+    def written(self) -> str:
+        """How a model names it where the name could mean another object, too."""
+        unit: Any = self.definition.eContainer()
+        if isinstance(unit, rsc.InterfaceTypeReference):
+            return f"{unit.package}/{unit.rosType}"
+        return written(self.definition.name)
 
     def __str__(self) -> str:
         return f"object {self.definition.name}"

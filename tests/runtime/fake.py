@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -34,6 +33,17 @@ class Record:
     def plain(self) -> dict[str, Any]:
         """The fields that were set, as nested dicts."""
         return {name: value.plain() if isinstance(value, Record) else value for name, value in vars(self).items()}
+
+
+class FieldTypes(dict[str, str]):
+    """The types of the fields that a message has; others get theirs when they are set."""
+
+    def __init__(self, declared: dict[str, str]) -> None:
+        super().__init__()
+        self._declared = declared
+
+    def __missing__(self, name: str) -> str:
+        return self._declared.get(name, "float64")
 
 
 @dataclass
@@ -76,7 +86,10 @@ class FakePort:
         return f"{interface.package}/{interface.type}"
 
     def wire_types(self, message: Record) -> dict[str, str]:
-        return defaultdict(lambda: "float64", self.types)
+        types = FieldTypes(self.types)
+        for name, value in vars(message).items():
+            types[name] = self.types.get(name, "fake_msgs/Object" if isinstance(value, Record) else "float64")
+        return types
 
     def publish(self, publisher: rosgraph.Publisher, message: Record) -> None:
         self.sent.append((publisher.topic, message.plain()))

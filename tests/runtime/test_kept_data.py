@@ -95,6 +95,22 @@ def test_an_index_past_the_end_withholds_the_command(world: World) -> None:
         assert [text for text in world.port.said if "withheld" in text][-1] == f"go is withheld: {fault}"
 
 
+def test_what_is_not_finite_is_not_handed_on(world: World) -> None:
+    """A double that is not a finite number is never sent: also inside of what is handed on as it came."""
+    for bad in (float("nan"), float("-inf")):
+        hear_route(world, 1.0, 2.0, bad)
+        world.hear("next", data=0)
+        world.wait(6)
+        assert sent(world, "/go") == sent(world, "/again") == []
+        withheld = [text for text in world.port.said if "withheld" in text]
+        assert withheld[-2:] == [
+            "go is withheld: its rest would not be finite",
+            "again is withheld: its data would not be finite",
+        ]
+    hear_route(world, 1.0, 2.0, 3.0)
+    assert sent(world, "/go")
+
+
 def test_expressions_read_what_is_kept(world: World) -> None:
     hear_route(world, 1.0, 6.0, speeds=(0.5,))
     world.hear("next", data=1)

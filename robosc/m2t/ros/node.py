@@ -32,6 +32,9 @@ from robosc.semantics.walks import parts
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+#: The method that writes a field as it came.
+_HAND_ON = "hand_on"
+
 
 @dataclass(frozen=True)
 class Assignment:
@@ -284,6 +287,14 @@ class Node:
         return [*self.services, *self.actions]
 
     @property
+    def hands_on(self) -> bool:
+        """Whether it sends objects as they came."""
+        messages = [message for publisher in self.publishers for message in publisher.messages]
+        messages += [client.request for client in self.clients]
+        fields = [field for message in messages for given in message.alternatives for field in given.fields]
+        return any(method == _HAND_ON for method, _, _ in fields)
+
+    @property
     def interfaces(self) -> list[rosgraph.Interface]:
         """The types in use, each once, by package and name."""
         used: list[Subscription | Publisher | Client] = [*self.subscriptions, *self.publishers, *self.clients]
@@ -490,7 +501,7 @@ class Node:
             self._names.c.enumerator(sending.event),
             self._reasons.of(sending.event),
             [self._alternative(provided) for provided in sending.alternatives],
-            reads or any(infer(value) in {DOUBLE, ArrayType(DOUBLE)} for value in values),
+            reads or any(_may_be_infinite(field) for given in sending.alternatives for field in given.fields),
             reads,
             [".".join(path) for path in paths_set(sending)] if sending.onChange else None,
             self._handler(sending.event) if self._reactions(sending.event) else None,
@@ -507,7 +518,7 @@ class Node:
         """What writes a field, its name, its value."""
         name, value, kind = ".".join(assignment.path), assignment.value, assignment.type
         if holds_objects(kind) and isinstance(value, rosgraph.WireAccess):
-            return "hand_on", name, self._printer(value)
+            return _HAND_ON, name, self._printer(value)
         if isinstance(value, rosgraph.ArrayLiteral) and isinstance(kind, rosgraph.ArrayType):
             element = kind.element
             assert element is not None
@@ -517,6 +528,11 @@ class Node:
 
     def _value(self, value: ex.Expression, kind: ex.Type) -> str:
         return self._printer.integer(value, kind) if isinstance(kind, ex.IntegerType) else self._printer(value)
+
+
+def _may_be_infinite(field: rosgraph.FieldAssignment) -> bool:
+    """Whether its value may hold a double, which may be no finite number."""
+    return holds_objects(field.type) or infer(field.value) in {DOUBLE, ArrayType(DOUBLE)}
 
 
 def _both(place: str | None, guard: str | None) -> str | None:

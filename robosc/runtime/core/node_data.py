@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 #: What whole numbers of a node are kept in.
 LEAST, MOST = INTEGER_RANGES["int64"]
 _FLOATS = {"float32": "f", "float": "f", "float64": "d", "double": "d"}
+#: An array's type, and of it the type of its elements: `float64[]`, in ROS 2 `sequence<double, 9>`.
+_ELEMENT = re.compile(r"(?:sequence<)?([\w/]+).*")
 #: ROS 2 calls its `byte` an octet.
 _RANGES = {**INTEGER_RANGES, "octet": INTEGER_RANGES["uint8"]}
 
@@ -267,14 +269,34 @@ def fill(port: ControllerPort, message: Message, path: Sequence[str], value: Val
 
 
 def hand_on(port: ControllerPort, message: Message, path: Sequence[str], data: Any) -> None:
-    """Sets a field to an object, or to an array of objects, as it came in; no path: the whole message."""
+    """Sets a field to an object, or to an array of objects, as it came in; no path: the whole message.
+
+    Raises NotFiniteError where a number in it is not finite.
+    """
     owner = message
     if data is BLANK:
         return
+    if not _is_finite(port, data):
+        raise NotFiniteError(path or ["data"])
     for name in path[:-1]:
         owner = getattr(owner, name)
-    for name in path[-1:] or port.wire_types(message):
+    for name in path[-1:] or port.wire_types(data):
         setattr(owner, name, deepcopy(data if path else getattr(data, name)))
+
+
+def _is_finite(port: ControllerPort, data: Any) -> bool:
+    """Whether an object, or an array of objects, holds finite numbers only."""
+    if data is BLANK:
+        return True
+    if isinstance(data, Sequence):
+        return all(_is_finite(port, element) for element in data)
+    for name, kind in port.wire_types(data).items():
+        value, element = getattr(data, name), _ELEMENT.sub(r"\1", kind)
+        if element in _FLOATS and not all(map(math.isfinite, [value] if kind == element else value)):
+            return False
+        if "/" in element and not _is_finite(port, value):
+            return False
+    return True
 
 
 def _fill_array(owner: Message, kind: str, values: Sequence[Value], path: Sequence[str]) -> Json:

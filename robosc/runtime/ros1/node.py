@@ -199,6 +199,8 @@ class Ros1Node(Node):
         return made
 
     def wire_types(self, message: Message) -> Mapping[str, str]:
+        if isinstance(message, genpy.TVal):
+            return {}  # a time tells no types
         return dict(zip(message.__slots__, message._slot_types, strict=True))  # noqa: SLF001  # as genpy has it
 
     def _stamp_now(self) -> Any:

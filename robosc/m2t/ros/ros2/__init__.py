@@ -49,6 +49,8 @@ class Ros2:
         if node.actions:
             libraries.append("rclcpp_action")
             types = types | {"action_msgs"}
+        if node.hands_on:
+            libraries.append("rosidl_typesupport_introspection_cpp")
         if configuration.lifecycle:
             libraries.append("rclcpp_lifecycle")
             started.append("lifecycle_msgs")

@@ -15,6 +15,24 @@
 namespace robosc {
 inline namespace v1 {
 
+template <typename Data, typename = void>
+constexpr bool is_array_v = false;
+template <typename Data>
+constexpr bool is_array_v<Data, std::void_t<typename Data::const_iterator>> = true;
+
+/// Tells the message types of ROS, of which `robosc_ros1/finite.hpp` or `robosc_ros2/finite.hpp` says what is finite.
+struct OfRos {};
+
+/// Whether a message, or an array of messages, holds finite numbers only.
+template <typename Data>
+bool all_finite(const Data& data) {
+  if constexpr (is_array_v<Data>) {
+    return std::all_of(data.begin(), data.end(), [](const auto& element) { return finite(element, OfRos{}); });
+  } else {
+    return finite(data, OfRos{});
+  }
+}
+
 /// Fills the fields of a message, and remembers the first one whose value is no finite number.
 class FieldWriter {
  public:
@@ -45,8 +63,9 @@ class FieldWriter {
 
   /// Sets a field, or the whole data, to what came in; it is not noted.
   template <typename Field, typename Data>
-  void hand_on(const char*, Field& field, const Data& data) {
+  void hand_on(const char* path, Field& field, const Data& data) {
     store(field, data);
+    if (!all_finite(field) && fault_ == nullptr) fault_ = path;
   }
 
   template <typename Field, typename Value>

@@ -1,0 +1,42 @@
+// Whether a message that is handed on as it came holds finite numbers only.
+#ifndef ROBOSC_ROS1_FINITE_HPP_
+#define ROBOSC_ROS1_FINITE_HPP_
+
+#include <cmath>
+#include <type_traits>
+
+#include <ros/message_traits.h>
+#include <ros/serialization.h>
+
+#include "robosc/fields.hpp"
+
+namespace robosc {
+inline namespace v1 {
+
+/// Visits a message as a stream does that writes it.
+struct FiniteNumbers {
+  bool found = true;
+
+  template <typename Part>
+  void next([[maybe_unused]] const Part& part) {
+    if constexpr (std::is_floating_point_v<Part>) {
+      found = found && std::isfinite(part);
+    } else if constexpr (ros::message_traits::IsMessage<Part>::value) {
+      ros::serialization::Serializer<Part>::template allInOne<FiniteNumbers, const Part&>(*this, part);
+    } else if constexpr (is_array_v<Part>) {
+      for (const auto& element : part) next(element);
+    }
+  }
+};
+
+template <typename Message>
+bool finite(const Message& message, OfRos) {
+  FiniteNumbers numbers;
+  numbers.next(message);
+  return numbers.found;
+}
+
+}  // namespace v1
+}  // namespace robosc
+
+#endif  // ROBOSC_ROS1_FINITE_HPP_
