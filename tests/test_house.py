@@ -18,6 +18,7 @@ PAGE = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
 #: What every room stands on. What is not named in this file is on the ground, too, and may import nothing but ground.
 ROOMS = {
     "language",
+    "cif",
     "checks",
     "m2m",
     "synthesis",
@@ -37,6 +38,7 @@ ALLOWED = {
     "": ROOMS - {"cli", "__main__"},
     "__main__": {"cli"},
     "analysis": {"synthesis", "engine", "m2t"},
+    "cif": {"language"},
     "runtime": {"engine"},
     "node_tests": {"engine", "runtime", "m2t"},
     "simulation": {"engine", "runtime"},
@@ -55,7 +57,7 @@ LIBRARIES = {
     "action_msgs": {"runtime"},
     "actionlib": {"runtime"},
     "actionlib_msgs": {"runtime"},
-    "arpeggio": {"language"},
+    "arpeggio": {"language", "cif"},
     "click": {"cli"},
     "genpy": {"runtime"},
     "jinja2": {"diagrams", "m2t"},
@@ -76,7 +78,7 @@ LIBRARIES = {
     **{f"rosidl_typesupport_{name}": {"runtime"} for name in ("c", "fastrtps_c", "introspection_c")},
     "rosidl_generator_type_description": {"runtime"},
     "numpy": {"runtime"},
-    "textx": {"language", "analysis"},
+    "textx": {"language", "analysis", "cif"},
 }
 
 

@@ -6,7 +6,8 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from robosc.analysis.paths import Path, TraceStep, deciding, shortest_path
-from robosc.synthesis.decoding import Value, pick, value
+from robosc.synthesis.decoding import Value, value
+from robosc.synthesis.encoding import pick
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -12,7 +12,8 @@ from robosc.analysis.blocking import BlockingCounterexample, blocking_counterexa
 from robosc.analysis.paths import shortest_path
 from robosc.metamodel import sct
 from robosc.semantics.roles import plant_of, provide_numbers
-from robosc.synthesis.decoding import Value, pick, value
+from robosc.synthesis.decoding import Value, value
+from robosc.synthesis.encoding import pick
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence

@@ -6,7 +6,8 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from robosc.semantics.roles import event_name
-from robosc.synthesis.decoding import Value, pick, text, value
+from robosc.synthesis.decoding import Value, text, value
+from robosc.synthesis.encoding import pick
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence

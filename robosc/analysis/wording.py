@@ -50,6 +50,9 @@ def words(event: sct.Event) -> str:
         number = provide_number(event)
         said = f"choice of `provide` {number} for {owner}" if number else f"choice of no data for {owner}"
         where = _where(event) if number else ""
+    elif event.kind in (sct.EventKind.plain, sct.EventKind.input):
+        said = f"{'change of ' * (event.kind == sct.EventKind.input)}`{event_name(event)}`"
+        where = ""
     else:
         said = _EVENTS[event.kind].format(owner)
         said += f" after {timer_text(event.timer)}" if event.timer else ""

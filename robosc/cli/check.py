@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 def command(models: Sequence[str], form: str, paths: Paths) -> None:
     """Read robots and libraries, resolve their names and say what breaks a rule of the language.
 
-    MODEL is a .rscd file, or an .xmi file of one of the metamodels. Exit status: 0 no errors, 1 errors.
+    MODEL is a .rscd file, a .cif file, or an .xmi file of one of the metamodels. Exit status: 0 no errors, 1 errors.
 
     \b
     Examples:

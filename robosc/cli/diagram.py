@@ -96,7 +96,7 @@ def _graph(path: str, kind: str, paths: Paths, report: Report) -> Graph:
         if not isinstance(base, rsc.Base):
             raise CallError(f"{path} says nothing about components: --kind plants draws what it holds")
         return behaviour_graph(base)
-    models = read_models(path, paths, report)
+    models = read_models(path, paths, report, cif=True)
     if kind == "plants":
         return plants_graph(models.sct)
     if models.rosgraph is None:

@@ -78,7 +78,7 @@ def command(
     if state is not None and event is None:
         raise click.UsageError("--state needs --event")
     with Report(aside=True) as report:
-        plants = read_models(model, paths, report).sct
+        plants = read_models(model, paths, report, cif=True).sct
         with progress("exploring what the robot can do"):
             answer = explored(plants, emptiness if why_empty else _question(plants, event, state, why_never))
         if answer is None and not why_empty:

@@ -49,6 +49,12 @@ def read(path: str, paths: Paths, report: Report) -> Root | None:
         if isinstance(root, engine.EngineModel):
             root = root.model  # From which it is made again.
         findings = []
+    elif path.endswith(".cif"):
+        from robosc.cif import read as read_cif
+
+        specification = read_cif(path)
+        root, findings = specification.model, specification.findings
+        report.add(findings, specification.texts)
     else:
         reading = read_text(path, paths.libraries, interfaces)
         root, findings = reading.base, reading.findings
@@ -86,11 +92,13 @@ def read_configuration(model: str, chosen: str | None, report: Report) -> Config
     return config.read(file)
 
 
-def read_models(path: str, paths: Paths, report: Report) -> Models:
+def read_models(path: str, paths: Paths, report: Report, *, cif: bool = False) -> Models:
     """The sct model in a file, or made from what it holds, and what else there is about the robot.
 
-    Ends the report where there are errors. Raises CallError for a library.
+    Ends the report where there are errors. Raises CallError for a library, and for CIF where the call does not take it.
     """
+    if path.endswith(".cif") and not cif:
+        raise CallError(f"{path} is CIF: so far `check`, `synthesize`, `explain` and `diagram` take it")
     root = read(path, paths, report)
     if isinstance(root, rsc.Library):
         raise CallError(f"{path} holds a library: it has no supervisor of its own, a robot that imports it has")

@@ -39,9 +39,9 @@ if TYPE_CHECKING:
 def command(model: str, as_json: bool, megabytes: int, paths: Paths) -> None:
     """Synthesize the supervisor of a robot: its states, and when it allows what.
 
-    MODEL is a .rscd file with a robot, or an .xmi file that `transform --to xmi` wrote. A guard says where the
-    supervisor allows an event, beyond what the robot itself forbids; what no requirement asks for and synthesis had to
-    add is shown apart. Of each requirement it is said in how many states it matters: where it forbids what the robot
+    MODEL is a .rscd file with a robot, a .cif file, or an .xmi file that `transform --to xmi` wrote. A guard says where
+    the supervisor allows an event, beyond what the robot itself forbids; what no requirement asks for and synthesis had
+    to add is shown apart. Of each requirement it is said in how many states it matters: where it forbids what the robot
     could do; of `never` and `always`, how many states they forbid. --json lists all events, those for the data to send
     and those from the robot, too, and tells what synthesis cost.
 
@@ -53,7 +53,7 @@ def command(model: str, as_json: bool, megabytes: int, paths: Paths) -> None:
     Exit status: 0 done, 1 errors in the model, 2 a wrong call, 3 no supervisor exists.
     """
     with Report(aside=True) as report:
-        plants = read_models(model, paths, report).sct
+        plants = read_models(model, paths, report, cif=True).sct
         try:
             with synthesizing() as statistics:
                 supervision = supervise(plants, memory=megabytes << 20, statistics=statistics, weigh=True)

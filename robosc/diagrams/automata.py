@@ -152,9 +152,10 @@ class _Plant(SctPrinter):
         ]
         return _automaton(
             key,
-            self.plant.name,
+            self.plant.name or "specification",  # What a CIF specification has outside of groups and automata.
             [
-                f"{variable.name}: {_type(variable.type)} = {self(variable.initial)}"
+                f"{variable.name}: {_type(variable.type)}"
+                + (f" = {self(variable.initial)}" if variable.initial else "")
                 for variable in self.plant.variables
             ],
             locations,

@@ -15,10 +15,12 @@ class SupervisoryControlModel(expression.NamedElement):
     properties: MutableSequence[Property]
     supervisor: Supervisor | None
     durations: MutableSequence[Duration]
-    def __init__(self, *, enumerations: Iterable[expression.Enumeration] = ..., plants: Iterable[Plant] = ..., requirements: Iterable[Requirement] = ..., invariants: Iterable[StateInvariant] = ..., properties: Iterable[Property] = ..., supervisor: Supervisor | None = ..., durations: Iterable[Duration] = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
+    initialPredicates: MutableSequence[expression.Expression]
+    markerPredicates: MutableSequence[expression.Expression]
+    def __init__(self, *, enumerations: Iterable[expression.Enumeration] = ..., plants: Iterable[Plant] = ..., requirements: Iterable[Requirement] = ..., invariants: Iterable[StateInvariant] = ..., properties: Iterable[Property] = ..., supervisor: Supervisor | None = ..., durations: Iterable[Duration] = ..., initialPredicates: Iterable[expression.Expression] = ..., markerPredicates: Iterable[expression.Expression] = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class Plant(expression.NamedElement):
-    """An automaton with variables. Of the edges of a location with one event, the guards exclude each other."""
+    """An automaton with variables. Of the edges of a location with one event, the guards exclude each other; those of an uncontrollable event of a model from CIF may overlap, and then any of them may be taken."""
     kind: PlantKind
     origin: str | None
     topic: str | None
@@ -48,7 +50,7 @@ class Event(expression.NamedElement):
     def __init__(self, *, controllable: bool | None = ..., kind: EventKind | None = ..., inputs: Iterable[Input] = ..., timer: Timer | None = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class EventKind:
-    """trigger, cancel: sent by the controller; response, error, feedback: come from the robot; reset, tau: silent; data: which provided data goes out; timeout: a time is up."""
+    """trigger, cancel: sent by the controller; response, error, feedback: come from the robot; reset, tau: silent; data: which provided data goes out; timeout: a time is up; plain: an event of a model from CIF, which stands for no communication; input: the environment gives an input variable of CIF another value."""
     name: str
     trigger: ClassVar[EventKind]
     response: ClassVar[EventKind]
@@ -59,6 +61,8 @@ class EventKind:
     tau: ClassVar[EventKind]
     data: ClassVar[EventKind]
     timeout: ClassVar[EventKind]
+    plain: ClassVar[EventKind]
+    input: ClassVar[EventKind]
 
 class Timer(expression.Located):
     """A time that runs while a component is in a location, or always, and what starts it anew. When it is up, its event happens once. To synthesis the event is possible at any time."""
@@ -87,7 +91,7 @@ class Input(expression.NamedElement):
 class DiscreteVariable(expression.NamedElement):
     """A variable of a plant."""
     type: expression.Type
-    initial: expression.Expression
+    initial: expression.Expression | None
     def __init__(self, *, type: expression.Type | None = ..., initial: expression.Expression | None = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class Location(expression.NamedElement):
@@ -118,7 +122,7 @@ class StatedRequirement(expression.Located):
     def __init__(self, *, name: str | None = ..., text: str | None = ..., source: Place | None = ...) -> None: ...
 
 class Requirement(StatedRequirement):
-    """Restricts a controllable event; with an automaton also an uncontrollable one, which synthesis then keeps from where it is forbidden."""
+    """Restricts a controllable event; with an automaton, or in a model from CIF, also an uncontrollable one, which synthesis then keeps from where it is forbidden."""
     event: Event
     kind: RequirementKind
     condition: expression.Expression
@@ -183,3 +187,7 @@ class InputReference(expression.Expression):
     """The value of an input."""
     input: Input
     def __init__(self, *, input: Input | None = ..., source: Place | None = ...) -> None: ...
+
+class Quotient(expression.BinaryExpression):
+    """How often a positive constant, the right operand, goes into the left one, which is never negative. Models from CIF alone have it."""
+    def __init__(self, *, left: expression.Expression | None = ..., right: expression.Expression | None = ..., source: Place | None = ...) -> None: ...

@@ -13,7 +13,7 @@ from enum import Enum, auto
 from functools import reduce
 from typing import TYPE_CHECKING, Any, TypeAlias, cast
 
-from robosc.metamodel import engine
+from robosc.metamodel import engine, sct
 from robosc.metamodel import expression as ex
 from robosc.semantics.domains import Interval, truth
 
@@ -311,10 +311,18 @@ _OF_ARRAYS = {
 BY_CLASS = {row.metaclass: row for row in OPERATORS} | {
     # Only transformations make these; no text has them.
     ex.DoubleConversion: Operator(ex.DoubleConversion, "", 9, Rule.DOUBLE, as_double, None),
+    sct.Quotient: Operator(
+        sct.Quotient,
+        "div",
+        7,
+        Rule.INTEGER,
+        operator.floordiv,
+        lambda left, right: Interval(left.low // right.low, left.high // right.low),
+    ),
     engine.Remainder: Operator(engine.Remainder, "%", 7, Rule.INTEGER, _remainder, _remainder_in),
 }
 PRECEDENCE = {row.metaclass: row.precedence for row in OPERATORS}
-SYMBOLS = {row.metaclass: row.symbol for row in OPERATORS}
+SYMBOLS = {row.metaclass: row.symbol for row in OPERATORS} | {sct.Quotient: "div"}
 #: What has no operator outside binds tighter than any.
 ATOM = 9
 

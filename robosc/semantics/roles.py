@@ -25,7 +25,7 @@ def plant_of(event: sct.Event) -> sct.Plant:
 
 def event_name(event: sct.Event) -> str:
     """The event with its plant, such as `message_move.c_trigger`; no two events of a model share it."""
-    return f"{plant_of(event).name}.{event.name}"
+    return f"{plant_of(event).name}.{event.name}".removeprefix(".")
 
 
 def provide_number(event: sct.Event) -> int:

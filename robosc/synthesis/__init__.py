@@ -141,6 +141,24 @@ def _refuse_data_of_controllable_events(model: sct.SupervisoryControlModel) -> N
         )
 
 
+def _refuse_overlapping(relations: Sequence[EventRelation]) -> None:
+    """A supervisor allows an event, not one of its edges: those of a controllable event must exclude each other."""
+    edges = [edge for relation in relations if relation.event.controllable for edge in relation.overlapping()]
+    if edges:
+        raise ModelError(
+            [
+                Diagnostic(
+                    *place(edge),
+                    Severity.ERROR,
+                    "nondeterminism",
+                    f"another edge of the controllable event {event_name(edge.event)} can be taken in the same state",
+                    "let their guards exclude each other",
+                )
+                for edge in edges
+            ]
+        )
+
+
 def _solved(model: sct.SupervisoryControlModel, layout: Layout, capacity: int, statistics: Statistics) -> Solution:
     """The solution, with room for so many nodes."""
     statistics.begin_again()
@@ -148,6 +166,7 @@ def _solved(model: sct.SupervisoryControlModel, layout: Layout, capacity: int, s
         diagrams = Diagrams(layout.levels, capacity, statistics)
         encoding = Encoding(layout, diagrams)
         relations = event_relations(model, encoding)
+        _refuse_overlapping(relations)
         plants, moves = steps(plant_moves(relations)), required_moves(relations)
     with statistics.during(Phase.FIXPOINT):
         uncontrolled = reachable(diagrams, plants, encoding.initial, diagrams.true)

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, TypeAlias
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 from robosc.semantics.printing import conjunction, disjunction
-from robosc.synthesis.decoding import Ranges, codes, complement, cost, is_one_of, pick
+from robosc.synthesis.decoding import Ranges, codes, complement, cost, is_one_of
+from robosc.synthesis.encoding import pick
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence

@@ -22,20 +22,6 @@ Ranges: TypeAlias = "list[tuple[int, int]]"
 Value: TypeAlias = bool | int | str
 
 
-def pick(diagram: Diagram, domains: Iterable[Domain]) -> dict[Element, int]:
-    """The codes in one of the diagram's satisfying assignments, always the same: small codes first, from the top."""
-    true = set()
-    while (cofactors := diagram.cofactors()) is not None:
-        high, low = cofactors
-        if not low.satisfiable():
-            true.add(diagram.node_level())
-        diagram = low if low.satisfiable() else high
-    return {
-        domain.element: sum(1 << place for place, level in enumerate(reversed(domain.levels)) if level in true)
-        for domain in domains
-    }
-
-
 def codes(diagram: Diagram, domain: Domain) -> Ranges:
     """The codes for which a function of one domain is true."""
     found: Ranges = []

@@ -83,6 +83,7 @@ class Layout:
         order = variable_order(
             len(elements), [[index[element] for element in edge] for edge in _couplings(model, index)]
         )
+        self.model = model
         self.plants = list(model.plants)
         self.domains: dict[Element, Domain] = {}
         self.levels = 0
@@ -155,6 +156,7 @@ class Encoding:
     def __init__(self, layout: Layout, diagrams: Diagrams) -> None:
         self.layout = layout
         self.diagrams = diagrams
+        self._model = layout.model
         self._codes: dict[tuple[Element, int], Diagram] = {}
         #: Of locations and literals, among those beside them.
         self._places: dict[ex.NamedElement, int] = {}
@@ -183,6 +185,10 @@ class Encoding:
         size = self.layout.domains[element].size
         code = (*self.bits(element), self.diagrams.false)
         return arithmetic.less(code, arithmetic.constant(self.diagrams, size))
+
+    def whole(self, elements: Iterable[Element]) -> Diagram:
+        """Where the bits of all these elements are codes."""
+        return self.diagrams.all_of(map(self.in_domain, dict.fromkeys(elements)))
 
     def between(self, element: Element, first: int, last: int) -> Diagram:
         """Where the element's code is one of first … last."""
@@ -246,28 +252,37 @@ class Encoding:
 
     @cached_property
     def initial(self) -> Diagram:
-        """The initial state."""
-        return self.state(self.initial_codes)
+        """The initial states."""
+        elements = [domain.element for domain in reversed(self.layout.state)]
+        return self._narrowed(self.diagrams.all_of(map(self._starts, elements)), self._model.initialPredicates)
 
     @cached_property
     def all_marked(self) -> Diagram:
-        """The states in which every plant is in a marked location."""
+        """The states in which every plant is in a marked location, and all marker predicates hold."""
         # From the bottom: each conjunction makes the diagram above it anew.
         plants = sorted(self.layout.plants, key=lambda plant: self.layout.domains[plant].levels, reverse=True)
-        return self.diagrams.all_of(map(self.marked, plants))
+        return self._narrowed(self.diagrams.all_of(map(self.marked, plants)), self._model.markerPredicates)
 
     @cached_property
     def initial_codes(self) -> dict[Element, int]:
-        """The code of every element of the state in the initial state."""
-        return {domain.element: self._initial_code(domain.element) for domain in self.layout.state}
+        """The code of every element of the state in an initial state, always the same one."""
+        return pick(self.initial, self.layout.state)
 
-    def _initial_code(self, element: Element) -> int:
+    def _starts(self, element: Element) -> Diagram:
+        """Where an element has a value with which it may start."""
         if isinstance(element, sct.Plant):
-            return next(code for code, location in enumerate(element.locations) if location.initial)
+            initial = (code for code, location in enumerate(element.locations) if location.initial)
+            return self.diagrams.any_of(self.has_code(element, code) for code in initial)
         assert isinstance(element, sct.DiscreteVariable)
-        code = arithmetic.value_of(self.code(element.initial, element))
-        assert code is not None
-        return code
+        if element.initial is None:
+            return self.in_domain(element)
+        return self._same(self.bits(element), self.code(element.initial, element))
+
+    def _narrowed(self, states: Diagram, conditions: Iterable[ex.Expression]) -> Diagram:
+        """Those of some states in which conditions hold."""
+        for condition in conditions:
+            states &= self.holds(condition)
+        return states
 
     def code(self, value: ex.Expression, element: sct.DiscreteVariable) -> Vector:
         """The code that the variable has after it was given the value: an integer saturates at its range."""
@@ -305,8 +320,10 @@ class Encoding:
         kind = type(expression)
         if kind in _ARITHMETIC:
             return _ARITHMETIC[kind](*parts)
-        if isinstance(expression, ex.FunctionCall) and expression.function == "mod":
-            return self._modulo(*parts)
+        if isinstance(expression, ex.FunctionCall):
+            return self._called(expression.function, *parts)
+        if isinstance(expression, sct.Quotient):
+            return self._divided(*parts)[0]
         if kind in _LOGICAL:
             vector: Vector = (_LOGICAL[kind](*(part[0] for part in parts)), self.diagrams.false)
         elif kind in _COMPARISON:
@@ -319,17 +336,35 @@ class Encoding:
         self._vectors[expression] = vector
         return vector
 
-    def _modulo(self, value: Vector, divisor: Vector) -> Vector:
-        """The remainder by a constant: from the sign down, each bit doubles what is left of those above it."""
+    def _called(self, function: str, value: Vector, *others: Vector) -> Vector:
+        """A function of its arguments."""
+        match function:
+            case "mod":
+                return self._divided(value, *others)[1]
+            case "abs":
+                other = arithmetic.negate(value)
+                return arithmetic.choose(arithmetic.less(value, other), other, value)
+        [other] = others
+        least, most = (value, other) if function == "min" else (other, value)
+        return arithmetic.choose(arithmetic.less(least, most), value, other)
+
+    def _divided(self, value: Vector, divisor: Vector) -> tuple[Vector, Vector]:
+        """How often a constant goes into what is not negative, and the remainder of whatever sign.
+
+        From the sign down, each bit doubles what is left of those above it.
+        """
         number = arithmetic.value_of(divisor)
         assert number is not None
         none = arithmetic.constant(self.diagrams, 0)
         *bits, sign = value
         left = arithmetic.choose(sign, arithmetic.constant(self.diagrams, number - 1), none)
+        quotient: list[Diagram] = [self.diagrams.false]
         for bit in reversed(bits):
             doubled = (bit, *left)
-            left = arithmetic.choose(arithmetic.less(doubled, divisor), doubled, arithmetic.subtract(doubled, divisor))
-        return left
+            fits = ~arithmetic.less(doubled, divisor)
+            left = arithmetic.choose(fits, arithmetic.subtract(doubled, divisor), doubled)
+            quotient.insert(0, fits)
+        return tuple(quotient), left
 
     def _atom(self, expression: ex.Expression) -> Vector:
         match expression:
@@ -364,6 +399,20 @@ class Encoding:
         return self._places[element]
 
 
+def pick(diagram: Diagram, domains: Iterable[Domain]) -> dict[Element, int]:
+    """The codes in one of the diagram's satisfying assignments, always the same: small codes first, from the top."""
+    true = set()
+    while (cofactors := diagram.cofactors()) is not None:
+        high, low = cofactors
+        if not low.satisfiable():
+            true.add(diagram.node_level())
+        diagram = low if low.satisfiable() else high
+    return {
+        domain.element: sum(1 << place for place, level in enumerate(reversed(domain.levels)) if level in true)
+        for domain in domains
+    }
+
+
 def _plant(element: Element) -> sct.Plant:
     found: sct.Plant = element if isinstance(element, sct.Plant) else element.eContainer()
     return found
@@ -376,7 +425,7 @@ def _elements(plant: sct.Plant) -> Iterator[Element]:
 
 
 def _couplings(model: sct.SupervisoryControlModel, index: Mapping[Element, int]) -> Iterable[list[Element]]:
-    """Which elements meet: for each event, all that its edges and requirements touch; what each invariant reads."""
+    """Which elements meet: for each event, all that its edges and requirements touch; what each predicate reads."""
     touched: dict[sct.Event, dict[Element, None]] = {}
     for plant in model.plants:
         for edge in edges_of(plant):
@@ -388,7 +437,9 @@ def _couplings(model: sct.SupervisoryControlModel, index: Mapping[Element, int])
                 own.update(dict.fromkeys(referenced(update.value)))
     for requirement in model.requirements:
         touched.setdefault(requirement.event, {}).update(dict.fromkeys(referenced(requirement.condition)))
-    together = [*touched.values(), *(dict.fromkeys(referenced(one.condition)) for one in model.invariants)]
+    conditions = [one.condition for one in model.invariants]
+    conditions += [*model.initialPredicates, *model.markerPredicates]
+    together = [*touched.values(), *(dict.fromkeys(referenced(condition)) for condition in conditions)]
     return [sorted(elements, key=index.__getitem__) for elements in together]
 
 

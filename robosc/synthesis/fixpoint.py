@@ -133,7 +133,7 @@ def supervise(encoding: Encoding, moves: Sequence[Move], violating: Diagram) -> 
         rounds.append(good)
         if not (initial & good).satisfiable():
             return SupervisedStates(rounds, alive, diagrams.false)
-    return SupervisedStates(rounds, alive, reachable(diagrams, steps, initial, good))
+    return SupervisedStates(rounds, alive, reachable(diagrams, steps, initial & good, good))
 
 
 def _level(diagram: Diagram) -> int:

@@ -165,6 +165,20 @@ class EventRelation:
         enabled = encoding.diagrams.any_of(encoding.source(edge) & encoding.holds(edge.guard) for edge in edges)
         return enabled.exists(self._inputs) if any(edge.guard is not None for edge in edges) else enabled
 
+    def overlapping(self) -> list[sct.Edge]:
+        """The edges that can be taken where one before them in the text can, in the same plant."""
+        found = []
+        for edges in self._edges:
+            if len(edges) > len({edge.eContainer() for edge in edges}):
+                before = self._encoding.diagrams.false
+                for edge in edges:
+                    taken = self._encoding.source(edge) & self._encoding.holds(edge.guard)
+                    taken &= self._encoding.whole(referenced(edge.guard))
+                    if (taken & before & self.enabled).satisfiable():
+                        found.append(edge)
+                    before |= taken
+        return found
+
     def _moves(self, edges: Sequence[sct.Edge]) -> Diagram:
         """One plant's part in the event."""
         encoding = self._encoding

@@ -13,8 +13,8 @@ from robosc.metamodel import sct
 from robosc.semantics.edges import edges_from
 from robosc.semantics.printing import RobotPrinter, disjunction
 from robosc.semantics.walks import copied
-from robosc.synthesis.decoding import pick, text, value
-from robosc.synthesis.encoding import referenced
+from robosc.synthesis.decoding import text, value
+from robosc.synthesis.encoding import pick, referenced
 
 if TYPE_CHECKING:
     from robosc.analysis.paths import Move

@@ -1,4 +1,4 @@
-"""Reads generated CIF by CIF's language reference: grammar/cif.tx, then names, types, and what synthesis asks for."""
+"""Reads generated CIF by CIF's language reference: its grammar, then names, types, and what synthesis asks for."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Specification:
 
 @cache
 def _grammar() -> Any:
-    return textx.metamodel_from_file(str(locate("grammar/cif.tx")), autokwd=True)
+    return textx.metamodel_from_file(str(locate("grammar/generated_cif.tx")), autokwd=True)
 
 
 def read(text: str) -> Specification:

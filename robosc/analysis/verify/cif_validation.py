@@ -22,8 +22,7 @@ from robosc.metamodel import sct
 from robosc.semantics.edges import edges_by_event
 from robosc.synthesis import MEMORY, arithmetic
 from robosc.synthesis.bdd import Diagrams, with_enough_memory
-from robosc.synthesis.decoding import pick
-from robosc.synthesis.encoding import Encoding, Layout, referenced, smallest
+from robosc.synthesis.encoding import Encoding, Layout, pick, referenced, smallest
 from robosc.synthesis.relation import requirements_by_event
 
 if TYPE_CHECKING:
@@ -177,6 +176,7 @@ class _Comparison:
     @staticmethod
     def _initial(counterpart: sct.DiscreteVariable, theirs: Encoding) -> int:
         """The code of a variable's initial value in CIF."""
+        assert counterpart.initial is not None
         value = arithmetic.value_of(theirs.vector(counterpart.initial))
         if value is None:
             raise CifError(f"the initial value of '{counterpart.name}' is no constant")

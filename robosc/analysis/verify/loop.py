@@ -13,7 +13,7 @@ from robosc.diagnostics import ModelError
 from robosc.metamodel import sct
 from robosc.semantics.roles import SILENT, plant_of
 from robosc.synthesis.acceleration import Acceleration
-from robosc.synthesis.decoding import pick
+from robosc.synthesis.encoding import pick
 from robosc.synthesis.fixpoint import coreachable, reachable
 from robosc.synthesis.run_to_completion import independent_groups, runs
 

@@ -15,7 +15,7 @@ from robosc.analysis.paths import shortest_path
 from robosc.analysis.system import counted
 from robosc.analysis.verify.loop import asked_of_the_loop
 from robosc.analysis.verify.verdict import Outcome, Verdict, happening
-from robosc.synthesis.decoding import pick
+from robosc.synthesis.encoding import pick
 from robosc.synthesis.fixpoint import coreachable
 from robosc.synthesis.relation import steps
 from robosc.synthesis.run_to_completion import independent_groups, runs

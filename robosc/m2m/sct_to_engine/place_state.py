@@ -46,6 +46,7 @@ def _state(plant: sct.Plant) -> Iterator[tuple[sct.Plant | sct.DiscreteVariable,
         initial = next(number for number, location in enumerate(plant.locations) if location.initial)
         yield plant, plant.name, engine.LocationType(plant=plant), initial
     for variable in plant.variables:
+        assert variable.initial is not None
         initial = int(evaluate(variable.initial, _position))  # type: ignore[call-overload]
         yield variable, f"{plant.origin or plant.name}.{variable.name}", variable.type, initial
 

@@ -95,6 +95,7 @@ def assigned(variable: sct.DiscreteVariable, value: ex.Expression) -> ex.Express
 
 def held(variable: sct.DiscreteVariable) -> ex.Expression:
     """A variable's initial value, as CIF holds it."""
+    assert variable.initial is not None
     return assigned(variable, variable.initial)
 
 

@@ -69,6 +69,7 @@ class _Reading:
             for variable in plant.variables:
                 held = Slot(called, variable.name)
                 machine.domains[held] = _domain(variable.type)
+                assert variable.initial is not None
                 machine.initial[held] = compiled(variable.initial, self.meaning).compute({}, {})
                 machine.sources[held] = variable
             for event in plant.events:

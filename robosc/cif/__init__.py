@@ -1,0 +1,87 @@
+"""Specifications of CIF 3, the language of the Eclipse Supervisory Control Engineering Toolkit, as sct models.
+
+    reading = read("model.cif")
+
+`parsing` makes the objects of the grammar (grammar/cif.tx) of a text; `scopes` says what its names stand for, and makes
+the instances of definitions; `values`, `expressions` and `types` read expressions; `to_sct` makes the sct model.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from robosc.cif.faults import CifFaultError, located
+from robosc.cif.parsing import parse
+from robosc.cif.scopes import Names
+from robosc.cif.to_sct import to_sct
+from robosc.diagnostics import in_order
+from robosc.language.text import Documents, decode
+
+if TYPE_CHECKING:
+    from robosc.diagnostics import Diagnostic
+    from robosc.metamodel import sct
+
+__all__ = ["Reading", "read"]
+
+
+@dataclass(frozen=True)
+class Reading:
+    """What came of reading a specification: its sct model, None where it has faults, these, and the texts by path."""
+
+    model: sct.SupervisoryControlModel | None
+    findings: list[Diagnostic]
+    texts: dict[str, str]
+
+
+def read(path: Path | str, documents: Documents | None = None) -> Reading:
+    """Reads a specification and all that it imports. Raises OSError where the file itself can't be read."""
+    files = _Files(Path(path), documents or Documents())
+    if files.findings:
+        return Reading(None, in_order(files.findings), files.texts)
+    names = Names()
+    for specification in files.specifications:
+        names.add(specification)
+    names.make_instances()
+    model = to_sct(names, Path(path).name.removesuffix(".cif"))
+    if names.findings:
+        return Reading(None, in_order(names.findings), files.texts)
+    model.source = located(names.first)
+    return Reading(model, [], files.texts)
+
+
+class _Files:
+    """A file and all that it imports, each parsed once: two may import each other."""
+
+    def __init__(self, path: Path, documents: Documents) -> None:
+        self.findings: list[Diagnostic] = []
+        self.texts: dict[str, str] = {}
+        self.specifications: list[Any] = []
+        self._known = {path.resolve()}
+        self._imports: list[tuple[Path, Any]] = []
+        self._parse(path, documents.read(path))
+        for file, asked in self._imports:  # Which grows meanwhile.
+            try:
+                content = documents.read(file)
+            except OSError as error:
+                reason = error.strerror or str(error)
+                fault = CifFaultError(asked, "unresolved-reference", f"the file `{file}` can't be read: {reason}")
+                self.findings.append(fault.finding())
+            else:
+                self._parse(file, content)
+
+    def _parse(self, path: Path, content: bytes) -> None:
+        text, faults = decode(str(path), content, path.name)
+        self.texts[str(path)] = text.content
+        specification, more = parse(text)
+        self.findings += [*faults, *more]
+        if specification is None:
+            return
+        self.specifications.append(specification)
+        for declaration in specification.declarations:
+            for name in declaration.files if type(declaration).__name__ == "Import" else ():
+                imported = path.parent / name[1:-1].replace('\\"', '"').replace("\\\\", "\\")
+                if imported.resolve() not in self._known:
+                    self._known.add(imported.resolve())
+                    self._imports.append((imported, declaration))

@@ -1,0 +1,158 @@
+"""The objects of the grammar that a text is, and what is wrong with it: the one place here that knows textX."""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+import arpeggio
+import textx
+
+from robosc.files.resources import locate
+from robosc.language.explaining import did_you_mean
+from robosc.language.text import Repair
+from robosc.semantics.naming import enumeration
+
+if TYPE_CHECKING:
+    from robosc.diagnostics import Diagnostic
+    from robosc.language.text import Text
+
+#: After so many faults of one text the rest is not looked at.
+_MOST = 20
+_BLANK = re.compile(r"//[^\n]*|/\*.*?\*/|\s+", re.DOTALL)
+_TOKEN = re.compile(r'"(?:[^\\"\n]|\\.)*"|[$]?\w+(?:\.\w+)*|<=>|:=|=>|<=|>=|!=|\.\.|.', re.DOTALL)
+#: Where a statement ends, or the head of one with a body.
+_END = re.compile(r'"(?:[^\\"\n]|\\.)*"|//[^\n]*|/\*.*?\*/|;|:(?!=)|\bend\b', re.DOTALL)
+_RULES = {
+    "Identifier": "a name",
+    "NameToken": "a name",
+    "NumberToken": "a whole number",
+    "RealToken": "a number",
+    "StringToken": "a string",
+    "AnnotationName": "an annotation",
+}
+#: What several words stand for that the grammar wants at once.
+_GROUPS = (
+    ("an expression", {"true", "NumberToken", "not"}),
+    ("an operator", {"and", "or", "div"}),
+)
+#: What other languages write, and what CIF does.
+_MEANT = {"==": "=", "&&": "and", "||": "or", "!": "not", "<>": "!="}
+
+
+@cache
+def _grammar() -> Any:
+    return textx.metamodel_from_file(str(locate("grammar/cif.tx")), autokwd=True)
+
+
+def parse(text: Text) -> tuple[Any, list[Diagnostic]]:
+    """The specification in a text, None where it has faults; these are findings of the rule `syntax`."""
+    content, findings = text.content, list[Any]()
+    reported = -1
+    while True:
+        try:
+            if not findings:
+                return _made(text), findings
+            _grammar()._parser_blueprint.clone().parse(content)  # noqa: SLF001 - what model_from_str does first
+        except textx.TextXSyntaxError as fault:
+            failed = fault.__cause__
+        except RecursionError:
+            return None, [
+                text.error("syntax", 0, 0, "groups or calls are nested too deeply", "take some of them apart")
+            ]
+        else:
+            return None, findings
+        assert isinstance(failed, arpeggio.NoMatch)
+        start, end, found = _token(content, failed.position)
+        if findings and (failed.position <= reported or found in {"end", ""}):
+            return None, findings  # It may well follow from what was found before.
+        wanted = list(dict.fromkeys(map(_wanted, failed.rules)))
+        findings.append(text.error("syntax", start, end, _message(found, wanted), _hint(found, wanted)))
+        if len(findings) == _MOST:
+            return None, findings
+        first, reported = _statement(content, start)
+        blanked = re.sub(r"[^\n]", " ", content[first:reported])
+        content = content[:first] + blanked + content[reported:]
+
+
+def _made(text: Text) -> Any:
+    """The objects of a text; one of nothing but comments has none, and is made so that it has."""
+    specification = _grammar().model_from_str(text.content)
+    if isinstance(specification, str):
+        specification = _Nothing()
+    specification.whole_text = text
+    return specification
+
+
+class _Nothing:
+    """A specification without anything."""
+
+    declarations = ()
+    _tx_position = 0
+    _tx_position_end = 0
+    whole_text: Text
+
+
+def _token(content: str, position: int) -> tuple[int, int, str]:
+    while (blank := _BLANK.match(content, position)) is not None:
+        position = blank.end()
+    token = _TOKEN.match(content, position)
+    return (position, position, "") if token is None else (token.start(), token.end(), token[0])
+
+
+def _statement(content: str, position: int) -> tuple[int, int]:
+    """The statement around a position, its semicolon included."""
+    first = 0
+    for mark in _END.finditer(content):
+        word = mark[0]
+        if mark.start() >= position and word == ";":
+            return first, mark.end()
+        if mark.end() <= position and word in {";", ":", "end"}:
+            first = mark.end()
+    return first, len(content)
+
+
+def _wanted(rule: Any) -> str:
+    if isinstance(rule, arpeggio.EndOfFile):
+        return "the end of the file"
+    named = rule.rule_name and rule.rule_name in _RULES
+    return str(rule.rule_name if named else getattr(rule, "to_match", rule.rule_name))
+
+
+def _message(found: str, wanted: list[str]) -> str:
+    words = [word for word in wanted if word]
+    for name, core in _GROUPS:
+        if core <= set(words):
+            first = words.index(next(word for word in words if word in core))
+            words = [
+                name if place == first else word for place, word in enumerate(words) if place == first or _tells(word)
+            ]
+    told = [
+        word if word in {name for name, _ in _GROUPS} or " " in word else _RULES.get(word, f"`{word}`")
+        for word in words
+        if len(word) < 20 and (word in _RULES or "\\" not in word)
+    ]
+    shown = f"`{found if len(found) <= 30 else found[:29] + chr(0x2026)}`" if found else "the end of the file"
+    return f"found {shown}, expected {enumeration(dict.fromkeys(told))}" if told else f"{shown} can't stand here"
+
+
+def _tells(word: str) -> bool:
+    """Whether a word is worth telling beside an expression or an operator."""
+    return word in {";", ",", ":", ":=", ")", "do", "goto", "needs", "disables", "when"}
+
+
+def _hint(found: str, wanted: list[str]) -> Repair | str | None:
+    """How to mend it, where that can be told."""
+    if found in _MEANT and _MEANT[found] in wanted:
+        return Repair(f"write `{_MEANT[found]}`", _MEANT[found])
+    if found == "=" and ":=" in wanted:
+        return Repair("write `:=` for an assignment", ":=")
+    repair = did_you_mean(found, [word for word in wanted if word.isalpha()], cutoff=0.6) if found else None
+    if repair is not None and found not in wanted:
+        return repair
+    if ";" in wanted and found.isidentifier():
+        return "is a `;` missing before it?"
+    if found.isidentifier() and "Identifier" in wanted:
+        return f"a keyword as a name has a dollar sign before it: `${found}`"
+    return None

@@ -1,0 +1,305 @@
+"""What the names of a specification stand for: groups, automata, instances of definitions, and what they declare.
+
+`Names(root)` declares all that a specification has and makes every instance of a definition, a scope like a group or an
+automaton whose declarations are looked up where the definition stands. What is declared is a `Declared`; what a
+parameter stands for is found where the instance is made.
+"""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+from robosc.cif.faults import CifFaultError, construct, located
+from robosc.language.explaining import did_you_mean
+from robosc.language.text import Repair
+from robosc.metamodel import sct
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from robosc.diagnostics import Diagnostic
+    from robosc.metamodel import expression as ex
+
+#: So many groups, automata and instances a specification may have.
+_MOST = 20_000
+_LISTS = {
+    "Inputs": "names",
+    "Constants": "constants",
+    "Algebraics": "variables",
+    "Variables": "variables",
+    "Types": "types",
+}
+
+
+@dataclass(eq=False)
+class Declared:
+    """Something with a name: `kind` is the rule of the grammar that it was declared by.
+
+    `read` is its own object of the grammar and `outer` that of the statement, which has the type; `made` is what it
+    became: an element of the sct metamodel, or for a constant or an algebraic variable its typed expression.
+    """
+
+    kind: str
+    name: str
+    read: Any
+    outer: Any
+    scope: Scope
+    made: Any = None
+    #: The type of a variable, a constant, an algebraic variable, or the one that a name of a type stands for.
+    type: Any = None
+    open: bool = False
+    #: Why a variable was not made.
+    fault: Any = None
+
+
+@dataclass(eq=False)
+class Argument:
+    """What a parameter stands for: an expression where the instance is made."""
+
+    read: Any
+    scope: Scope
+    parameter: Any
+
+
+@dataclass(eq=False)
+class Scope:
+    """A group, an automaton, or an instance of a definition; `kind` is that of an automaton, None of a group.
+
+    `path` is its absolute name, and `around` the scope in whose text it stands. `bodies` are the objects of the grammar
+    that say what is in it: several files may say something of one group.
+    """
+
+    path: str
+    around: Scope | None
+    read: Any
+    kind: str | None = None
+    bodies: list[Any] = field(default_factory=list)
+    names: dict[str, Name] = field(default_factory=dict)
+    children: list[Scope] = field(default_factory=list)
+    events: list[Declared] = field(default_factory=list)
+    plant: sct.Plant | None = None
+    definition: Any = None
+    #: The scope that it is in by its absolute name.
+    parent: Scope | None = None
+
+    def absolute(self, name: str) -> str:
+        """The absolute name of what is in it."""
+        return f"{self.path}.{name}" if self.path else name
+
+    def declarations(self, *rules: str) -> Iterator[Any]:
+        """What it declares by these rules of the grammar."""
+        for body in self.bodies:
+            for declaration in body.declarations:
+                if type(declaration).__name__ in rules:
+                    yield declaration
+
+
+Name: TypeAlias = "Declared | Argument | Scope | sct.Location | ex.EnumerationLiteral"
+
+
+def plain(identifier: str) -> str:
+    """An identifier without the dollar signs that tell it from keywords."""
+    return identifier.replace("$", "")
+
+
+class Names:
+    """All names of a specification. `findings` are the faults in what declares them."""
+
+    def __init__(self) -> None:
+        self.root = Scope("", None, None)
+        #: The specification of the file that imports all others.
+        self.first: Any = None
+        self.findings: dict[Diagnostic, None] = {}
+        self._instances: list[tuple[Any, Scope, Scope]] = []
+        self._scopes = 0
+
+    def add(self, specification: Any) -> None:
+        """Declares what a file has."""
+        scope = self.root
+        self.first = self.first or specification
+        for declaration in specification.declarations:
+            if type(declaration).__name__ == "Namespace":
+                for part in plain(declaration.name.text).lstrip(".^").split("."):
+                    scope = self._inner(part, scope, declaration, specification)
+        if scope is self.root:
+            scope.bodies.append(specification)
+        self._declare(scope, specification)
+
+    def make_instances(self) -> None:
+        """Declares what is in the instances of definitions."""
+        for read, around, scope in self._instances:  # Which grows meanwhile.
+            with self.reporting():
+                self._instantiate(read, around, scope)
+
+    @contextmanager
+    def reporting(self) -> Iterator[None]:
+        """What is wrong within becomes a finding, one for all instances of a definition."""
+        try:
+            yield
+        except CifFaultError as fault:
+            self.findings[fault.finding()] = None
+
+    def find(self, read: Any, scope: Scope) -> Name:
+        """What a name of the grammar stands for in a scope. Raises CifFaultError."""
+        return self.lookup(plain(read.text), read, scope)
+
+    def lookup(self, name: str, read: Any, scope: Scope) -> Name:
+        """The same of its text."""
+        first, *others = name.lstrip(".^").split(".")
+        known: Scope | None = self.root if name[0] in ".^" else scope
+        found: Name | None = None
+        seen: set[str] = set()
+        while known is not None and found is None:
+            found = known.names.get(first)
+            seen.update(known.names)
+            known = known.around
+        if found is None:
+            raise CifFaultError(
+                read, "unresolved-reference", f"there is no `{first}` here", did_you_mean(first, seen, cutoff=0.7)
+            )
+        whole = first
+        for part in others:
+            inside = self.resolved(found)
+            if not isinstance(inside, Scope):
+                raise CifFaultError(
+                    read, "unresolved-reference", f"`{whole}` is no group and no automaton: nothing is in it"
+                )
+            if part not in inside.names:
+                repair = did_you_mean(part, inside.names, cutoff=0.7) if len(others) == 1 else None
+                if repair is not None and repair.text is not None:
+                    whole = f"{whole}.{repair.text}"
+                    repair = Repair(f"did you mean `{whole}`?", whole)
+                raise CifFaultError(read, "unresolved-reference", f"there is no `{part}` in `{inside.path}`", repair)
+            found, whole = inside.names[part], f"{whole}.{part}"
+        return self.resolved(found)
+
+    def resolved(self, found: Name) -> Name:
+        """What a parameter that is no algebraic one stands for, through all instances."""
+        while isinstance(found, Argument) and type(found.parameter).__name__ != "AlgebraicParameter":
+            value = found.read.first.value
+            is_name = not found.read.others and not found.read.first.openings and not found.read.first.closings
+            if not is_name or type(value).__name__ != "Reference" or value.suffix:
+                raise CifFaultError(found.read, "type", "the parameter wants a name")
+            found = self.find(value.name, found.scope)
+        return found
+
+    # Declarations
+
+    def _declare(self, scope: Scope, body: Any) -> None:
+        for declaration in body.declarations:
+            with self.reporting():
+                self._declare_one(scope, declaration)
+
+    def _declare_one(self, scope: Scope, read: Any) -> None:
+        rule = type(read).__name__
+        match rule:
+            case "Group":
+                self._declare(self._inner(plain(read.name), scope, read, read), read)
+            case "Automaton":
+                self._automaton(self._scope(plain(read.name), scope, read), read)
+            case "Instance":
+                made = self._scope(plain(read.name), scope, read, bare=True)
+                self._instances.append((read, scope, made))
+            case "Continuous":
+                raise construct(read, "continuous variables", "leave them to simulation, or model time by events")
+            case "Function":
+                raise construct(read, "functions", "write an algebraic variable for what it computes")
+            case _:
+                self._declare_names(scope, read, rule)
+
+    def _declare_names(self, scope: Scope, read: Any, rule: str) -> None:
+        """What is neither group nor automaton and has a name."""
+        match rule:
+            case "GroupDefinition" | "AutomatonDefinition" | "Enumeration":
+                whole = self._name(rule, read, read, scope)
+                for literal in read.literals if rule == "Enumeration" else ():
+                    self._name("Literal", literal, whole, scope)
+            case "Events":
+                scope.events += [self._name(rule, name, read, scope) for name in read.names]
+                if read.type is not None:
+                    raise construct(read, "channels", "CIF's `--elim-channels` (cif2cif) takes them out")
+            case _ if rule in _LISTS:
+                for one in getattr(read, _LISTS[rule]):
+                    self._name(rule, one, read, scope)
+
+    @staticmethod
+    def _name(rule: str, read: Any, outer: Any, scope: Scope) -> Declared:
+        declared = Declared(rule, plain(read.name), read, outer, scope)
+        _once(scope, declared.name, read)
+        scope.names[declared.name] = declared
+        return declared
+
+    def _inner(self, name: str, scope: Scope, read: Any, body: Any) -> Scope:
+        """The group of a name; what several texts say of one is put together."""
+        known = scope.names.get(name)
+        if not isinstance(known, Scope) or known.kind is not None or known.definition is not None:
+            known = self._scope(name, scope, read, bare=True)
+        known.bodies.append(body)
+        return known
+
+    def _scope(self, name: str, scope: Scope, read: Any, *, bare: bool = False) -> Scope:
+        _once(scope, name, read)
+        made = Scope(scope.absolute(name), scope, read, parent=scope)
+        self._scopes += 1
+        if self._scopes > _MOST:
+            raise CifFaultError(read, "cif-construct", f"there are more than {_MOST} groups, automata and instances")
+        scope.names[name] = made
+        scope.children.append(made)
+        if not bare:
+            made.bodies.append(read)
+        return made
+
+    def _automaton(self, scope: Scope, read: Any) -> None:
+        """An automaton or an instance of one: its locations are names, too."""
+        scope.kind = read.kind or ""
+        made = sct.PlantKind.requirement if read.kind == "requirement" else sct.PlantKind.behaviour
+        scope.plant = sct.Plant(name=scope.path, kind=made, source=located(scope.read))
+        self._declare(scope, read)
+        for number, location in enumerate(read.locations):
+            name = plain(location.name) if location.name else "L"
+            element = sct.Location(name=name, initial=False, marked=False, source=located(location))
+            scope.plant.locations.append(element)
+            if location.name:
+                with self.reporting():
+                    _once(scope, name, location)
+                scope.names[name] = element
+            elif len(read.locations) > 1:
+                element.name = f"L{number}"
+                with self.reporting():
+                    message = "a location without a name is the only one"
+                    raise CifFaultError(location, "cif-declaration", message, "give it a name")
+
+    def _instantiate(self, read: Any, around: Scope, scope: Scope) -> None:
+        found = self.find(read.definition, around)
+        if not isinstance(found, Declared) or found.kind not in ("GroupDefinition", "AutomatonDefinition"):
+            raise CifFaultError(read.definition, "type", f"`{read.definition.text}` is no definition")
+        definition = found.read
+        inside: Scope | None = around
+        while inside is not None:
+            if inside.definition is definition:
+                raise CifFaultError(read, "cyclic-definition", f"`{plain(definition.name)}` is made of itself")
+            inside = inside.parent
+        parameters = [(one, name) for one in definition.parameters for name in one.names]
+        if len(parameters) != len(read.arguments):
+            wanted = f"{len(parameters)} argument{'' if len(parameters) == 1 else 's'}"
+            raise CifFaultError(
+                read, "argument", f"`{read.definition.text}` takes {wanted}, found {len(read.arguments)}"
+            )
+        scope.bodies.append(definition)
+        scope.definition = definition
+        # Names in it are looked up where the definition stands; parameters are nearer than those.
+        inner = Scope(scope.path, found.scope, read)
+        for (parameter, name), argument in zip(parameters, read.arguments, strict=True):
+            inner.names[plain(name.name)] = Argument(argument, around, parameter)
+        scope.around = inner
+        if found.kind == "AutomatonDefinition":
+            self._automaton(scope, definition)
+        else:
+            self._declare(scope, definition)
+
+
+def _once(scope: Scope, name: str, read: Any) -> None:
+    if name in scope.names:
+        raise CifFaultError(read, "cif-declaration", f"there are two of the name `{name}`", "rename one of them")

@@ -1,0 +1,526 @@
+"""From the automata of a specification to an sct model: what its synthesis is, as CIF defines it.
+
+All that CIF's synthesis does implicitly is written out: an automaton that only watches an event stays where it has no
+edge for it; a requirement automaton watches all of its events, and what it forbids is a requirement on its locations;
+an edge that would leave the range of a variable can't be taken, and where its event is uncontrollable, a requirement
+says that it must not come to that; an input variable is a variable that an uncontrollable event gives any value.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from robosc.cif import plant_invariants
+from robosc.cif.faults import CifFaultError, construct, located, span, text_of
+from robosc.cif.scopes import Declared, Names, Scope, plain
+from robosc.cif.types import Type, contains, overlap, shown
+from robosc.cif.values import Values, constant_value, literal
+from robosc.language.explaining import did_you_mean
+from robosc.metamodel import expression as ex
+from robosc.metamodel import sct
+from robosc.semantics.domains import domain
+from robosc.semantics.edges import edges_by_event
+from robosc.semantics.printing import conjunction, disjunction
+from robosc.semantics.walks import copied
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+_CHANNELS = "CIF's `--elim-channels` (cif2cif) takes them out"
+
+
+@dataclass
+class _Taken:
+    """An edge of the text with one of its events: where it is enabled, and where it stays in the ranges."""
+
+    location: sct.Location
+    event: sct.Event
+    guard: ex.Expression | None
+    fits: ex.Expression | None
+    updates: list[tuple[sct.DiscreteVariable, ex.Expression, Any]]
+    target: sct.Location
+    read: Any
+
+
+def to_sct(names: Names, name: str) -> sct.SupervisoryControlModel:
+    """The sct model of a specification; what is wrong with it is added to the findings of its names."""
+    return _Transformation(names, name).model
+
+
+class _Transformation:
+    def __init__(self, names: Names, name: str) -> None:
+        self._names = names
+        self._values = Values(names)
+        self.model = sct.SupervisoryControlModel(name=name)
+        self._controllable: dict[sct.Event, Declared] = {}
+        self._exclusions: dict[sct.Event, list[ex.Expression]] = {}
+        self._plant_invariants: list[tuple[Any, ex.Expression]] = []
+        scopes = list(_inside(names.root))
+        for scope in scopes:
+            self._declare(scope)
+        for scope in scopes:
+            with names.reporting():
+                self._fill(scope)
+        for scope in scopes:
+            with names.reporting():
+                self._predicates(scope)
+        self._keep_invariants([scope.plant for scope in scopes if scope.plant])
+        self._exclude()
+        used = {edge.event for scope in scopes if scope.plant for edge in _edges(scope.plant)}
+        for scope in scopes:
+            self._keep(scope, used)
+        self._enumerations()
+        if not any(plant.kind != sct.PlantKind.requirement for plant in self.model.plants) and not names.findings:
+            with names.reporting():
+                hint = "name one automaton `plant` at least"
+                raise CifFaultError(names.first, "cif-construct", "there is no plant", hint)
+
+    # Declarations
+
+    def _declare(self, scope: Scope) -> None:
+        """The events, variables and inputs of a scope."""
+        if scope.kind == "supervisor":
+            with self._names.reporting():
+                raise construct(scope.read, "supervisor automata", "hand it the plants and requirements alone")
+        if scope.kind == "":
+            with self._names.reporting():
+                raise construct(scope.read, "automata of no kind", "write `plant` or `requirement` before it")
+        for declared in scope.events:
+            control = declared.outer.control
+            kind = sct.EventKind.plain
+            event = sct.Event(
+                name=declared.name, controllable=control == "controllable", kind=kind, source=located(declared.read)
+            )
+            declared.made = event
+            self._controllable[event] = declared
+        for known in scope.names.values():
+            if isinstance(known, Declared) and known.kind in ("Variables", "Inputs"):
+                try:
+                    self._variable(known, scope)
+                except CifFaultError as fault:
+                    known.fault = fault
+                    with self._names.reporting():
+                        raise
+
+    def _plant(self, scope: Scope) -> sct.Plant:
+        """The plant of a scope; a group has one where it declares events or inputs."""
+        if scope.plant is None:
+            scope.plant = sct.Plant(name=scope.path, kind=sct.PlantKind.behaviour)
+            scope.plant.locations.append(sct.Location(name="L", initial=True, marked=True))
+        return scope.plant
+
+    def _variable(self, declared: Declared, scope: Scope) -> None:
+        declared.type = self._values.declared_type(declared.outer.type, scope)
+        if declared.type == "int":
+            raise construct(declared.outer.type, "an int without range", "write `int[lowest..highest]`")
+        plant = self._plant(scope)
+        source = located(declared.read)
+        made = sct.DiscreteVariable(name=declared.name, type=_type(declared.type), source=source)
+        plant.variables.append(made)
+        declared.made = made
+        if declared.kind == "Inputs":
+            value = sct.Input(name=declared.name, type=_type(declared.type), source=source)
+            plant.inputs.append(value)
+            event = sct.Event(
+                name=declared.name, controllable=False, kind=sct.EventKind.input, inputs=[value], source=source
+            )
+            plant.events.append(event)
+            for location in plant.locations:
+                edge = sct.Edge(event=event, target=location, source=source)
+                edge.updates.append(sct.Update(variable=made, value=sct.InputReference(input=value), source=source))
+                location.edges.append(edge)
+
+    def _keep(self, scope: Scope, used: set[sct.Event]) -> None:
+        """The scope's plant becomes the model's, with those events that can happen."""
+        events = [declared.made for declared in scope.events if declared.made in used]
+        if events:
+            plant = self._plant(scope)
+            inputs = list(plant.events)
+            del plant.events[:]
+            plant.events.extend([*events, *inputs])
+        if scope.plant is not None:
+            self.model.plants.append(scope.plant)
+
+    def _enumerations(self) -> None:
+        for scope in _inside(self._names.root):
+            for declared in scope.names.values():
+                if isinstance(declared, Declared) and declared.kind == "Enumeration" and declared.made is not None:
+                    self.model.enumerations.append(declared.made)
+
+    # Automata
+
+    def _fill(self, scope: Scope) -> None:
+        """The initial values and edges of an automaton."""
+        for declared in scope.names.values():
+            with self._names.reporting():
+                if isinstance(declared, Declared) and declared.kind in ("Constants", "Algebraics"):
+                    self._values.computed(declared)
+                elif isinstance(declared, Declared) and declared.kind == "Variables" and declared.made is not None:
+                    self._initialise(declared, scope)
+        taken: list[_Taken] = []
+        initial = False
+        for location, element in _elements(scope):
+            initial = initial or type(element).__name__ == "LocationInitial"
+            if type(element).__name__ == "Edge":
+                with self._names.reporting():
+                    taken += self._taken(element, location, scope)
+        if _is_automaton(scope):
+            self._edges_of(taken, scope)
+            if not initial:
+                message = f"`{scope.path}` has no initial location"
+                raise CifFaultError(scope.read, "initial-state", message, "write `initial;` in one")
+
+    def _edges_of(self, taken: list[_Taken], scope: Scope) -> None:
+        """The edges of an automaton, and what it requires."""
+        used = self._alphabet(taken, scope)
+        watched = self._events(scope, "Monitor")
+        if watched == []:
+            watched = used
+        requirement = scope.kind == "requirement"
+        for event in used:
+            edges = [one for one in taken if one.event is event]
+            self._place(edges, event, scope, watching=requirement or event in (watched or ()))
+            if requirement and event not in (watched or ()):
+                self._require(edges, event, scope)
+
+    def _alphabet(self, taken: Iterable[_Taken], scope: Scope) -> list[sct.Event]:
+        """The events that an automaton takes part in."""
+        declared = self._events(scope, "Alphabet")
+        for one in taken:
+            if declared is not None and one.event not in declared:
+                message = f"`{one.event.name}` is not in the alphabet of `{scope.path}`"
+                with self._names.reporting():
+                    raise CifFaultError(one.read, "cif-declaration", message, "add it there")
+        return list(dict.fromkeys(one.event for one in taken)) if declared is None else declared
+
+    def _events(self, scope: Scope, rule: str) -> list[sct.Event] | None:
+        found = [self._event(name, scope) for one in scope.declarations(rule) for name in one.events]
+        return list(dict.fromkeys(found)) if any(True for _ in scope.declarations(rule)) else None
+
+    def _event(self, name: Any, scope: Scope) -> sct.Event:
+        found = self._names.find(name, scope)
+        if not isinstance(found, Declared) or found.kind != "Events":
+            raise CifFaultError(name, "type", f"`{name.text}` is no event")
+        if not found.outer.control:
+            hint = f"declare `{found.name}` as `controllable` or as `uncontrollable`"
+            raise construct(name, "events that are neither controllable nor uncontrollable", hint)
+        event: sct.Event = found.made
+        return event
+
+    def _taken(self, read: Any, location: sct.Location, scope: Scope) -> Iterator[_Taken]:
+        if not read.events or any(one.tau for one in read.events):
+            raise construct(read, "edges without an event", "declare an uncontrollable event for it")
+        if read.urgent:
+            raise construct(read, "urgent edges", "leave out `now`")
+        for one in read.events:
+            if one.communication:
+                raise construct(one, "channels", _CHANNELS)
+        events = [self._event(one.event, scope) for one in read.events]
+        target = location
+        if read.target is not None:
+            name = plain(read.target.name)
+            found = scope.names.get(name)
+            if not isinstance(found, sct.Location):
+                known = [one.name for one in location.eContainer().locations]
+                raise CifFaultError(read.target, "unresolved-reference", *_missing(name, known))
+            target = found
+        guard = self._values.condition(read.guards, scope)
+        updates: list[tuple[sct.DiscreteVariable, ex.Expression, Any]] = []
+        fits: list[ex.Expression] = []
+        for update in read.updates:
+            variable, value, kind = self._update(update, scope)
+            if any(variable is other for other, _, _ in updates):
+                raise CifFaultError(update, "repeated-assignment", f"`{variable.name}` is assigned twice")
+            updates.append((variable, value, update))
+            fits += _fitting(variable, value, kind)
+        within = conjunction(fits)
+        for event in dict.fromkeys(events):
+            yield _Taken(location, event, guard, within, updates, target, read)
+
+    def _update(self, read: Any, scope: Scope) -> tuple[sct.DiscreteVariable, ex.Expression, Type]:
+        if read.conditional:
+            raise construct(read, "conditional updates", "CIF's `--elim-if-updates` (cif2cif) takes them out")
+        if read.several or read.projection:
+            raise construct(read, "updates of tuples and lists", "write a variable for each element")
+        found = self._names.find(read.variable, scope)
+        if not isinstance(found, Declared) or found.kind != "Variables":
+            raise CifFaultError(read, "type", f"`{read.variable.text}` is no discrete variable")
+        if found.made is None:
+            raise found.fault
+        if found.made.eContainer() is not scope.plant:
+            message = f"`{read.variable.text}` is assigned by `{found.scope.path}` only, which declares it"
+            raise CifFaultError(read, "assignment-scope", message)
+        value = self._values.whole(read.value, scope)
+        if not overlap(found.type, value.type):
+            message = f"`{found.name}` is {shown(found.type)}, what is assigned {shown(value.type)}"
+            raise CifFaultError(read, "type", message)
+        return found.made, value.expression, value.type
+
+    def _place(self, edges: list[_Taken], event: sct.Event, scope: Scope, *, watching: bool) -> None:
+        """The edges of an event in a plant; where it only watches the event, it stays if no edge can be taken."""
+        plant = scope.plant
+        assert plant is not None
+        for one in edges:
+            guard = [copied(part) for part in (one.guard,) if part is not None]
+            if one.fits is not None and event.controllable:
+                guard.append(copied(one.fits))
+            made = sct.Edge(event=event, guard=conjunction(guard), target=one.target, source=located(one.read))
+            for variable, value, read in one.updates:
+                made.updates.append(sct.Update(variable=variable, value=copied(value), source=located(read)))
+            one.location.edges.append(made)
+            if one.fits is not None and not event.controllable:
+                self._stay_in_range(one, plant)
+        if watching:
+            for location in plant.locations:
+                guards = [one.guard for one in edges if one.location is location]
+                if all(guard is not None for guard in guards):
+                    others = [ex.Negation(operand=copied(guard)) for guard in guards if guard is not None]
+                    stay = sct.Edge(event=event, guard=conjunction(others), target=location, source=located(scope.read))
+                    location.edges.append(stay)
+        elif not edges:
+            never = ex.BooleanLiteral(value=False)
+            location = plant.locations[0]
+            location.edges.append(sct.Edge(event=event, guard=never, target=location, source=located(scope.read)))
+
+    def _stay_in_range(self, one: _Taken, plant: sct.Plant) -> None:
+        """An uncontrollable event must not happen where it would leave the range of a variable."""
+        assert one.fits is not None
+        premises = [*_at(one.location, plant), *(copied(part) for part in (one.guard,) if part is not None)]
+        premise = conjunction(premises)
+        fits = copied(one.fits)
+        condition = fits if premise is None else ex.Implication(left=premise, right=fits)
+        self.model.requirements.append(
+            sct.Requirement(
+                event=one.event,
+                kind=sct.RequirementKind.needs,
+                condition=condition,
+                text=_words(one.read),
+                source=located(one.read),
+            )
+        )
+
+    def _require(self, edges: list[_Taken], event: sct.Event, scope: Scope) -> None:
+        """A requirement automaton lets an event happen where it has an edge for it."""
+        plant = scope.plant
+        assert plant is not None
+        allowed = []
+        for one in edges:
+            guard = [copied(part) for part in (one.guard,) if part is not None]
+            here = conjunction([*_at(one.location, plant), *guard])
+            if here is None:
+                return
+            allowed.append(here)
+        self.model.requirements.append(
+            sct.Requirement(
+                event=event,
+                kind=sct.RequirementKind.needs,
+                condition=disjunction(allowed) or ex.BooleanLiteral(value=False),
+                automaton=plant,
+                name=scope.path,
+                text=f"requirement {scope.path}",
+                source=located(scope.read),
+            )
+        )
+
+    def _initialise(self, declared: Declared, scope: Scope) -> None:
+        """The initial value of a variable, or what holds of it at the start where it may have several."""
+        variable, read = declared.made, declared.read
+        if read.any:
+            return
+        if not read.values:
+            variable.initial = literal(_default(declared.type))
+            return
+        several = []
+        for value in read.values:
+            made = self._values.whole(value, scope)
+            if not contains(declared.type, made.type):
+                constant = constant_value(made.expression)
+                if not isinstance(declared.type, range) or constant is None or constant not in declared.type:
+                    message = f"`{declared.name}` is {shown(declared.type)}, its initial value {shown(made.type)}"
+                    raise CifFaultError(value, "integer-range" if isinstance(made.type, range) else "type", message)
+            several.append(made.expression)
+        constants = [constant_value(one) for one in several]
+        if len(several) == 1 and constants[0] is not None:
+            variable.initial = literal(constants[0])
+            return
+        either = disjunction(ex.Equation(left=sct.VariableReference(variable=variable), right=one) for one in several)
+        assert either is not None
+        self.model.initialPredicates.append(either)
+
+    # Predicates
+
+    def _predicates(self, scope: Scope) -> None:
+        """What is initial, marked, and never to happen."""
+        for read in scope.declarations("Initial", "Marked", "Invariants"):
+            with self._names.reporting():
+                if type(read).__name__ == "Invariants":
+                    self._invariants(read, scope, None)
+                    continue
+                made = self._values.condition(read.conditions, scope)
+                assert made is not None
+                initial = type(read).__name__ == "Initial"
+                (self.model.initialPredicates if initial else self.model.markerPredicates).append(made)
+        for location, element in _elements(scope):
+            with self._names.reporting():
+                self._element(element, location, scope)
+
+    def _element(self, read: Any, location: sct.Location, scope: Scope) -> None:
+        match type(read).__name__:
+            case "Invariants":
+                self._invariants(read, scope, location)
+            case "Urgent":
+                raise construct(read, "urgent locations", "leave out `urgent`")
+            case "LocationInitial" | "LocationMarked" as kind:
+                initial = kind == "LocationInitial"
+                if initial:
+                    location.initial = True
+                else:
+                    location.marked = True
+                condition = self._values.condition(read.conditions, scope)
+                if condition is not None:
+                    here = sct.LocationReference(location=location)
+                    made = ex.Implication(left=here, right=condition)
+                    (self.model.initialPredicates if initial else self.model.markerPredicates).append(made)
+
+    def _invariants(self, read: Any, scope: Scope, location: sct.Location | None) -> None:
+        if read.kind not in ("plant", "requirement"):
+            what = "supervisor invariants" if read.kind else "invariants of no kind"
+            raise construct(read, what, "write `requirement` before it, or `plant` where the system itself sees to it")
+        for one in read.invariants:
+            with self._names.reporting():
+                self._invariant(one, read.kind == "plant", scope, location)
+
+    def _invariant(self, read: Any, plant: bool, scope: Scope, location: sct.Location | None) -> None:
+        told = read.restriction
+        condition = self._values.condition([told.condition], scope)
+        assert condition is not None
+        here = sct.LocationReference(location=location) if location is not None else None
+        stated: dict[str, Any] = {
+            "name": scope.absolute(plain(read.name)) if read.name else None,
+            "text": _words(read.parent if len(read.parent.invariants) == 1 else read),
+            "source": located(read),
+        }
+        rule = type(told).__name__
+        if rule == "Condition":
+            condition = condition if here is None else ex.Implication(left=here, right=condition)
+            if plant:
+                self._plant_invariants.append((read, condition))
+                return
+            self.model.invariants.append(sct.StateInvariant(condition=condition, **stated))
+            return
+        needs = rule == "Needs"
+        if here is not None:
+            combine = ex.Implication if needs else ex.Conjunction
+            condition = combine(left=here, right=condition)
+        for name in told.events:
+            event = self._event(name, scope)
+            if plant:
+                own = copied(condition)
+                self._exclusions.setdefault(event, []).append(own if needs else ex.Negation(operand=own))
+                continue
+            kind = sct.RequirementKind.needs if needs else sct.RequirementKind.disables
+            self.model.requirements.append(
+                sct.Requirement(event=event, kind=kind, condition=copied(condition), **stated)
+            )
+
+    def _keep_invariants(self, plants: list[sct.Plant]) -> None:
+        """The system never leaves its plant invariants, and starts in them."""
+        edges = edges_by_event(plants)
+        for read, condition in self._plant_invariants:
+            for event, excluding in plant_invariants.keep(condition, edges):
+                with self._names.reporting():
+                    overlap = [one for own in edges[event].values() for one in own]
+                    if excluding is None or (not event.controllable and _several(overlap)):
+                        raise construct(read, f"this plant invariant with `{event.name}`", "state it by guards")
+                    self._exclusions.setdefault(event, []).append(excluding)
+            self.model.initialPredicates.append(condition)
+
+    def _exclude(self) -> None:
+        """What plant invariants exclude, a plant of one location excludes; what no automaton has, nothing restricts."""
+        used = {edge.event for scope in _inside(self._names.root) if scope.plant for edge in _edges(scope.plant)}
+        for requirement in [one for one in self.model.requirements if one.event not in used]:
+            self.model.requirements.remove(requirement)
+        if not self._exclusions:
+            return
+        names = {scope.path for scope in _inside(self._names.root)}
+        name = next(
+            name for number in range(len(names) + 1) if (name := f"plant_invariants{number or ''}") not in names
+        )
+        plant = sct.Plant(name=name, kind=sct.PlantKind.behaviour)
+        location = sct.Location(name="L", initial=True, marked=True)
+        plant.locations.append(location)
+        for event, conditions in self._exclusions.items():
+            if event in used:
+                location.edges.append(sct.Edge(event=event, guard=conjunction(conditions), target=location))
+        if location.edges:
+            self.model.plants.append(plant)
+
+
+def _inside(scope: Scope) -> Iterator[Scope]:
+    """A scope and all in it, in the order of the text."""
+    pending = [scope]
+    while pending:
+        here = pending.pop()
+        yield here
+        pending += reversed(here.children)
+
+
+def _is_automaton(scope: Scope) -> bool:
+    return scope.kind is not None and bool(scope.bodies)
+
+
+def _elements(scope: Scope) -> Iterator[tuple[sct.Location, Any]]:
+    """What is said in the locations of an automaton, each with its location."""
+    if _is_automaton(scope) and scope.plant is not None:
+        for location, read in zip(scope.plant.locations, scope.bodies[0].locations, strict=True):
+            for element in read.elements:
+                yield location, element
+
+
+def _edges(plant: sct.Plant) -> Iterable[sct.Edge]:
+    return (edge for location in plant.locations for edge in location.edges)
+
+
+def _several(edges: Iterable[sct.Edge]) -> bool:
+    """Whether several of them leave one location."""
+    left = [edge.eContainer() for edge in edges]
+    return len(left) > len(set(left))
+
+
+def _at(location: sct.Location, plant: sct.Plant) -> list[ex.Expression]:
+    """That the plant is there, where it could be elsewhere."""
+    return [sct.LocationReference(location=location)] if len(plant.locations) > 1 else []
+
+
+def _fitting(variable: sct.DiscreteVariable, value: ex.Expression, kind: Type) -> Iterator[ex.Expression]:
+    """That a value is in the range of its variable, as far as its type does not say so."""
+    if isinstance(kind, range):
+        own = domain(variable.type)
+        if kind.start < own.low:
+            yield ex.GreaterOrEqual(left=copied(value), right=literal(own.low))
+        if kind.stop - 1 > own.high:
+            yield ex.LessOrEqual(left=copied(value), right=literal(own.high))
+
+
+def _type(kind: Type) -> ex.Type:
+    if isinstance(kind, range):
+        return ex.IntegerType(minimum=kind.start, maximum=kind.stop - 1)
+    return ex.EnumerationType(enumeration=kind) if isinstance(kind, ex.Enumeration) else ex.BooleanType()
+
+
+def _default(kind: Type) -> Any:
+    """CIF's initial value where a declaration gives none."""
+    if isinstance(kind, range):
+        return min(max(0, kind.start), kind.stop - 1)
+    return kind.literals[0] if isinstance(kind, ex.Enumeration) else False
+
+
+def _words(read: Any) -> str:
+    """What stands in the text, as one line."""
+    start, end = span(read)
+    return " ".join(text_of(read).content[start:end].split()).rstrip(";").strip()
+
+
+def _missing(name: str, known: list[str]) -> tuple[str, Any]:
+    return f"there is no location `{name}` here", did_you_mean(name, known, cutoff=0.6)

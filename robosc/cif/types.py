@@ -1,0 +1,119 @@
+"""CIF's types, as far as synthesis takes them: BOOLEAN, an enumeration, or for integers the range of their values."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final, TypeAlias
+
+from robosc.metamodel import expression as ex
+from robosc.metamodel import sct
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+BOOLEAN: Final = "bool"
+#: CIF's integers have 32 bits.
+LARGEST = 2**31 - 1
+Type: TypeAlias = str | range | ex.Enumeration
+
+#: How tightly each operator binds, and what it makes. All comparisons bind alike; an implication is no chain.
+OPERATORS: Mapping[str, tuple[int, type[ex.BinaryExpression]]] = {
+    "=>": (1, ex.Implication),
+    "<=>": (1, ex.Equation),
+    "or": (2, ex.Disjunction),
+    "and": (3, ex.Conjunction),
+    "=": (4, ex.Equation),
+    "!=": (4, ex.Inequation),
+    "<": (4, ex.LessThan),
+    "<=": (4, ex.LessOrEqual),
+    ">": (4, ex.GreaterThan),
+    ">=": (4, ex.GreaterOrEqual),
+    "+": (5, ex.Addition),
+    "-": (5, ex.Subtraction),
+    "*": (6, ex.Multiplication),
+    "div": (6, sct.Quotient),
+    "mod": (6, sct.Quotient),
+}
+#: Operators that no expression has that synthesis takes.
+FOREIGN = {"/": 6, "in": 4, "sub": 4}
+_LOGICAL = ("=>", "<=>", "or", "and")
+
+
+def shown(kind: Type) -> str:
+    """A type as CIF writes it."""
+    match kind:
+        case range():
+            return f"int[{kind.start}..{kind.stop - 1}]"
+        case ex.Enumeration():
+            return str(kind.name)
+    return str(kind)
+
+
+def compatible(one: Type, other: Type) -> bool:
+    """Whether values of the types can be compared, and be alternatives of each other: ranges don't matter for that."""
+    if isinstance(one, ex.Enumeration) and isinstance(other, ex.Enumeration):
+        return [literal.name for literal in one.literals] == [literal.name for literal in other.literals]
+    return isinstance(one, range) and isinstance(other, range) if isinstance(one, range) else one == other
+
+
+def combined(operator: str, left: Type, right: Type) -> Type:
+    """The type of a binary expression. Raises TypeError, saying why there is none."""
+    if operator in _LOGICAL:
+        fits = left == right == BOOLEAN
+    elif operator in ("=", "!="):
+        fits = compatible(left, right)
+    else:
+        fits = isinstance(left, range) and isinstance(right, range)
+    if not fits:
+        raise TypeError(f"`{operator}` does not apply to {shown(left)} and {shown(right)}")
+    if not isinstance(left, range) or not isinstance(right, range) or OPERATORS[operator][0] < 5:
+        return BOOLEAN
+    if operator in ("div", "mod"):
+        return _divided(operator, left, right)
+    low, high = right.start, right.stop - 1
+    if operator == "+":
+        made = range(left.start + low, left.stop + high)
+    elif operator == "-":
+        made = range(left.start - high, left.stop - low)
+    else:
+        corners = [one * other for one in (left.start, left.stop - 1) for other in (low, high)]
+        made = range(min(corners), max(corners) + 1)
+    return bounded(operator, made)
+
+
+def bounded(operator: str, made: range) -> range:
+    """The values of an operation. Raises TypeError where some do not fit CIF's integers."""
+    if made.start < -LARGEST - 1 or made.stop - 1 > LARGEST:
+        raise TypeError(f"`{operator}` could overflow: its values are {made.start} to {made.stop - 1}")
+    return made
+
+
+def _divided(operator: str, left: range, right: range) -> range:
+    if len(right) != 1 or right.start < 1:
+        raise TypeError(f"synthesis takes `{operator}` by a positive constant only")
+    if left.start < 0:
+        raise TypeError(f"synthesis takes `{operator}` of what is never negative only")
+    divisor, last = right.start, left.stop - 1
+    return range(left.start // divisor, last // divisor + 1) if operator == "div" else range(min(last, divisor - 1) + 1)
+
+
+def joined(one: Type, other: Type) -> Type:
+    """The type of something that is one or the other. Raises TypeError where they are not compatible."""
+    if not compatible(one, other):
+        raise TypeError(f"the alternatives are {shown(one)} and {shown(other)}")
+    if isinstance(one, range) and isinstance(other, range):
+        return range(min(one.start, other.start), max(one.stop, other.stop))
+    return one
+
+
+def overlap(variable: Type, value: Type) -> bool:
+    """Whether a variable can be assigned some of the values."""
+    if isinstance(variable, range) and isinstance(value, range):
+        return variable.start < value.stop and value.start < variable.stop
+    return compatible(variable, value)
+
+
+def contains(variable: Type, value: Type) -> bool:
+    """Whether a variable can have all of the values."""
+    if isinstance(variable, range) and isinstance(value, range):
+        return variable.start <= value.start and value.stop <= variable.stop
+    return compatible(variable, value)

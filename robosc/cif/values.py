@@ -1,0 +1,308 @@
+"""What names and types mean in expressions: constants, algebraic variables, types, and the values that never change."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from robosc.cif.expressions import ExpressionReader, Typed
+from robosc.cif.faults import CifFaultError, construct
+from robosc.cif.scopes import Argument, Declared, Names, Scope, plain
+from robosc.cif.types import BOOLEAN, LARGEST, Type, contains, shown
+from robosc.metamodel import expression as ex
+from robosc.metamodel import sct
+from robosc.semantics.evaluation import evaluate
+from robosc.semantics.printing import conjunction
+from robosc.semantics.walks import copied, parts
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+
+#: So many operators and operands an expression may have, what its names stand for counted.
+_LARGEST_EXPRESSION = 50_000
+#: Operands that synthesis does not take, and what to write instead.
+_FOREIGN = {
+    "Received": ("channels", "CIF's `--elim-channels` (cif2cif) takes them out"),
+    "Time": ("time", "model the passing of time by events"),
+    "Real": ("reals", "write whole numbers"),
+    "String": ("strings", "write an enumeration"),
+    "Collection": ("lists, sets and dictionaries", "write a variable for each element"),
+}
+_MINMAX = {"min": min, "max": max}
+
+
+class Values:
+    """The expressions of a specification."""
+
+    def __init__(self, names: Names) -> None:
+        self.names = names
+        self._sizes: dict[Declared | Argument, int] = {}
+        self._algebraic: dict[Argument, Typed] = {}
+        self._equations: dict[Scope, dict[str, list[tuple[sct.Location | None, Any]]]] = {}
+        self._size = 0
+
+    def typed(self, read: Any, scope: Scope) -> Typed:
+        """An expression of a scope. Raises CifFaultError."""
+        made = self._nested(read, scope)
+        if isinstance(made.type, sct.Plant):
+            raise CifFaultError(read, "type", "an automaton is no value", "name one of its locations")
+        return made
+
+    def whole(self, read: Any, scope: Scope) -> Typed:
+        """The same, of an expression that stands by itself: it has a bound on its length."""
+        self._size = 0
+        return self.typed(read, scope)
+
+    def condition(self, reads: Sequence[Any], scope: Scope) -> ex.Expression | None:
+        """That all of some booleans hold; None of none."""
+        made = []
+        for read in reads:
+            one = self.whole(read, scope)
+            if one.type != BOOLEAN:
+                raise CifFaultError(read, "type", f"a condition is bool, this is {shown(one.type)}")
+            made.append(one.expression)
+        return conjunction(made)
+
+    def constant(self, read: Any, scope: Scope) -> tuple[Any, Type]:
+        """A value that never changes, and its type."""
+        made = self.whole(read, scope)
+        value = constant_value(made.expression)
+        if value is None:
+            raise CifFaultError(read, "type", "this is no constant")
+        return value, range(value, value + 1) if isinstance(made.type, range) else made.type
+
+    def _nested(self, read: Any, scope: Scope) -> Typed:
+        return ExpressionReader(read, lambda value, switched: self._operand(value, scope, switched)).result
+
+    def _operand(self, read: Any, scope: Scope, switched: sct.Plant | None) -> Typed:
+        self._grow(read, 1)
+        match type(read).__name__:
+            case "Truth":
+                return Typed(read, ex.BooleanLiteral(value=read.value == "true"), BOOLEAN)
+            case "Number":
+                value = int(read.value) if len(read.value) < 12 else LARGEST + 1
+                if value > LARGEST:
+                    raise CifFaultError(read, "integer-range", "an int is at most 2147483647")
+                return Typed(read, ex.IntegerLiteral(value=value), range(value, value + 1))
+            case "Parenthesis":
+                return self._nested(read.inner, scope)._replace(read=read)
+            case "Call":
+                return self._call(read, scope)
+            case "Reference":
+                return self._reference(read, scope, switched)
+            case "Own":
+                if scope.plant is None:
+                    raise CifFaultError(read, "type", "`self` stands in automata only")
+                return Typed(read, None, scope.plant)
+        raise construct(read, *_FOREIGN[type(read).__name__])
+
+    def _call(self, read: Any, scope: Scope) -> Typed:
+        name = read.function.strip()
+        if name not in ("min", "max", "abs"):
+            raise construct(read, f"the function `{name}`", "synthesis computes with `min`, `max` and `abs` only")
+        given = [self._nested(argument, scope) for argument in read.arguments]
+        wanted = 1 if name == "abs" else 2
+        if len(given) != wanted:
+            raise CifFaultError(
+                read, "argument", f"`{name}` takes {wanted} argument{'s'[: wanted - 1]}, found {len(given)}"
+            )
+        for argument, one in zip(read.arguments, given, strict=True):
+            if not isinstance(one.type, range):
+                raise CifFaultError(argument, "type", f"`{name}` wants an int")
+        made = ex.FunctionCall(function=name, arguments=[one.expression for one in given])
+        bounds = [(one.type.start, one.type.stop - 1) for one in given if isinstance(one.type, range)]
+        if name == "abs":
+            [(low, high)] = bounds
+            return Typed(read, made, range(max(low, -high, 0), max(-low, high) + 1))
+        least, most = (_MINMAX[name](ends) for ends in zip(*bounds, strict=True))
+        return Typed(read, made, range(least, most + 1))
+
+    def _reference(self, read: Any, scope: Scope, switched: sct.Plant | None) -> Typed:
+        if read.suffix:
+            what = "derivatives" if read.suffix == "'" else "functions and elements of lists"
+            raise construct(read, what, "write an algebraic variable for what it computes")
+        if switched is not None:
+            own = next((one for one in switched.locations if one.name == plain(read.name.text)), None)
+            if own is not None:
+                return Typed(read, sct.LocationReference(location=own), BOOLEAN)
+        made = self._value(read, self.names.find(read.name, scope))
+        if switched is not None and not isinstance(made.expression, sct.LocationReference):
+            raise CifFaultError(read, "type", f"`{read.name.text}` is no location of `{switched.name}`")
+        return made
+
+    def _value(self, read: Any, found: Any) -> Typed:
+        match found:
+            case sct.Location():
+                return Typed(read, sct.LocationReference(location=found), BOOLEAN)
+            case Scope(plant=sct.Plant() as plant):
+                return Typed(read, None, plant)
+            case Argument():
+                return self._copied(read, found, self._argument(found))
+            case Declared(kind="Constants" | "Algebraics"):
+                return self._copied(read, found, self.computed(found))
+            case Declared(kind="Variables" | "Inputs"):
+                if found.made is None:
+                    raise found.fault
+                return Typed(read, sct.VariableReference(variable=found.made), found.type)
+            case Declared(kind="Literal"):
+                enumeration = self.enumeration(found.outer)
+                literal = next(one for one in enumeration.literals if one.name == found.name)
+                return Typed(read, ex.EnumerationLiteralReference(literal=literal), enumeration)
+        raise CifFaultError(read, "type", f"`{read.name.text}` has no value")
+
+    def _copied(self, read: Any, named: Declared | Argument, made: Typed) -> Typed:
+        if named not in self._sizes:
+            self._sizes[named] = sum(1 for _ in parts(made.expression))
+        self._grow(read, self._sizes[named])
+        return Typed(read, copied(made.expression), made.type)
+
+    def _grow(self, read: Any, more: int) -> None:
+        self._size += more
+        if self._size > _LARGEST_EXPRESSION:
+            message = f"the expression has more than {_LARGEST_EXPRESSION} operands, what its names stand for included"
+            raise CifFaultError(read, "cif-construct", message, "give parts of it to automata with variables")
+
+    def _argument(self, argument: Argument) -> Typed:
+        """What an algebraic parameter stands for."""
+        if argument not in self._algebraic:
+            before, self._size = self._size, 0
+            self._algebraic[argument] = self.typed(argument.read, argument.scope)
+            self._size = before
+        return self._algebraic[argument]
+
+    def computed(self, found: Declared) -> Typed:
+        """The value of a constant or an algebraic variable."""
+        if found.made is None:
+            if found.open:
+                raise CifFaultError(found.read, "cyclic-definition", f"`{found.name}` is computed from itself")
+            before, self._size, found.open = self._size, 0, True
+            try:
+                kind = self.declared_type(found.outer.type, found.scope)
+                made = self._equation(found) if found.kind == "Algebraics" else self._fixed(found)
+                if not (isinstance(made.type, range) if kind == "int" else contains(kind, made.type)):
+                    raise CifFaultError(
+                        found.read, "type", f"`{found.name}` is {shown(kind)}, its value {shown(made.type)}"
+                    )
+            finally:
+                self._size, found.open = before, False
+            found.made = made
+        made = found.made
+        assert isinstance(made, Typed)
+        return made
+
+    def _fixed(self, found: Declared) -> Typed:
+        value, kind = self.constant(found.read.value, found.scope)
+        return Typed(found.read, literal(value), kind)
+
+    def _equation(self, found: Declared) -> Typed:
+        """What an algebraic variable is: by its declaration, by an equation, or by one in each location."""
+        if found.read.value is not None:
+            return self.typed(found.read.value, found.scope)
+        equations = self.equations(found.scope).get(found.name, [])
+        if not equations:
+            raise CifFaultError(
+                found.read, "cif-declaration", f"nothing says what `{found.name}` is", "add an equation for it"
+            )
+        made: Typed | None = None
+        for location, read in reversed(equations):
+            one = self.typed(read, found.scope)
+            if made is None or location is None:
+                made = one
+                continue
+            if isinstance(one.type, range) and isinstance(made.type, range):
+                kind: Any = range(min(one.type.start, made.type.start), max(one.type.stop, made.type.stop))
+            else:
+                kind = one.type
+            condition = sct.LocationReference(location=location)
+            choice = ex.Conditional(condition=condition, then=one.expression, otherwise=made.expression)
+            made = Typed(found.read, choice, kind)
+        assert made is not None
+        return made
+
+    def equations(self, scope: Scope) -> dict[str, list[tuple[sct.Location | None, Any]]]:
+        """The equations of a scope by the variable that they are of, each with its location where it is in one."""
+        if scope not in self._equations:
+            known = self._equations[scope] = {}
+            told: list[tuple[sct.Location | None, Any]] = [
+                (None, one) for declared in scope.declarations("Equations") for one in declared.equations
+            ]
+            if scope.plant is not None:
+                for location, read in zip(scope.plant.locations, scope.bodies[0].locations, strict=True):
+                    for element in read.elements:
+                        if type(element).__name__ == "Equations":
+                            told += [(location, one) for one in element.equations]
+            for place, one in told:
+                if one.derivative:
+                    raise construct(one, "continuous variables", "leave them to simulation")
+                known.setdefault(plain(one.name), []).append((place, one.value))
+        return self._equations[scope]
+
+    # Types
+
+    def declared_type(self, read: Any, scope: Scope) -> Type | str:
+        """A type of a text; `int` where it has no range."""
+        match type(read).__name__:
+            case "Boolean":
+                return BOOLEAN
+            case "Integer":
+                return "int" if read.low is None else self._range(read, scope)
+            case "ForeignType":
+                raise construct(read, f"the type `{read.word}`", "synthesis takes `bool`, ranges of `int` and `enum`")
+        found = self.names.find(read.type, scope)
+        if isinstance(found, Declared) and found.kind == "Enumeration":
+            return self.enumeration(found)
+        if not isinstance(found, Declared) or found.kind != "Types":
+            raise CifFaultError(read, "type", f"`{read.type.text}` is no type")
+        if found.type is None:
+            if found.open:
+                raise CifFaultError(found.read, "cyclic-definition", f"`{found.name}` is defined by itself")
+            found.open = True
+            try:
+                found.type = self.declared_type(found.read.type, found.scope)
+            finally:
+                found.open = False
+        return found.type  # type: ignore[no-any-return]
+
+    def _range(self, read: Any, scope: Scope) -> range:
+        (low, lowest), (high, highest) = (self.constant(bound, scope) for bound in (read.low, read.high))
+        if not isinstance(lowest, range) or not isinstance(highest, range):
+            raise CifFaultError(read, "type", "the bounds of an int are whole numbers")
+        if low > high:
+            raise CifFaultError(read, "integer-range", f"nothing is in int[{low}..{high}]")
+        return range(low, high + 1)
+
+    def enumeration(self, declared: Declared) -> ex.Enumeration:
+        """The enumeration of a declaration."""
+        if declared.made is None:
+            declared.made = ex.Enumeration(name=declared.scope.absolute(declared.name))
+            declared.made.literals.extend(ex.EnumerationLiteral(name=plain(one.name)) for one in declared.read.literals)
+        found: ex.Enumeration = declared.made
+        return found
+
+
+class _ChangingError(Exception):
+    """That a value is no constant."""
+
+
+def constant_value(expression: ex.Expression) -> Any:
+    """The value of an expression: a bool, an int or the literal of an enumeration; None where it is no constant."""
+
+    def read(reference: ex.Expression) -> Any:
+        if isinstance(reference, ex.EnumerationLiteralReference):
+            return reference.literal
+        raise _ChangingError
+
+    try:
+        return evaluate(expression, read)
+    except _ChangingError:
+        return None
+
+
+def literal(value: Any) -> ex.Expression:
+    """A value as a literal."""
+    if isinstance(value, bool):
+        return ex.BooleanLiteral(value=value)
+    if isinstance(value, ex.EnumerationLiteral):
+        return ex.EnumerationLiteralReference(literal=value)
+    whole = ex.IntegerLiteral(value=abs(int(value)))
+    return ex.UnaryMinus(operand=whole) if value < 0 else whole

@@ -1,0 +1,79 @@
+"""Issue 13: commands that take a `.cif` file, and those that do not yet."""
+
+import json
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from robosc.cli import main
+
+_TEXT = """controllable c_on, c_off;
+uncontrollable u_fail;
+input bool pressed;
+plant Motor:
+  disc int[0..3] n;
+  location Off: initial; marked;
+    edge c_on when n < 3 do n := n + 1 goto On;
+  location On:
+    edge c_off goto Off;
+    edge u_fail when pressed goto Broken;
+  location Broken:
+    edge c_off when n > 0 do n := n - 1 goto Off;
+end
+requirement c_on needs Motor.n != 2;
+"""
+
+
+@pytest.fixture
+def specification(tmp_path: Path) -> str:
+    path = tmp_path / "motor.cif"
+    path.write_text(_TEXT)
+    return str(path)
+
+
+def test_check_says_that_nothing_is_wrong(specification: str) -> None:
+    result = CliRunner().invoke(main, ["check", specification])
+    assert (result.exit_code, result.output) == (0, "")
+
+
+def test_check_shows_the_line(tmp_path: Path) -> None:
+    path = tmp_path / "wrong.cif"
+    path.write_text(_TEXT.replace("u_fail when", "u_fial when"))
+    result = CliRunner().invoke(main, ["check", str(path)])
+    assert result.exit_code == 1
+    assert "wrong.cif:10:10: error: there is no `u_fial` here [unresolved-reference]" in result.output
+    assert "        edge u_fial when pressed goto Broken;\n             ^^^^^^" in result.output
+    assert "hint: did you mean `u_fail`?" in result.output
+
+
+def test_synthesize_counts_as_cif_does(specification: str) -> None:
+    answer = json.loads(CliRunner().invoke(main, ["synthesize", specification, "--json"]).stdout)
+    assert (answer["robot"], answer["controlled_states"], answer["empty"]) == ("motor", 14, False)
+    assert [event["name"] for event in answer["events"]] == ["c_on", "c_off", "u_fail", "pressed"]
+    assert answer["events"][0]["guard"] == "Motor.n != 2"
+
+
+def test_synthesize_says_why_there_is_no_supervisor(tmp_path: Path) -> None:
+    path = tmp_path / "empty.cif"
+    path.write_text(_TEXT + "requirement u_fail needs false; requirement Motor.n > 0;")
+    result = CliRunner().invoke(main, ["synthesize", str(path)])
+    assert result.exit_code == 3
+    assert "`requirement Motor.n > 0` (line 15)" in result.output
+
+
+def test_explain_and_diagram_take_cif(specification: str) -> None:
+    result = CliRunner().invoke(main, ["explain", specification, "--event", "c_off"])
+    assert "`c_off`" in result.output
+    assert result.exit_code == 0
+    drawn = CliRunner().invoke(main, ["diagram", specification, "--kind", "plants"])
+    assert "Broken" in drawn.output
+
+
+@pytest.mark.parametrize(
+    "command", [["verify"], ["simulate", "--random", "3"], ["run", "--ros2"], ["transform", "--to", "cif"]]
+)
+def test_other_commands_say_that_they_do_not_take_it(command: list[str], specification: str) -> None:
+    result = CliRunner().invoke(main, [command[0], specification, *command[1:]])
+    assert result.exit_code == 2
+    assert "is CIF: so far" in result.output

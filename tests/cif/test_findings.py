@@ -1,0 +1,143 @@
+"""Issue 13, point 1: what is wrong with a specification is said where it is, how to mend it, and all in one run."""
+
+import random
+from pathlib import Path
+
+import pytest
+
+from robosc.cif import read
+from robosc.diagnostics import ModelError
+from robosc.language.text import Documents
+from robosc.synthesis import synthesize
+from tests.cif.random_specifications import Specification
+from tests.cif.test_language import COUNTS, reading
+
+_P = "plant p: location a: initial; marked; edge c; end\n"
+
+
+def findings(text: str) -> list[tuple[str, str, str | None]]:
+    """Place, message and hint of all findings."""
+    return [
+        (f"{finding.span.line}:{finding.span.column}", finding.message, finding.hint)
+        for finding in reading(main=text).findings
+    ]
+
+
+WRONG = {
+    "a word": (
+        "controllable c;\n" + _P.replace("edge", "egde"),
+        [("2:39", "did you mean `edge`?")],
+    ),
+    "two faults of the text": (
+        "controllable 5;\n" + _P.replace("edge c;", "edge c goto;") + "requirement not;\nplant q: location; end",
+        [("1:14", None), ("2:50", None), ("3:16", None)],
+    ),
+    "a name": ("controllable close;\n" + _P.replace("edge c", "edge clos"), [("2:44", "did you mean `close`?")]),
+    "a name in a group": (
+        "group g: controllable close; end\n" + _P.replace("edge c", "edge g.clos"),
+        [("2:44", "did you mean `g.close`?")],
+    ),
+    "a target": ("controllable c;\n" + _P.replace("edge c", "edge c goto b"), [("2:51", None)]),
+    "types, all in one run": (
+        "controllable c; const int n = true;\n"
+        + _P.replace("edge c", "edge c when 1")
+        + "requirement c needs p.a + 1;\n"
+        "requirement p;",
+        [("1:27", None), ("2:51", None), ("3:25", None), ("4:13", "name one of its locations")],
+    ),
+    "two of one name": ("controllable c;\ncontrollable c;\n" + _P, [("2:14", "rename one of them")]),
+    "an event of no kind": ("event c;\n" + _P, [("2:44", "declare `c` as `controllable` or as `uncontrollable`")]),
+    "tau": (_P.replace("edge c", "edge tau"), [("1:39", "declare an uncontrollable event for it")]),
+    "a continuous variable": ("controllable c; cont x der 1;\n" + _P, [("1:17", None)]),
+    "a function": ("controllable c; func int f(int x): if x > 1: x := 2; end return x; end\n" + _P, [("1:17", None)]),
+    "a channel": ("controllable int c;\n" + _P.replace("edge c", "edge c!3"), [("1:1", None), ("2:44", None)]),
+    "a list": ("controllable c; plant q: disc list int x; location: initial; end\n" + _P, [("1:31", None)]),
+    "an int without range": ("controllable c; plant q: disc int x; location: initial; end\n" + _P, [("1:31", None)]),
+    "an automaton of no kind": (
+        "controllable c;\n" + _P.replace("plant p", "automaton p") + "plant q: location: initial; end",
+        [("2:1", None)],
+    ),
+    "a supervisor": ("controllable c;\n" + _P + _P.replace("plant p", "supervisor q"), [("3:1", None)]),
+    "no plant": ("controllable c;\n", [("1:1", "name one automaton `plant` at least")]),
+    "nothing": ("// nothing", [("1:1", "name one automaton `plant` at least")]),
+    "no initial location": ("controllable c;\nplant p: location; end", [("2:1", "write `initial;` in one")]),
+    "the variable of another automaton": (
+        "controllable c; plant q: disc bool b; location: initial; end\n"
+        + _P.replace("edge c", "edge c do q.b := true"),
+        [("2:49", None)],
+    ),
+    "a circle of algebraic variables": (
+        "controllable c; alg bool a = b, b = a;\n" + _P + "requirement a;",
+        [("1:26", None), ("1:33", None)],
+    ),
+    "a circle of definitions": (
+        "group def A(): b: B(); end group def B(): a: A(); end\na: A(); controllable c;\n" + _P,
+        [("1:43", None)],
+    ),
+    "a circle of types": ("controllable c; type A = B, B = A; input A x;\n" + _P, [("1:22", None)]),
+    "arguments": ("controllable c; plant def D(event e): location: initial; end d: D();\n" + _P, [("1:62", None)]),
+    "division by what changes": (
+        "controllable c; input int[0..3] i;\n" + _P + "requirement i div i = 1;",
+        [("3:15", None)],
+    ),
+    "a file that is not there": ('import "no.cif"; controllable c;\n' + _P, [("1:1", None)]),
+    "a number": ("controllable c;\n" + _P + "requirement 99999999999 > 1;", [("3:13", None)]),
+    "too deep": (
+        "controllable c;\n" + _P + f"requirement {'(' * 500}true{')' * 500};",
+        [("1:1", "take some of them apart")],
+    ),
+    "too long": (
+        "controllable c; alg bool a0 = p.a, "
+        + ", ".join(f"a{n + 1} = a{n} and a{n}" for n in range(30))
+        + ";\n"
+        + _P
+        + "requirement a30;",
+        [("1:287", "give parts of it to automata with variables")],
+    ),
+}
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_a_fault_is_said_at_its_place(name: str) -> None:
+    text, wanted = WRONG[name]
+    found = findings(text)
+    assert [place for place, _, _ in found] == [place for place, _ in wanted], found
+    for (_, message, hint), (_, mend) in zip(found, wanted, strict=True):
+        assert message
+        assert mend is None or mend == hint
+
+
+def test_two_edges_of_a_controllable_event_exclude_each_other() -> None:
+    model = reading(
+        main="controllable c;\n" + _P.replace("edge c;", "edge c; edge c when not p.a;\nedge c when p.a;")
+    ).model
+    with pytest.raises(ModelError) as caught:
+        synthesize(model)
+    assert [(finding.rule, finding.span.line) for finding in caught.value.diagnostics] == [("nondeterminism", 3)]
+
+
+def damaged(text: str, some: random.Random) -> str:
+    """A text with a piece taken out, doubled or put elsewhere."""
+    start = some.randrange(len(text))
+    end = min(len(text), start + some.choice([1, 1, 2, 5, 20, 60]))
+    piece, rest = text[start:end], text[:start] + text[end:]
+    match some.randrange(4):
+        case 0:
+            return rest
+        case 1:
+            return text[:end] + piece + text[end:]
+        case 2:
+            place = some.randrange(len(rest) + 1)
+            return rest[:place] + piece + rest[place:]
+    return text[:start] + some.choice(";:(){}[]=.,$^@\"'/*0eé\n") + text[end:]
+
+
+@pytest.mark.parametrize("start", range(0, 200, 100))
+def test_damaged_specifications_end_in_findings(start: int) -> None:
+    texts = [text for text, _ in COUNTS.values()]
+    for seed in range(start, start + 100):
+        some = random.Random(seed)  # noqa: S311 - models, no secrets
+        text = damaged(some.choice([*texts, Specification(seed).text]), some)
+        path = Path("main.cif").resolve()
+        found = read(path, Documents({str(path): text}))
+        assert (found.model is None) == bool(found.findings)
