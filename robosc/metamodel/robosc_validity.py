@@ -78,9 +78,19 @@ def _owner(reference: robosc.CommunicationReference | robosc.Access) -> robosc.C
     own: robosc.Component | None = around(reference, robosc.Component)
     base = around(reference, robosc.Base)
     component = reference.component or own
+    if component is not None and _stands_for_an_instance(component, reference):
+        return component
     if component is None or component.eContainer() is not base:
         return None
     return component if component is own or isinstance(base, robosc.Robot) else None
+
+
+def _stands_for_an_instance(component: robosc.Component, reference: Any) -> bool:
+    """Whether a reference stands in the body of an `all`, `any` or `count` over the instances of a component."""
+    quantifier: Any = around(reference, robosc.InstanceQuantifier)
+    while quantifier is not None and quantifier.template is not component:
+        quantifier = around(quantifier, robosc.InstanceQuantifier)
+    return quantifier is not None
 
 
 def _definitions(component: robosc.Component) -> Sequence[Any]:

@@ -64,6 +64,11 @@ def checked(seed: int, path: Path) -> tuple[Outcome, Robot | None]:
     Raises AssertionError for an error that a valid robot draws, and where read back models differ.
     """
     path.write_text(valid_robot(seed), encoding="utf-8")
+    return taken_through(path, seed)
+
+
+def taken_through(path: Path, seed: int) -> tuple[Outcome, Robot | None]:
+    """The same of the robot in a file; `seed` is for the walk, and a number of its own for `compiled`."""
     outcome = tried(path, TARGETS)
     errors = [finding for finding in outcome.findings if has_errors([finding]) and finding.rule not in _ALLOWED]
     # A robot without a plant is none for CIF.

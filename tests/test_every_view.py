@@ -1,0 +1,69 @@
+"""The examples of the language's second edition, each in a model with the little that it needs, in all views."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+from click.testing import CliRunner
+
+import robosc
+from robosc.cli import main
+from robosc.diagrams import GRAPH_NOTATIONS, behaviour_graph, diagram, plants_graph, ros_graph
+from robosc.m2t.targets import TARGETS
+from tests.fuzz.valid import compared, compiled, taken_through
+
+if TYPE_CHECKING:
+    from tests.fuzz.valid import Robot
+
+FOLDER = Path(__file__).parent / "every_view"
+NAMES = ["data", "names", "requirements", "templates", "transitions"]
+EACH = pytest.mark.parametrize("name", NAMES)
+
+
+def in_all_views(name: str, folder: Path) -> Robot:
+    """It draws no error, is what is saved of it and what its CIF says, becomes every package, and has a supervisor."""
+    copied = shutil.copytree(FOLDER, folder / "models")
+    # Each fifth number is saved as XMI and read back.
+    _, robot = taken_through(copied / f"{name}.rscd", 5 * NAMES.index(name))
+    assert robot is not None
+    return robot
+
+
+def test_all_are_there() -> None:
+    assert sorted(path.stem for path in FOLDER.glob("*.rscd")) == sorted([*NAMES, "ArmLibrary"])
+
+
+@EACH
+def test_views(name: str, tmp_path: Path) -> None:
+    models = in_all_views(name, tmp_path).models
+    assert models.robosc is not None
+    assert models.rosgraph is not None
+    graphs = behaviour_graph(models.robosc), plants_graph(models.sct), ros_graph(models.rosgraph)
+    assert all(diagram(graph, notation) for graph in graphs for notation in GRAPH_NOTATIONS)
+    for target in ("ros1-layer", "ros2-layer"):
+        assert not TARGETS[target].findings(models, robosc.Configuration())
+        assert robosc.generate(target, models)
+
+
+@EACH
+def test_the_layout_is_canonical(name: str) -> None:
+    done = CliRunner().invoke(main, ["format", "--check", str(FOLDER / f"{name}.rscd")])
+    assert (done.exit_code, done.output) == (0, "")
+
+
+@EACH
+def test_it_can_be_simulated(name: str) -> None:
+    done = CliRunner().invoke(main, ["simulate", str(FOLDER / f"{name}.rscd"), "--random", "50", "--seed", "1"])
+    assert done.exit_code == 0, done.output
+    assert len(done.stdout.splitlines()) == 50
+
+
+@pytest.mark.build
+@pytest.mark.skipif(shutil.which("gcc") is None, reason="no C compiler")
+@EACH
+def test_the_engine_in_c_does_what_the_interpreter_does(name: str, tmp_path: Path) -> None:
+    robot = in_all_views(name, tmp_path)
+    compared(robot, compiled([robot], tmp_path, ["-O0", "-fsanitize=undefined", "-fno-sanitize-recover=all"]))
