@@ -98,7 +98,9 @@ def read_models(path: str, paths: Paths, report: Report, *, cif: bool = False) -
     Ends the report where there are errors. Raises CallError for a library, and for CIF where the call does not take it.
     """
     if path.endswith(".cif") and not cif:
-        raise CallError(f"{path} is CIF: so far `check`, `synthesize`, `explain` and `diagram` take it")
+        raise CallError(
+            f"{path} is CIF: so far `check`, `synthesize`, `explain`, `diagram` and `transform --to cif` take it"
+        )
     root = read(path, paths, report)
     if isinstance(root, rsc.Library):
         raise CallError(f"{path} holds a library: it has no supervisor of its own, a robot that imports it has")

@@ -68,7 +68,8 @@ def command(
 ) -> None:
     """Check a robot, synthesize its supervisor and generate the TARGETs from it, all of them or none.
 
-    MODEL is a .rscd file with a robot, or an .xmi file that an earlier `--to xmi` wrote.
+    MODEL is a .rscd file with a robot, or an .xmi file that an earlier `--to xmi` wrote; for `--to cif` also a .cif
+    file, beside which the result belongs: it imports it.
 
     \b
     Examples:
@@ -83,7 +84,7 @@ def command(
         tested = [target.name for target in TARGETS.values() if target.tested_ros]
         raise CallError(f"--with-tests is for {' and '.join(tested)}: the other targets have none")
     with Report(form) as report:
-        models = read_models(model, paths, report)
+        models = read_models(model, paths, report, cif=all(target.name == "cif" for target in targets))
         for target in targets:
             if target.needs_graph and models.rosgraph is None:
                 raise CallError(f"{model} has no ROS graph, which {target.name} needs: give its .rosgraph.xmi or .rscd")

@@ -161,7 +161,8 @@ class Supervisor(expression.Located):
     bddNodes: int
     settlingBound: int | None
     guards: MutableSequence[EventGuard]
-    def __init__(self, *, uncontrolledStates: int | None = ..., controlledStates: int | None = ..., bddNodes: int | None = ..., settlingBound: int | None = ..., guards: Iterable[EventGuard] = ..., source: Place | None = ...) -> None: ...
+    initial: expression.Expression | None
+    def __init__(self, *, uncontrolledStates: int | None = ..., controlledStates: int | None = ..., bddNodes: int | None = ..., settlingBound: int | None = ..., guards: Iterable[EventGuard] = ..., initial: expression.Expression | None = ..., source: Place | None = ...) -> None: ...
 
 class EventGuard(expression.Located):
     """When the supervisor allows an event: where both parts hold. What the plants forbid is not repeated."""

@@ -23,6 +23,7 @@ from robosc.metamodel import sct
 from robosc.metamodel.places import place
 from robosc.semantics.roles import event_name
 from robosc.synthesis.bdd import Diagrams, with_enough_memory
+from robosc.synthesis.cover import separating_expression
 from robosc.synthesis.encoding import Encoding, Layout
 from robosc.synthesis.fixpoint import SupervisedStates, reachable, supervise
 from robosc.synthesis.guards import Permission, permission
@@ -189,6 +190,10 @@ def _solved(model: sct.SupervisoryControlModel, layout: Layout, capacity: int, s
             bddNodes=nodes + sum(permission.where.node_count() for permission in permissions),
             guards=[permission.guard for permission in permissions],
         )
+        left_out = encoding.initial & ~found.controlled
+        if left_out.satisfiable():
+            started = encoding.initial & found.controlled
+            supervisor.initial = separating_expression(encoding, started, left_out, encoding.layout.state)
         # Within the controlled states a step leads where its guard lets it, and nowhere else.
         supervised = [(relation, relation.enabled & relation.requirement, relation.step) for relation in relations]
         internal = internal_events(supervised, supervisor.guards)

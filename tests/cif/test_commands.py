@@ -70,8 +70,38 @@ def test_explain_and_diagram_take_cif(specification: str) -> None:
     assert "Broken" in drawn.output
 
 
+def test_transform_adds_the_supervisor_to_the_specification(tmp_path: Path) -> None:
+    path = tmp_path / "motor.cif"
+    path.write_text(
+        _TEXT.replace("int[0..3] n", "int[0..3] n in {0, 3}")
+        + "group end_: controllable $end; uncontrollable u; input int[0..1] $if; end\n"
+        + "plant q: location a: initial; marked; edge end_.$end when end_.$if = 1 goto b; "
+        + "location b: edge end_.u goto c; location c; end\nrequirement Motor.n < 3;"
+    )
+    result = CliRunner().invoke(main, ["transform", str(path), "--to", "cif", "-o", str(tmp_path)])
+    assert result.exit_code == 0, result.output
+    assert (
+        (tmp_path / "motor.supervised.cif").read_text()
+        == """@@doc("motor under its supervisor: 28 of 120 states.")
+import "motor.cif";
+
+@doc("What synthesis added.")
+supervisor automaton sup:
+  alphabet c_on, c_off, end_.end;
+  initial Motor.n = 0;
+
+  location:
+    initial; marked;
+    edge c_on;
+    edge c_off;
+    edge end_.end when false;
+end
+"""
+    )
+
+
 @pytest.mark.parametrize(
-    "command", [["verify"], ["simulate", "--random", "3"], ["run", "--ros2"], ["transform", "--to", "cif"]]
+    "command", [["verify"], ["simulate", "--random", "3"], ["run", "--ros2"], ["transform", "--to", "supervisor,cif"]]
 )
 def test_other_commands_say_that_they_do_not_take_it(command: list[str], specification: str) -> None:
     result = CliRunner().invoke(main, [command[0], specification, *command[1:]])

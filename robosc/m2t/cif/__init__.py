@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from robosc.diagnostics import Diagnostic, Severity
 from robosc.m2t.cif.arithmetic import assigned, condition
+from robosc.m2t.cif.extension import extended, is_from_cif
 from robosc.m2t.cif.linear import LARGEST, Unsupported, bounds, shift
 from robosc.m2t.cif.specification import Writer
 from robosc.metamodel import expression as ex
@@ -35,6 +36,8 @@ def preconditions(models: Models, _configuration: Configuration) -> list[Diagnos
     No plant at all, numbers beyond 32 bits, names that are none, and expressions that would have to be split into too
     many cases, since CIF's synthesis can't multiply.
     """
+    if is_from_cif(models.sct):
+        return []
     if not models.sct.plants:
         reason = "the robot has neither communications nor behaviours, and CIF takes no specification without a plant"
         hint = "give it a component with a message, a service, an action or a behaviour"
@@ -49,9 +52,14 @@ def preconditions(models: Models, _configuration: Configuration) -> list[Diagnos
 def generate(models: Models, _configuration: Configuration) -> dict[str, str]:
     """`<robot>.cif`, and where the model has a supervisor `<robot>.supervised.cif`; of the sct model alone.
 
+    Of a model that was read from CIF the latter only: it imports the specification.
+
     Raises Unsupported where `preconditions` finds something.
     """
-    writer, name, supervisor = Writer(models.sct), models.sct.name, models.sct.supervisor
+    name, supervisor = models.sct.name, models.sct.supervisor
+    if is_from_cif(models.sct):
+        return {} if supervisor is None else {f"{name}.supervised.cif": extended(models.sct, supervisor)}
+    writer = Writer(models.sct)
     files = {f"{name}.cif": writer.unsupervised()}
     if supervisor is not None:
         files[f"{name}.supervised.cif"] = writer.supervised(supervisor)

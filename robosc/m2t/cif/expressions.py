@@ -12,6 +12,7 @@ from robosc.semantics.printing import Printed, Printer
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from robosc.m2t.cif.extension import AbsoluteNames
     from robosc.m2t.cif.names import CifNames
 
 
@@ -20,7 +21,7 @@ class CifPrinter(Printer):
 
     symbols = {**SYMBOLS, ex.Negation: "not "}  # noqa: RUF012  # ClassVar in the parent
 
-    def __init__(self, names: CifNames, plant: sct.Plant | None) -> None:
+    def __init__(self, names: CifNames | AbsoluteNames, plant: sct.Plant | None) -> None:
         self._names = names
         self._plant = plant
 

@@ -48,7 +48,7 @@ class Writer:
 
     def unsupervised(self) -> str:
         """The plants and the requirements."""
-        lines = _doc([f"The plants and requirements of {self._model.name}."], sign="@@")
+        lines = document([f"The plants and requirements of {self._model.name}."], sign="@@")
         return folded([*lines, *self._plants(), *self._requirements()])
 
     def supervised(self, supervisor: sct.Supervisor) -> str:
@@ -63,18 +63,21 @@ class Writer:
         added = any(guard.synthesis for guard in guards)
         return folded(
             [
-                *_doc(self._counted(supervisor), sign="@@"),
+                *document(self._counted(supervisor), sign="@@"),
                 *self._plants(),
                 *([""] if kept else []),
                 *kept,
                 "",
-                *_doc(["What synthesis added." if added else "Synthesis added nothing to the requirements."]),
+                *document(["What synthesis added." if added else "Synthesis added nothing to the requirements."]),
                 f"supervisor automaton {self._names.supervisor}:",
                 f"  alphabet {', '.join(events)};" if events else "  alphabet;",
                 "",
                 "  location:",
                 "    initial; marked;",
-                *(_edge(event, self._condition(guard.synthesis)) for event, guard in zip(events, guards, strict=True)),
+                *(
+                    edge_text(event, self._condition(guard.synthesis))
+                    for event, guard in zip(events, guards, strict=True)
+                ),
                 "end",
             ]
         )
@@ -106,7 +109,7 @@ class Writer:
         if texts:
             yield ""
         for said, found in texts.items():
-            yield from [*_doc(dict.fromkeys(filter(None, found))), said]
+            yield from [*document(dict.fromkeys(filter(None, found))), said]
 
     def _plant(self, plant: sct.Plant) -> Iterator[str]:
         """What is in a plant."""
@@ -132,7 +135,7 @@ class Writer:
         possible = (event for event in plant.events if event not in self._impossible)
         alike = groupby(possible, key=lambda event: (event.controllable, self._meanings.get(event)))
         for (controllable, meaning), events in alike:
-            yield from _doc([meaning] if meaning else [], "  ")
+            yield from document([meaning] if meaning else [], "  ")
             kind = "controllable" if controllable else "uncontrollable"
             yield f"  {kind} {', '.join(map(self._names.declared, events))};"
 
@@ -146,13 +149,13 @@ class Writer:
             elif isinstance(member.type, ex.IntegerType):
                 (low, high), up = bounds(member), shift(member)
                 kind = f"int[{low + up}..{high + up}]"
-                yield from _doc([f"{name} + {up}, with {name} in {low}..{high}"] if up else [], "  ")
+                yield from document([f"{name} + {up}, with {name} in {low}..{high}"] if up else [], "  ")
             initial = printer(held(member)) if isinstance(member, sct.DiscreteVariable) else None
             yield f"  input {kind} {name};" if initial is None else f"  disc {kind} {name} = {initial};"
         number = self._names.number(plant)
         if number is not None:
             start = next(position for position, location in enumerate(plant.locations) if location.initial)
-            yield from _doc(["The number of the provide statement that is chosen, 0 for none."], "  ")
+            yield from document(["The number of the provide statement that is chosen, 0 for none."], "  ")
             yield f"  disc int[0..{len(plant.locations) - 1}] {number} = {start};"
 
     def _edge(self, edge: sct.Edge, location: sct.Location, plant: sct.Plant, printer: CifPrinter) -> str:
@@ -164,7 +167,7 @@ class Writer:
         if number is not None:
             updates.append(f"{number} := {self._numbers[edge.target]}")
         stays = edge.target is location or number is not None
-        return _edge(
+        return edge_text(
             self._names.used(edge.event, plant),
             "" if edge.guard is None else printer(condition(edge.guard)),
             ", ".join(updates),
@@ -187,12 +190,12 @@ class Writer:
         return "" if expression is None else self._outside(condition(expression))
 
 
-def _doc(texts: Iterable[str], indent: str = "", sign: str = "@") -> list[str]:
+def document(texts: Iterable[str], indent: str = "", sign: str = "@") -> list[str]:
     """Annotations with these texts."""
     return [f"{indent}{sign}doc({quoted(text)})" for text in texts]
 
 
-def _edge(event: str, guard: str, updates: str = "", target: str = "") -> str:
+def edge_text(event: str, guard: str, updates: str = "", target: str = "") -> str:
     """An edge; what is empty is left out."""
     parts = zip((" when ", " do ", " goto "), (guard, updates, target), strict=True)
     return f"    edge {event}{''.join(word + text for word, text in parts if text)};"

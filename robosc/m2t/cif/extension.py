@@ -1,0 +1,81 @@
+"""The supervisor of a specification that was read from CIF: it imports the specification and adds an automaton."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robosc.m2t.cif.expressions import CifPrinter
+from robosc.m2t.cif.names import KEYWORDS
+from robosc.m2t.cif.specification import document, edge_text, folded
+from robosc.metamodel import expression as ex
+from robosc.metamodel import sct
+from robosc.semantics.naming import Names
+from robosc.semantics.roles import event_name
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+
+def is_from_cif(model: sct.SupervisoryControlModel) -> bool:
+    """Whether a model was read from CIF."""
+    return any(event.kind == sct.EventKind.plain for plant in model.plants for event in plant.events)
+
+
+def extended(model: sct.SupervisoryControlModel, supervisor: sct.Supervisor) -> str:
+    """A specification that imports the one that the model was read from, with an automaton of what synthesis added.
+
+    Its requirements stay what they are: all of CIF's tools but synthesis take them as automata like others.
+    """
+    return folded(list(_lines(model, supervisor)))
+
+
+class AbsoluteNames:
+    """Names as they are read outside of all automata."""
+
+    def used(self, element: ex.NamedElement, _plant: sct.Plant | None) -> str:
+        """A name with all around it."""
+        owner = element.eContainer()
+        around = owner.name.rpartition(".")[0] if isinstance(owner, ex.Enumeration) else owner.name
+        return escaped(f"{around}.{element.name}".removeprefix("."))
+
+    def declared(self, element: ex.NamedElement) -> str:
+        """The name of a plant."""
+        return escaped(element.name)
+
+    def number(self, _plant: sct.Plant) -> str | None:
+        """No location is a number."""
+        return None
+
+
+def escaped(name: str) -> str:
+    """A name of one identifier with a dollar sign before it where it is a keyword."""
+    return f"${name}" if name in KEYWORDS else name
+
+
+def _lines(model: sct.SupervisoryControlModel, supervisor: sct.Supervisor) -> Iterator[str]:
+    printer = CifPrinter(AbsoluteNames(), None)
+    assert model.source is not None
+    assert model.source.file is not None
+    # What stands first in each name, of all that the specification has.
+    taken = {plant.name.partition(".")[0] for plant in model.plants}
+    taken |= {event_name(event).partition(".")[0] for plant in model.plants for event in plant.events}
+    taken |= {member.name for plant in model.plants if not plant.name for member in plant.variables}
+    for enumeration in model.enumerations:
+        taken |= {enumeration.name.partition(".")[0], *(literal.name for literal in enumeration.literals)}
+    states = f"{supervisor.controlledStates} of {supervisor.uncontrolledStates} states."
+    yield from document([f"{model.name} under its supervisor: {states}"], sign="@@")
+    yield f'import "{model.source.file.name}";'
+    yield ""
+    added = any(guard.synthesis for guard in supervisor.guards)
+    yield from document(["What synthesis added." if added else "Synthesis added nothing to the requirements."])
+    yield f"supervisor automaton {Names(taken).fresh('sup')}:"
+    events = [(guard, escaped(event_name(guard.event))) for guard in supervisor.guards]
+    yield f"  alphabet {', '.join(event for _, event in events)};" if events else "  alphabet;"
+    if supervisor.initial is not None:
+        yield f"  initial {printer(supervisor.initial)};"
+    yield ""
+    yield "  location:"
+    yield "    initial; marked;"
+    for guard, event in events:
+        yield edge_text(event, "" if guard.synthesis is None else printer(guard.synthesis))
+    yield "end"
