@@ -15,6 +15,7 @@ _TYPES = {
     "ELongObject": "int",
     "EBigInteger": "int",
     "EDouble": "float",
+    "EDoubleObject": "float",
     "Place": "Place",
 }
 

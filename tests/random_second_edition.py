@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from random import Random
+
 from tests.random_robots import BOOLEAN, DOUBLE, INTEGER, NONE, Communication, Component, Type, Variable, Writer, paths
 
 _NAMED = (
@@ -18,6 +20,7 @@ class SecondWriter(Writer):
 
     def __init__(self, seed: int) -> None:
         super().__init__(seed, mistakes=False)
+        self.seed = seed
         self.constants = [("k0", INTEGER), ("k1", DOUBLE), ("k2", BOOLEAN)]
         self.conditions: list[str] = []
         self.templates: list[str] = []
@@ -37,7 +40,7 @@ class SecondWriter(Writer):
             lines.append(
                 f"requirement N: {target} needs {self.one(self.conditions)} or {self.expression(BOOLEAN, finite, 2)}"
             )
-        return "\n".join([head, *_NAMED, *lines, *self.templates, end])
+        return "\n".join([head, *_NAMED, *lines, *self.templates, *kept(self.seed), end])
 
     def declare(self, number: int) -> None:
         super().declare(number)
@@ -128,6 +131,69 @@ class SecondWriter(Writer):
     def literals(self, kind: Type) -> list[str]:
         named = [name for name, found in self.constants if found == kind]
         return [*super().literals(kind), *named]
+
+
+def kept(seed: int) -> list[str]:
+    """Of every other robot a component that keeps arrays and objects, and hands them on; parameters, times by name."""
+    random = Random(seed)  # noqa: S311 - nothing here is secret
+    if random.random() < 0.5:
+        return []
+
+    def one(*choices: str) -> str:
+        return random.choice(choices)
+
+    index = one("0", "k0", "size(value.poses) - 1", "mod(keptNext, 2)")
+    number = one(
+        "value.position[0]", "max(value.position)", "min(value.position[0..k0])", "double(keptNext) + keptReach"
+    )
+    whole = one("floor", "ceil", "round")
+    numbers = one("value.position", "value.position[k0..3]", "value.position[0..size(value.name)]")
+    body = one(
+        "r < keptReach", "abs(r) > sqrt(2.0)", "any s in value.effort: s < r", "sin(r) < cos(r) or atan2(r, 1.0) > 0.0"
+    )
+    names = one("any n in value.name: size(n) > 2", 'count n in value.name: n = "a"', "size(value.name)")
+    counted = names if not names.startswith("any") else f"(if {names} then 1 else 0)"
+    limit = one("k1", "0.25, 1", "0.5, where: k0")
+    needed = one("Kept.keptSome", "Kept.ahead = keptClear", "abs(Kept.keptNext - 1) < max(k0, 1)")
+    change = one(", send: change", "")
+    provided = [
+        f"provide keptGo with {{ pose: Kept.route[{one('0', 'Kept.keptNext', 'size(Kept.route) - 1')}].pose }}",
+        f"provide keptAgain with {one('{ poses: Kept.route }', '{ poses: Kept.route[0..1] }', 'Kept.path')}",
+        f"provide keptSums with {{ data: {one('[1.0, Kept.level]', '[]', 'Kept.joints.position')} }}",
+    ]
+    return [
+        "// How far it looks.",
+        f"parameter keptReach: double(0.1..5.0) = {one('0.5', 'k1')}",
+        f"parameter keptPause: integer(1..60) = {one('1', 'k0')}",
+        "datatype enum KeptAhead(limit: double, where: integer = 0) from sensor_msgs/LaserScan to {",
+        "value.ranges[where] < limit -> keptNear",
+        f"{one('all', 'any')} r in value.ranges[0..where]: r < limit -> keptNear default -> keptClear }}",
+        "component Kept {",
+        'outgoing message keptRoute with identifier: "/kept/route", type: nav_msgs/Path',
+        'outgoing message keptJoints with identifier: "/kept/joints", type: sensor_msgs/JointState',
+        f'outgoing message keptScan with identifier: "/kept/scan", type: KeptAhead({limit})',
+        f'incoming message keptGo with identifier: "/kept/go", type: geometry_msgs/PoseStamped{change}',
+        'incoming message keptAgain with identifier: "/kept/again", type: nav_msgs/Path',
+        'incoming message keptSums with identifier: "/kept/sums", type: std_msgs/Float64MultiArray, send: change',
+        "behaviour {",
+        "variable route: array(geometry_msgs/PoseStamped) variable path: nav_msgs/Path",
+        "variable joints: sensor_msgs/JointState variable level: double variable rounded: integer",
+        "variable keptNext: integer(0..k0 + 1) variable ahead: KeptAhead = KeptAhead.keptNear",
+        "on response from keptScan do ahead := value",
+        f"on response from keptJoints if {one('all', 'any')} r in {numbers}: {body}",
+        f"do level := {number}, rounded := {whole}(level * {one('1.5', '-0.5')}), keptNext := {counted}",
+        f"on response from keptJoints if keptNext > 0 do joints := value{one('', ', keptNext := keptNext - 1')}",
+        "initial marked state keptNone {",
+        f"on response from keptRoute if size(value.poses) > k0 or value.poses[{index}].pose.position.x > keptReach",
+        f"do route := value.poses{one('', '[0..k0]', '[1..size(value.poses) - 1]')}, path := value goto keptSome }}",
+        "state keptSome {",
+        f"after {one('keptPause s', 'k0 min', 'k1 s without keptJoints, keptScan')} goto keptNone }}",
+        "}",
+        "}",
+        f"requirement keptGo needs {needed}",
+        one("requirement at most k0 keptAgain since keptRoute", "requirement keptAgain after each keptJoints", ""),
+        *random.sample(provided, random.randint(1, 3)),
+    ]
 
 
 def second_edition_robot(seed: int, name: str = "R") -> str:

@@ -10,9 +10,9 @@ from robosc.metamodel.reflection import documentation, is_attribute, metamodel
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-_TYPES = {"EString": "String", "EBoolean": "Boolean", "EDouble": "Double", "Place": "Place"} | dict.fromkeys(
-    ("ELong", "ELongObject", "EBigInteger"), "Integer"
-)
+_TYPES = {"EString": "String", "EBoolean": "Boolean", "Place": "Place"}
+_TYPES |= dict.fromkeys(("ELong", "ELongObject", "EBigInteger"), "Integer")
+_TYPES |= dict.fromkeys(("EDouble", "EDoubleObject"), "Double")
 
 
 @dataclass(frozen=True)

@@ -39,7 +39,7 @@ STEPS = 200
 #: What synthesis says of an otherwise valid robot.
 _ALLOWED = {"empty-supervisor", "self-cancelling"}
 #: States up to which they are counted one by one, too.
-_FEW = 300
+_FEW = 150
 
 
 @dataclass(frozen=True)

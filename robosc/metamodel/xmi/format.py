@@ -58,4 +58,5 @@ _READERS: Mapping[str, Callable[[str], object | None]] = {
     "ELongObject": _long,
     "EBigInteger": _integer,
     "EDouble": _double,
+    "EDoubleObject": _double,
 }
