@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from robosc.cif.faults import CifFaultError, located
 from robosc.cif.parsing import parse
-from robosc.cif.scopes import Names
+from robosc.cif.scopes import Specification
 from robosc.cif.to_sct import to_sct
 from robosc.diagnostics import in_order
 from robosc.language.text import Documents, decode
@@ -40,7 +40,7 @@ def read(path: Path | str, documents: Documents | None = None) -> Reading:
     files = _Files(Path(path), documents or Documents())
     if files.findings:
         return Reading(None, in_order(files.findings), files.texts)
-    names = Names()
+    names = Specification()
     for specification in files.specifications:
         names.add(specification)
     names.make_instances()

@@ -1,6 +1,6 @@
 """What the names of a specification stand for: groups, automata, instances of definitions, and what they declare.
 
-`Names(root)` declares all that a specification has and makes every instance of a definition, a scope like a group or an
+`Specification` declares all that it has and makes every instance of a definition, a scope like a group or an
 automaton whose declarations are looked up where the definition stands. What is declared is a `Declared`; what a
 parameter stands for is found where the instance is made.
 """
@@ -104,7 +104,7 @@ def plain(identifier: str) -> str:
     return identifier.replace("$", "")
 
 
-class Names:
+class Specification:
     """All names of a specification. `findings` are the faults in what declares them."""
 
     def __init__(self) -> None:
@@ -289,7 +289,7 @@ class Names:
             )
         scope.bodies.append(definition)
         scope.definition = definition
-        # Names in it are looked up where the definition stands; parameters are nearer than those.
+        # Specification in it are looked up where the definition stands; parameters are nearer than those.
         inner = Scope(scope.path, found.scope, read)
         for (parameter, name), argument in zip(parameters, read.arguments, strict=True):
             inner.names[plain(name.name)] = Argument(argument, around, parameter)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from robosc.cif import plant_invariants
 from robosc.cif.faults import CifFaultError, construct, located, span, text_of
-from robosc.cif.scopes import Declared, Names, Scope, plain
+from robosc.cif.scopes import Declared, Scope, Specification, plain
 from robosc.cif.types import Type, contains, overlap, shown
 from robosc.cif.values import Values, constant_value, literal
 from robosc.language.explaining import did_you_mean
@@ -21,6 +21,7 @@ from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 from robosc.semantics.domains import domain
 from robosc.semantics.edges import edges_by_event
+from robosc.semantics.naming import Names
 from robosc.semantics.printing import conjunction, disjunction
 from robosc.semantics.walks import copied
 
@@ -43,13 +44,13 @@ class _Taken:
     read: Any
 
 
-def to_sct(names: Names, name: str) -> sct.SupervisoryControlModel:
+def to_sct(names: Specification, name: str) -> sct.SupervisoryControlModel:
     """The sct model of a specification; what is wrong with it is added to the findings of its names."""
     return _Transformation(names, name).model
 
 
 class _Transformation:
-    def __init__(self, names: Names, name: str) -> None:
+    def __init__(self, names: Specification, name: str) -> None:
         self._names = names
         self._values = Values(names)
         self.model = sct.SupervisoryControlModel(name=name)
@@ -71,6 +72,7 @@ class _Transformation:
         for scope in scopes:
             self._keep(scope, used)
         self._enumerations()
+        self._identify()
         if not any(plant.kind != sct.PlantKind.requirement for plant in self.model.plants) and not names.findings:
             with names.reporting():
                 hint = "name one automaton `plant` at least"
@@ -141,6 +143,17 @@ class _Transformation:
             plant.events.extend([*events, *inputs])
         if scope.plant is not None:
             self.model.plants.append(scope.plant)
+
+    def _identify(self) -> None:
+        """Plants and enumerations get names that are identifiers, each its own; `origin` is their absolute name."""
+        names = Names()
+        for plant in self.model.plants:
+            plant.origin = plant.name or None
+            plant.name = names.fresh(plant.name.replace(".", "_") or "specification")
+        names = Names()
+        for enumeration in self.model.enumerations:
+            around = f"{enumeration.origin}." if enumeration.origin else ""
+            enumeration.name = names.fresh(f"{around}{enumeration.name}".replace(".", "_"))
 
     def _enumerations(self) -> None:
         for scope in _inside(self._names.root):

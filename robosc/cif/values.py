@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from robosc.cif.expressions import ExpressionReader, Typed
 from robosc.cif.faults import CifFaultError, construct
-from robosc.cif.scopes import Argument, Declared, Names, Scope, plain
+from robosc.cif.scopes import Argument, Declared, Scope, Specification, plain
 from robosc.cif.types import BOOLEAN, LARGEST, Type, contains, shown
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
@@ -34,7 +34,7 @@ _MINMAX = {"min": min, "max": max}
 class Values:
     """The expressions of a specification."""
 
-    def __init__(self, names: Names) -> None:
+    def __init__(self, names: Specification) -> None:
         self.names = names
         self._sizes: dict[Declared | Argument, int] = {}
         self._algebraic: dict[Argument, Typed] = {}
@@ -274,7 +274,7 @@ class Values:
     def enumeration(self, declared: Declared) -> ex.Enumeration:
         """The enumeration of a declaration."""
         if declared.made is None:
-            declared.made = ex.Enumeration(name=declared.scope.absolute(declared.name))
+            declared.made = ex.Enumeration(name=declared.name, origin=declared.scope.path or None)
             declared.made.literals.extend(ex.EnumerationLiteral(name=plain(one.name)) for one in declared.read.literals)
         found: ex.Enumeration = declared.made
         return found

@@ -99,7 +99,7 @@ def read_models(path: str, paths: Paths, report: Report, *, cif: bool = False) -
     """
     if path.endswith(".cif") and not cif:
         raise CallError(
-            f"{path} is CIF: so far `check`, `synthesize`, `explain`, `diagram` and `transform --to cif` take it"
+            f"{path} is CIF: so far `check`, `synthesize`, `explain`, `diagram` and `transform --to cif,xmi` take it"
         )
     root = read(path, paths, report)
     if isinstance(root, rsc.Library):

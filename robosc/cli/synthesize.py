@@ -18,7 +18,7 @@ from robosc.cli.reading import read_models
 from robosc.cli.report import Report
 from robosc.metamodel import sct
 from robosc.metamodel.places import place
-from robosc.semantics.printing import SctPrinter, conjunction
+from robosc.semantics.printing import RobotPrinter, SctPrinter, conjunction
 from robosc.semantics.roles import SILENT, event_name
 from robosc.semantics.walks import copied
 
@@ -120,7 +120,7 @@ def _peak_bytes() -> int | None:
 
 def _event(event: sct.Event, guard: sct.EventGuard | None, synthesis: Synthesis) -> dict[str, Any]:
     """An event with its guard; of an event without one, whether the plants ever let it happen depends on others."""
-    shown = SctPrinter()
+    shown = RobotPrinter() if event.kind in (sct.EventKind.plain, sct.EventKind.input) else SctPrinter()
     parts = [part for part in (guard.requirement, guard.synthesis) if part] if guard else []
     whole = conjunction(map(copied, parts))
     return {

@@ -84,7 +84,7 @@ def command(
         tested = [target.name for target in TARGETS.values() if target.tested_ros]
         raise CallError(f"--with-tests is for {' and '.join(tested)}: the other targets have none")
     with Report(form) as report:
-        models = read_models(model, paths, report, cif=all(target.name == "cif" for target in targets))
+        models = read_models(model, paths, report, cif=all(target.name in ("cif", "xmi") for target in targets))
         for target in targets:
             if target.needs_graph and models.rosgraph is None:
                 raise CallError(f"{model} has no ROS graph, which {target.name} needs: give its .rosgraph.xmi or .rscd")

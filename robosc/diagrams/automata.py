@@ -152,7 +152,7 @@ class _Plant(SctPrinter):
         ]
         return _automaton(
             key,
-            self.plant.name or "specification",  # What a CIF specification has outside of groups and automata.
+            self.plant.name,
             [
                 f"{variable.name}: {_type(variable.type)}"
                 + (f" = {self(variable.initial)}" if variable.initial else "")

@@ -8,6 +8,7 @@ from robosc.m2m.sct_to_engine import transform
 from robosc.metamodel import xmi
 from robosc.semantics.instances import libraries
 from robosc.semantics.naming import Names
+from robosc.semantics.roles import is_from_cif
 
 if TYPE_CHECKING:
     from robosc.configuration import Configuration
@@ -28,7 +29,7 @@ def generate(models: Models, _configuration: Configuration) -> dict[str, str]:
     """
     name = models.sct.name
     roots: dict[str, Any] = {f"{name}.sct.xmi": models.sct}
-    if models.sct.supervisor is not None:
+    if models.sct.supervisor is not None and not is_from_cif(models.sct):
         roots[f"{name}.engine.xmi"] = transform(models.sct)
     if models.rosgraph is not None:
         roots[f"{name}.rosgraph.xmi"] = models.rosgraph

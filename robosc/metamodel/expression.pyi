@@ -48,7 +48,8 @@ class EnumerationType(Type):
 class Enumeration(NamedElement):
     """A finite set of named values (thesis 5.2.3)."""
     literals: MutableSequence[EnumerationLiteral]
-    def __init__(self, *, literals: Iterable[EnumerationLiteral] = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
+    origin: str | None
+    def __init__(self, *, literals: Iterable[EnumerationLiteral] = ..., origin: str | None = ..., name: str | None = ..., source: Place | None = ...) -> None: ...
 
 class EnumerationLiteral(NamedElement):
     """One value of an enumeration."""

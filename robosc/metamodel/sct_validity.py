@@ -10,7 +10,8 @@ from robosc.metamodel import sct
 from robosc.metamodel.model_checks import around, demand, fitting_operands, repeated, typed, unique
 from robosc.semantics.durations import LONGEST, SHORTEST, UNITS
 from robosc.semantics.edges import edges_of
-from robosc.semantics.typing import declared_type
+from robosc.semantics.roles import is_from_cif
+from robosc.semantics.typing import BOOLEAN, declared_type
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -35,13 +36,17 @@ def _bounds(integer: ex.IntegerType, _model: Model) -> Iterator[Fault]:
         yield integer, f"the range {integer.minimum}..{integer.maximum} is reversed"
 
 
-def _initial_location(plant: sct.Plant, _model: Model) -> Iterator[Fault]:
+def _initial_location(plant: sct.Plant, model: Model) -> Iterator[Fault]:
     initial = sum(location.initial for location in plant.locations)
-    if initial != 1:
+    if initial != 1 and not (initial and is_from_cif(model.root)):
         yield plant, f"plant '{plant.name}' has {initial or 'no'} initial locations; it starts in exactly one"
 
 
-def _initial_value(variable: sct.DiscreteVariable, _model: Model) -> Iterator[Fault]:
+def _initial_value(variable: sct.DiscreteVariable, model: Model) -> Iterator[Fault]:
+    if variable.initial is None:
+        if not is_from_cif(model.root):
+            yield variable, f"the variable '{variable.name}' has no initial value"
+        return
     value, sign = variable.initial, 1
     if isinstance(value, ex.UnaryMinus):
         value, sign = value.operand, -1
@@ -53,18 +58,23 @@ def _initial_value(variable: sct.DiscreteVariable, _model: Model) -> Iterator[Fa
             yield variable.initial, f"{sign * value.value} is outside {minimum}..{maximum}"
 
 
-def _one_edge(plant: sct.Plant, _model: Model) -> Iterator[Fault]:
+def _one_edge(plant: sct.Plant, model: Model) -> Iterator[Fault]:
     """Of several edges for an event that a location has, or each of a plant's, all have guards."""
     for edge in _unguarded(plant.edges):
         yield edge, f"plant '{plant.name}' has in every location two edges for '{edge.event.name}', one without guard"
     everywhere = {edge.event for edge in plant.edges}
     for location in plant.locations:
-        again = set(_unguarded(location.edges))
+        again = set() if is_from_cif(model.root) else set(_unguarded(location.edges))
         for edge in location.edges:
             if edge in again:
                 yield edge, f"location '{location.name}' has two edges for '{edge.event.name}', one without guard"
             elif edge.event in everywhere:
                 yield edge, f"location '{location.name}' has two edges for '{edge.event.name}'"
+
+
+def _predicates(model: sct.SupervisoryControlModel, checked: Model) -> Iterator[Fault]:
+    for predicate in (*model.initialPredicates, *model.markerPredicates):
+        yield from checked.unlike(predicate, BOOLEAN)
 
 
 def _unguarded(edges: Iterable[sct.Edge]) -> list[sct.Edge]:
@@ -160,7 +170,11 @@ _CONTROLLABLE = demand(
     "the event '{0.event.name}' is uncontrollable: nothing can restrict it",
 )
 _RESTRICTABLE = demand(
-    lambda requirement: requirement.event.controllable or requirement.automaton is not None,
+    lambda requirement: (
+        requirement.event.controllable
+        or requirement.automaton is not None
+        or requirement.event.kind == sct.EventKind.plain
+    ),
     "the event '{0.event.name}' is uncontrollable: nothing can restrict it",
 )
 _OWN_TARGET = demand(
@@ -174,7 +188,7 @@ _OWN_VARIABLE = demand(
 
 CHECKS: Checks = {
     ex.Expression: [fitting_operands],
-    sct.SupervisoryControlModel: [unique("plants", "enumerations"), _used],
+    sct.SupervisoryControlModel: [unique("plants", "enumerations"), _used, _predicates],
     ex.Enumeration: [unique("literals")],
     sct.Plant: [unique("events", "inputs", "variables", "locations"), _initial_location, _one_edge],
     object: [_references],
@@ -196,5 +210,5 @@ CHECKS: Checks = {
     sct.ReachabilityProperty: [typed("premise")],
     sct.EventGuard: [_CONTROLLABLE, typed("requirement"), typed("synthesis")],
     sct.InputReference: [_read],
-    sct.Supervisor: [_guards],
+    sct.Supervisor: [_guards, typed("initial")],
 }

@@ -23,9 +23,17 @@ def plant_of(event: sct.Event) -> sct.Plant:
     return plant
 
 
+def is_from_cif(model: sct.SupervisoryControlModel) -> bool:
+    """Whether a model was read from CIF: its events stand for no communication."""
+    return any(event.kind == sct.EventKind.plain for plant in model.plants for event in plant.events)
+
+
 def event_name(event: sct.Event) -> str:
-    """The event with its plant, such as `message_move.c_trigger`; no two events of a model share it."""
-    return f"{plant_of(event).name}.{event.name}".removeprefix(".")
+    """The event with its plant, such as `message_move.c_trigger`, or its absolute name in CIF; no two share it."""
+    plant = plant_of(event)
+    if event.kind in (sct.EventKind.plain, sct.EventKind.input):
+        return f"{plant.origin}.{event.name}" if plant.origin else event.name
+    return f"{plant.name}.{event.name}"
 
 
 def provide_number(event: sct.Event) -> int:

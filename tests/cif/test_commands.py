@@ -100,6 +100,24 @@ end
     )
 
 
+def test_a_saved_model_is_the_same(specification: str, tmp_path: Path) -> None:
+    assert CliRunner().invoke(main, ["transform", specification, "--to", "xmi", "-o", str(tmp_path)]).exit_code == 0
+    again = CliRunner().invoke(main, ["synthesize", str(tmp_path / "motor.sct.xmi"), "--json"])
+    assert json.loads(again.stdout)["controlled_states"] == 14
+
+
+def test_names_are_those_of_the_specification(tmp_path: Path) -> None:
+    path = tmp_path / "nested.cif"
+    path.write_text(
+        "group a: group b: controllable c, d; enum E = x, y; plant P: disc E e; location l: initial; marked e = y; "
+        "edge c do e := if e = x: y else x end; edge d when e = y goto m; location m; end end end"
+    )
+    shown = CliRunner().invoke(main, ["synthesize", str(path), "--json"])
+    assert [event["name"] for event in json.loads(shown.stdout)["events"]] == ["a.b.c", "a.b.d"]
+    CliRunner().invoke(main, ["transform", str(path), "--to", "cif", "-o", str(tmp_path)])
+    assert "edge a.b.d when false;" in (tmp_path / "nested.supervised.cif").read_text()
+
+
 @pytest.mark.parametrize(
     "command", [["verify"], ["simulate", "--random", "3"], ["run", "--ros2"], ["transform", "--to", "supervisor,cif"]]
 )

@@ -179,4 +179,4 @@ def test_files_import_each_other() -> None:
         space="namespace a.b; plant q: location x: initial; marked; edge g.u goto y; location y; end",
     )
     assert [finding.message for finding in found.findings] == []
-    assert [plant.name for plant in found.model.plants] == ["p", "g", "a.b.q"]
+    assert [(plant.name, plant.origin) for plant in found.model.plants] == [("p", "p"), ("g", "g"), ("a_b_q", "a.b.q")]

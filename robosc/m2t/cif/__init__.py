@@ -11,13 +11,14 @@ from typing import TYPE_CHECKING
 
 from robosc.diagnostics import Diagnostic, Severity
 from robosc.m2t.cif.arithmetic import assigned, condition
-from robosc.m2t.cif.extension import extended, is_from_cif
+from robosc.m2t.cif.extension import extended
 from robosc.m2t.cif.linear import LARGEST, Unsupported, bounds, shift
 from robosc.m2t.cif.specification import Writer
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 from robosc.metamodel.places import place
 from robosc.metamodel.reflection import tree
+from robosc.semantics.roles import is_from_cif
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -7,18 +7,14 @@ from typing import TYPE_CHECKING
 from robosc.m2t.cif.expressions import CifPrinter
 from robosc.m2t.cif.names import KEYWORDS
 from robosc.m2t.cif.specification import document, edge_text, folded
-from robosc.metamodel import expression as ex
-from robosc.metamodel import sct
 from robosc.semantics.naming import Names
 from robosc.semantics.roles import event_name
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-
-def is_from_cif(model: sct.SupervisoryControlModel) -> bool:
-    """Whether a model was read from CIF."""
-    return any(event.kind == sct.EventKind.plain for plant in model.plants for event in plant.events)
+    from robosc.metamodel import expression as ex
+    from robosc.metamodel import sct
 
 
 def extended(model: sct.SupervisoryControlModel, supervisor: sct.Supervisor) -> str:
@@ -34,13 +30,12 @@ class AbsoluteNames:
 
     def used(self, element: ex.NamedElement, _plant: sct.Plant | None) -> str:
         """A name with all around it."""
-        owner = element.eContainer()
-        around = owner.name.rpartition(".")[0] if isinstance(owner, ex.Enumeration) else owner.name
-        return escaped(f"{around}.{element.name}".removeprefix("."))
+        around = element.eContainer().origin
+        return f"{around}.{element.name}" if around else escaped(element.name)
 
-    def declared(self, element: ex.NamedElement) -> str:
+    def declared(self, plant: sct.Plant) -> str:
         """The name of a plant."""
-        return escaped(element.name)
+        return escaped(plant.origin or "")
 
     def number(self, _plant: sct.Plant) -> str | None:
         """No location is a number."""
@@ -57,11 +52,11 @@ def _lines(model: sct.SupervisoryControlModel, supervisor: sct.Supervisor) -> It
     assert model.source is not None
     assert model.source.file is not None
     # What stands first in each name, of all that the specification has.
-    taken = {plant.name.partition(".")[0] for plant in model.plants}
+    taken = {plant.origin.partition(".")[0] for plant in model.plants if plant.origin}
     taken |= {event_name(event).partition(".")[0] for plant in model.plants for event in plant.events}
-    taken |= {member.name for plant in model.plants if not plant.name for member in plant.variables}
+    taken |= {member.name for plant in model.plants if not plant.origin for member in plant.variables}
     for enumeration in model.enumerations:
-        taken |= {enumeration.name.partition(".")[0], *(literal.name for literal in enumeration.literals)}
+        taken |= {enumeration.name, *(literal.name for literal in enumeration.literals)}
     states = f"{supervisor.controlledStates} of {supervisor.uncontrolledStates} states."
     yield from document([f"{model.name} under its supervisor: {states}"], sign="@@")
     yield f'import "{model.source.file.name}";'
