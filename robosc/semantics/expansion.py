@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     Arguments: TypeAlias = Mapping[robosc.FormalParameter, ex.Expression]
 
 #: An expression is written out up to so many elements: a few names for sums of names are enough for any number.
-LARGEST = 100_000
+LARGEST = 20_000
 _NAMED = (robosc.Constant, robosc.Condition, robosc.FormalParameter)
 _OPERATORS = {"all": ex.Conjunction, "any": ex.Disjunction, "count": ex.Addition}
 

@@ -146,7 +146,8 @@ class RoboscPrinter(Printer):
 
 def _step(segment: robosc.AccessSegment, indices: Iterator[str]) -> str:
     if isinstance(segment, robosc.PropertySegment):
-        return f".{written(segment.property.name)}"
+        # What linking did not find is told elsewhere.
+        return f".{written(segment.property.name)}" if segment.property else ".…"
     assert isinstance(segment, robosc.IndexSegment)
     first = segment.index if segment.first is None else next(indices)
     return f"[{first}]" if segment.last is None else f"[{first}..{next(indices)}]"
