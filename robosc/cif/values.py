@@ -226,7 +226,7 @@ class Values:
             told: list[tuple[sct.Location | None, Any]] = [
                 (None, one) for declared in scope.declarations("Equations") for one in declared.equations
             ]
-            if scope.plant is not None:
+            if scope.plant is not None and scope.kind is not None:
                 for location, read in zip(scope.plant.locations, scope.bodies[0].locations, strict=True):
                     for element in read.elements:
                         if type(element).__name__ == "Equations":

@@ -88,6 +88,12 @@ COUNTS = {
         "location b: equation n = 2; edge d when n = 1 goto a; edge u goto a; end requirement p.n = 2 disables u;",
         1,
     ),
+    "an equation beside an input": (
+        "input bool i; alg bool a; equation a = not i; controllable c;\n"
+        + _ROOM.replace("edge c when", "edge c when a and")
+        + "controllable d;",
+        8,
+    ),
     "enumerations and types": (
         "type T = E; enum E = red, green; controllable c; plant p: disc T x = red; location: initial; marked x = red;"
         "edge c do x := if x = red: green else red end; end",
