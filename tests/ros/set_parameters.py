@@ -1,6 +1,6 @@
-"""Sets parameters of a node that runs, and writes what comes of them to a file.
+"""Hears what a node does whose parameters are set, or sets some while it runs, and writes what comes of it to a file.
 
-python3 set_parameters.py 2 FILE
+python3 set_parameters.py (1|2) FILE [--running]
 """
 
 import json
@@ -9,9 +9,11 @@ import sys
 import time
 from pathlib import Path
 
-from rcl_interfaces.srv import DescribeParameters, SetParameters
-from rclpy.parameter import Parameter
 from topics import connect
+
+if sys.argv[1:2] == ["2"]:  # Nodes of ROS 1 have no services of parameters.
+    from rcl_interfaces.srv import DescribeParameters, SetParameters
+    from rclpy.parameter import Parameter
 
 PATIENCE = 120.0
 NODE = "/cruise_controller"
@@ -27,8 +29,9 @@ class World:
         self.lit = False
         self.topics.listen("/lamp", "std_msgs/Bool", lambda message: setattr(self, "lit", message.data))
         self.range = self.topics.publisher("/range", "std_msgs/Float32")
-        self.setting = self.topics.node.create_client(SetParameters, f"{NODE}/set_parameters")
-        self.describing = self.topics.node.create_client(DescribeParameters, f"{NODE}/describe_parameters")
+        if version == "2":
+            self.setting = self.topics.node.create_client(SetParameters, f"{NODE}/set_parameters")
+            self.describing = self.topics.node.create_client(DescribeParameters, f"{NODE}/describe_parameters")
 
     def wait_until(self, condition, what):
         until = time.monotonic() + PATIENCE
@@ -57,6 +60,11 @@ class World:
         self.heard.clear()
         self.wait_until(lambda: self.heard[-1:] == [value], f"{value} on /move")
 
+    def hear(self):
+        self.expect(0.5)
+        self.wait_until(lambda: self.lit, "the lamp is lit")
+        return {"lit": self.lit}
+
     def run(self):
         self.wait_until(lambda: self.setting.service_is_ready() and self.topics.heard(), "the node is there")
         told = {name: self.described(name) for name in ("speed", "least", "reach", "Base.factor", "Lamp.pause")}
@@ -82,4 +90,5 @@ class World:
 
 
 if __name__ == "__main__":
-    Path(sys.argv[2]).write_text(json.dumps(World(sys.argv[1]).run()))
+    world = World(sys.argv[1])
+    Path(sys.argv[2]).write_text(json.dumps(world.run() if "--running" in sys.argv else world.hear()))

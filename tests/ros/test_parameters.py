@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
@@ -13,25 +13,39 @@ from tests.ros.reactions import one_process
 from tests.ros.workspaces import middleware
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from tests.ros.running import Runner
     from tests.ros.workspaces import Workspace
 
 HERE = Path(__file__).parent
 
 
+def test_they_are_set_at_the_start(nodes: Workspace | Runner, tmp_path: Path) -> None:
+    """Read at start in ROS 1: data and times have the values that are set."""
+    dot = "/" if nodes.ros.version == 1 else "."
+    given = ("speed:=0.5", f"Base{dot}factor:=1.0", f"Lamp{dot}pause:=0.02")
+    assert heard(nodes, tmp_path / "run", given) == {"lit": True}
+
+
+def heard(nodes: Workspace | Runner, folder: Path, given: Sequence[str], *options: str) -> Any:
+    """What `set_parameters.py` writes of a node with these parameters."""
+    with middleware(nodes, folder) as processes:
+        processes.start("node", one_process(nodes, "cruise_controller", *given))
+        out = folder / "heard.json"
+        script = [nodes.ros.python, HERE / "set_parameters.py", str(nodes.ros.version), out, *options]
+        world = processes.start("world", script)
+        processes.wait_until(lambda: world.poll() is not None, "all is set", seconds=10 * PATIENCE)
+        assert world.returncode == 0, processes.logs()
+        return json.loads(out.read_text())
+
+
 def test_they_change_while_the_node_runs(nodes: Workspace | Runner, tmp_path: Path) -> None:
     """Declared with range and description, changed between batches, a value that does not fit refused with why."""
     if nodes.ros.version == 1:
         pytest.skip("ROS 1 reads parameters at the start")
-    folder = tmp_path / "run"
-    with middleware(nodes, folder) as processes:
-        processes.start("node", one_process(nodes, "cruise_controller"))
-        out = folder / "heard.json"
-        world = processes.start("world", [nodes.ros.python, HERE / "set_parameters.py", "2", out])
-        processes.wait_until(lambda: world.poll() is not None, "all is set", seconds=10 * PATIENCE)
-        assert world.returncode == 0, processes.logs()
-        heard = json.loads(out.read_text())
-    assert heard["told"] == {
+    found = heard(nodes, tmp_path / "run", (), "--running")
+    assert found["told"] == {
         "speed": {
             "description": "How fast the robot drives, in metres per second.",
             "read_only": False,
@@ -46,7 +60,7 @@ def test_they_change_while_the_node_runs(nodes: Workspace | Runner, tmp_path: Pa
             "bounds": [[0.02, 60.0]],
         },
     }
-    assert all(heard["refused"]), heard["refused"]
-    assert heard["taken"] == [None, None, None, None]
-    assert heard["silent"] == []
-    assert heard["lit"] == [False, True]
+    assert all(found["refused"]), found["refused"]
+    assert found["taken"] == [None, None, None, None]
+    assert found["silent"] == []
+    assert found["lit"] == [False, True]
