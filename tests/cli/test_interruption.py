@@ -20,13 +20,13 @@ import os, signal, sys
 import robosc.cli.transform as transform
 read_models = transform.read_models
 
-def read(*arguments):
+def read(*arguments, **options):
     try:
         os.kill(os.getpid(), signal.SIGINT)
         import json  # a moment for Python to hear of it
     except KeyboardInterrupt:
         {hiding}
-    return read_models(*arguments)
+    return read_models(*arguments, **options)
 
 transform.read_models = read
 from robosc.cli import run
