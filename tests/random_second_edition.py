@@ -153,7 +153,7 @@ def kept(seed: int) -> list[str]:
     )
     names = one("any n in value.name: size(n) > 2", 'count n in value.name: n = "a"', "size(value.name)")
     counted = names if not names.startswith("any") else f"(if {names} then 1 else 0)"
-    limit = one("k1", "0.25, 1", "0.5, where: k0")
+    limit = one("k1", "0.25, 1", "0.5, where: k0", "keptReach")
     needed = one("Kept.keptSome", "Kept.ahead = keptClear", "abs(Kept.keptNext - 1) < max(k0, 1)")
     change = one(", send: change", "")
     provided = [

@@ -47,12 +47,16 @@ class Restriction(Enum):
 
 @dataclass(frozen=True)
 class Place:
-    """Where an expression stands: the type of `value` there, or why there is none, and which names it may read."""
+    """Where an expression stands: the type of `value` there, or why there is none, and which names it may read.
+
+    `what` and `instead` are for what must be constant: what it is, and what a hint says behind what it may be.
+    """
 
     value: Type | None
     why_no_value: str = ""
     restriction: Restriction = Restriction.FREE
     what: str = "an initial value"
+    instead: str = "; a transition can assign the rest"
 
 
 #: What functions want that is no basic type.
@@ -226,7 +230,7 @@ class ExpressionCheck:
         if restriction is Restriction.CONSTANT and (access.value or (item and not isinstance(item, _CONSTANT_ITEMS))):
             return (
                 f"{self.place.what} must be a constant, found {_describe(access)}",
-                "use literals, constants, operators and enum values; a transition can assign the rest",
+                f"use literals, constants, operators and enum values{self.place.instead}",
             )
         if restriction is Restriction.ENUM_RULE and item and not isinstance(item, _SET_ITEMS):
             return (

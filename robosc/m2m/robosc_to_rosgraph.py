@@ -11,6 +11,7 @@ from robosc.metamodel import robosc, rosgraph, sct
 from robosc.ros_types import RosTypes
 from robosc.semantics.communication import data_type, event_of, events
 from robosc.semantics.cone_of_influence import guard_of
+from robosc.semantics.durations import set_on_robot
 from robosc.semantics.expansion import constant_value
 from robosc.semantics.inputs import Data
 from robosc.semantics.instances import bound_arguments
@@ -74,8 +75,8 @@ class _Transformation:
         self.expressions = NodeExpressions(trace, self.declarations, self.variables, self.parameters, self.wire)
 
     def run(self) -> rosgraph.RosGraph:
-        for set_on_robot in self.instances.parameters:
-            self.parameter(set_on_robot)
+        for parameter in self.instances.parameters:
+            self.parameter(parameter)
         for instance in self.instances:
             for owned in instance.variables:
                 if owned not in self.trace.variables:
@@ -272,10 +273,18 @@ class _Transformation:
             argument = rosgraph.WireAccess(steps=steps, type=self.wire_type(enum.type))
             assert isinstance(reached, robosc.ComplexDataTypeReference)
             given = bound_arguments(enum.parameters, reached.arguments)
-            arguments = {name: self.instances.expanded.constant(value, within) for name, value in given.items()}
+            arguments = {name: self.argument(value, within) for name, value in given.items()}
             call = rosgraph.ConversionCall(conversion=self.conversion(enum, arguments), argument=argument)
             return call, reached
         return rosgraph.WireAccess(steps=steps, type=self.wire_type(reached)), reached
+
+    def argument(self, value: ex.Expression, within: Instance | None) -> ex.Expression:
+        """What an enum gets in the text of an instance, as it is said outside of components."""
+        access = set_on_robot(value)
+        if access is None:
+            return self.instances.expanded.constant(value, within)
+        owned = self.instances.parameter(access, within)
+        return robosc.Access(component=owned.instance.component if owned.instance else None, item=owned.parameter)
 
     def node_type(self, kind: robosc.DataType) -> ex.Type:
         """The type of what the node keeps or sends."""

@@ -148,6 +148,7 @@ def test_the_models_of_the_manual_have_the_layout() -> None:
 def test_items_and_words() -> None:
     text = """
         robot R{interface a use b from c
+        parameter p:double(- 0.5 .. 5.0)=0.0
         component C{outgoing message m with identifier:'/m',type:integer(- 5 .. 5)links a
         behaviour{variable ^x :integer=- ( 1+2 )*3 variable y:boolean=!true
         on response from m do x:=value . a [ 0 ].b,y:=! ( x<-1 )initial marked state s{}
@@ -162,6 +163,7 @@ def test_items_and_words() -> None:
     assert formatted(text) == dedent("""\
         robot R {
           interface a use b from c
+          parameter p: double(-0.5..5.0) = 0.0
           component C {
             outgoing message m with identifier: '/m', type: integer(-5..5) links a
             behaviour {

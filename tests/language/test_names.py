@@ -264,7 +264,7 @@ def test_statements_outside_a_component_replace_those_in_it() -> None:
 
 
 def test_arguments_of_an_enum() -> None:
-    """Arguments of an enum are constants; the type of a variable is the enum without arguments."""
+    """Arguments of an enum are constants or parameters; the type of a variable is the enum without arguments."""
     text = """robot Cart {
       constant close: double = 0.3
       datatype enum Ahead(limit: double) from double to { value < limit -> near default -> clear }
@@ -284,3 +284,32 @@ def test_arguments_of_an_enum() -> None:
     bounds = [conversion.rules[0].condition.right.value for conversion in graph.conversions]
     assert bounds == [0.3, 0.7]
     assert len(graph.model.enumerations) == 1
+
+
+def test_parameters_are_arguments_of_an_enum() -> None:
+    """Arguments of an enum may be parameters, also those of the instance in which the enum is a type of data."""
+    text = """robot Cart {
+      parameter reach: double(0.1..2.0) = 0.5
+      datatype enum Ahead(limit: double) from double to { value < limit -> near default -> clear }
+      component Lidar(ns: string) {
+        parameter limit: double(0.1..1.0) = 0.4
+        outgoing message scan with identifier: ns + "/scan", type: Ahead(limit)
+        outgoing message wide with identifier: ns + "/wide", type: Ahead(reach)
+        behaviour {
+          variable ahead: Ahead = clear
+          initial marked state on { on response from scan do ahead := value on response from wide do ahead := value }
+        }
+      }
+      component Left is Lidar("/left")
+      component Right is Lidar("/right")
+      component Base { incoming message move with type: none }
+      requirement move needs Left.ahead = clear and Right.ahead = clear
+    }"""
+    assert errors(text) == []
+    graph = robosc.to_rosgraph(robosc.load(text=text))
+    limits = [conversion.rules[0].condition.right.variable for conversion in graph.conversions]
+    assert [(limit.component, limit.name) for limit in limits] == [
+        ("Left", "limit"),
+        (None, "reach"),
+        ("Right", "limit"),
+    ]

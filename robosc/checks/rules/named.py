@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from robosc.checks.definitions import of_kind, statements
-from robosc.checks.expression_types import CONSTANT, ExpressionCheck
+from robosc.checks.expression_types import CONSTANT, ExpressionCheck, Place
 from robosc.checks.libraries import Meaning, instances, meanings
 from robosc.checks.rule import Finding, on_line, rule
 from robosc.checks.type_repairs import repair
@@ -14,14 +15,21 @@ from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
 from robosc.metamodel.reflection import tree
 from robosc.semantics.cone_of_influence import accesses, conditions
-from robosc.semantics.expansion import LARGEST, constant_value
+from robosc.semantics.durations import bounds, set_on_robot
+from robosc.semantics.expansion import LARGEST, Expansion, constant_value
+from robosc.semantics.instances import bound_arguments
 from robosc.semantics.operators import operator_of
 from robosc.semantics.typing import INTEGER, UNKNOWN, declared_type, type_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
+    from robosc.semantics.instances import Instances
     from robosc.semantics.operators import Operator
+
+
+_ARGUMENT = replace(CONSTANT, what="an argument", instead="")
+_ENUM_ARGUMENT = replace(_ARGUMENT, instead="; a parameter of the node stands alone")
 
 
 @rule("cyclic-definition")
@@ -92,6 +100,7 @@ def arguments(base: rsc.Base) -> Iterator[Finding]:
                 yield from _of_type(element)
     yield from _defaults(base)
     for meaning in meanings(base):
+        yield from _of_enums(meaning, instances(base))
         if meaning.made is not None:
             yield from _made(meaning)
 
@@ -139,7 +148,7 @@ def _given(
             yield Finding(argument, message, "leave one of the two out")
         else:
             found[parameter] = argument
-            yield from _typed(argument.value, parameter)
+            yield from _typed(argument.value, parameter, settable=isinstance(definition, rsc.EnumDataType))
     missing = [parameter for parameter in parameters if parameter not in found and parameter.default is None]
     if missing:
         lacking = ", ".join(f"`{parameter.name}`" for parameter in missing)
@@ -147,16 +156,73 @@ def _given(
         yield Finding(user, f"`{definition.name}` gets no argument for {lacking}", hint)
 
 
-def _typed(value: ex.Expression | None, parameter: rsc.FormalParameter) -> Iterator[Finding]:
-    what = f"the argument for `{parameter.name}`"
-    check = ExpressionCheck(CONSTANT)
-    check.expect(value, declared_type(parameter.type), what)
+def _typed(value: ex.Expression | None, parameter: rsc.FormalParameter, *, settable: bool = False) -> Iterator[Finding]:
+    """What is wrong with an argument or a default value; `settable`: it may be a parameter of the node."""
+    constant = _ENUM_ARGUMENT if settable else _ARGUMENT
+    check = ExpressionCheck(Place(None) if settable and set_on_robot(value) else constant)
+    check.expect(value, declared_type(parameter.type), f"the argument for `{parameter.name}`")
     yield from check.findings
-    kind, number = parameter.type, constant_value(value)
-    if isinstance(kind, rsc.IntegerDataType) and type(number) is int and value is not None:
-        low, high = kind.minimum, kind.maximum
-        if low is not None and high is not None and not low <= number <= high:
-            yield Finding(value, f"{what} is {number}, expected {low} to {high}", "write a number that is in the range")
+    number = constant_value(value)
+    if type(number) is int and value is not None and not _fits(number, number, parameter):
+        yield Finding(value, *_out_of_range(str(number), parameter))
+
+
+def _fits(lowest: float | None, highest: float | None, parameter: rsc.FormalParameter) -> bool:
+    """Whether all numbers between two are values of a parameter; what is not known fits."""
+    kind = parameter.type
+    if not isinstance(kind, rsc.IntegerDataType) or kind.minimum is None or kind.maximum is None:
+        return True
+    return (lowest is None or kind.minimum <= lowest) and (highest is None or highest <= kind.maximum)
+
+
+def _out_of_range(values: str, parameter: rsc.FormalParameter) -> tuple[str, str]:
+    kind = parameter.type
+    assert isinstance(kind, rsc.IntegerDataType)
+    message = f"the argument for `{parameter.name}` is {values}, expected {kind.minimum} to {kind.maximum}"
+    return message, "write a number that is in the range"
+
+
+def _of_enums(meaning: Meaning, made: Instances) -> Iterator[Finding]:
+    for definition in meaning.definitions:
+        for _, element in tree(definition):
+            if isinstance(element, rsc.ComplexDataTypeReference) and isinstance(element.type, rsc.EnumDataType):
+                yield from _of_enum(element, element.type, meaning, made)
+
+
+def _of_enum(
+    reference: rsc.ComplexDataTypeReference, enum: rsc.EnumDataType, meaning: Meaning, made: Instances
+) -> Iterator[Finding]:
+    """What the arguments of an enum can be on the robot, or are by the arguments of a template; and divisors in it."""
+    given = bound_arguments(enum.parameters, reference.arguments)
+    for parameter, value in given.items():
+        access = set_on_robot(value)
+        if access is None:
+            (number,) = meaning.values(value)
+            if meaning.made and type(number) is int and not _fits(number, number, parameter):
+                yield meaning.finding(value, *_out_of_range(str(number), parameter))
+            continue
+        owned = made.parameter(access, meaning.made)
+        lowest, highest = bounds(owned.parameter, None)
+        if lowest is None and meaning.made:
+            lowest, highest = bounds(owned.parameter, owned.instance)
+        elif meaning.made:
+            continue  # The template's own text tells.
+        if not _fits(lowest, highest, parameter):
+            yield meaning.finding(value, *_out_of_range(f"{lowest} to {highest} on the robot", parameter))
+    for row, position, divisor in _divisors(enum):
+        written = Expansion(None).argued(divisor, given)
+        (number,) = meaning.values(written)
+        told = number is not None if meaning.made or _reads_parameter(written) else _reads_parameter(divisor)
+        if told and not _is_positive(number):
+            yield meaning.finding(reference, *_wrong_divisor(row, position))
+
+
+def _divisors(root: ex.Located) -> Iterator[tuple[Operator, int, ex.Expression]]:
+    """What functions divide by: the function, which of its arguments it is, and the argument."""
+    for _, call in tree(root):
+        row = operator_of(call) if isinstance(call, ex.FunctionCall) else None
+        if row is not None and len(call.arguments) == row.parameters:
+            yield from ((row, position, call.arguments[position]) for position in sorted(row.divisors))
 
 
 def _defaults(base: rsc.Base) -> Iterator[Finding]:
@@ -206,14 +272,10 @@ def _built_in(element: ex.FunctionCall) -> Iterator[Finding]:
 def _made(meaning: Meaning) -> Iterator[Finding]:
     """What built-in functions divide by, with the arguments of a template."""
     assert meaning.made is not None
-    for call in (part for _, part in tree(meaning.made.local) if isinstance(part, ex.FunctionCall)):
-        row = operator_of(call)
-        if row is None or len(call.arguments) != row.parameters:
-            continue
-        for position in sorted(row.divisors):
-            (value,) = meaning.values(call.arguments[position])
-            if type(value) is int and value < 1:
-                yield meaning.finding(call.arguments[position], *_wrong_divisor(row, position))
+    for row, position, divisor in _divisors(meaning.made.local):
+        (value,) = meaning.values(divisor)
+        if type(value) is int and value < 1:
+            yield meaning.finding(divisor, *_wrong_divisor(row, position))
 
 
 def _wrong_divisor(row: Operator, position: int) -> tuple[str, str]:

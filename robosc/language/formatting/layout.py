@@ -100,7 +100,8 @@ class _Layout:
         row = [self._document(parts[0])]
         for left, right in pairwise(parts):
             breaks = _is_word(left, after) or _is_word(right, before)
-            between = Gap.NONE if _is_word(right, {",", ":", "("}) else Gap.BREAK if breaks else gap
+            tight = _is_word(right, {",", ":", "(", ".."}) or _is_word(left, {".."})
+            between = Gap.NONE if tight else Gap.BREAK if breaks else gap
             row.append(Indent(self._gap(right, between)))
             # What has brackets closes them where it began.
             document = self._document(right)
