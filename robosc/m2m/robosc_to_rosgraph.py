@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from robosc.m2m.declarations import Declarations, default_value
 from robosc.m2m.expressions import Carried, NodeExpressions
+from robosc.m2m.kept_types import KeptTypes
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc, rosgraph, sct
 from robosc.ros_types import RosTypes
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from robosc.m2m.trace import Trace
+    from robosc.ros_types import Section
     from robosc.semantics.communication import PortEvent
     from robosc.semantics.instances import Instance, InstanceParameter, InstanceVariable, PortInstance
 
@@ -70,6 +72,8 @@ class _Transformation:
         self.conversions: dict[tuple[robosc.EnumDataType, tuple[str, ...]], rosgraph.Conversion] = {}
         self.declarations = Declarations(self.graph, trace.declarations)
         self.conversion_names = Names()
+        self.kept = KeptTypes(self.declarations, self.known)
+        self.carriers: dict[rosgraph.Reception, tuple[rosgraph.Interface, Section]] = {}
         self.subscriptions: dict[tuple[str, rosgraph.Interface], rosgraph.Subscription] = {}
         self.publishers: dict[tuple[str, rosgraph.Interface], rosgraph.Publisher] = {}
         self.expressions = NodeExpressions(trace, self.declarations, self.variables, self.parameters, self.wire)
@@ -231,6 +235,8 @@ class _Transformation:
             source=port.communication.source,
         )
         value = self.value_of(port, event)
+        assert event.section is not None
+        self.carriers[reception] = self.interface(port.communication), event.section
         for told, declared in self.trace.inputs.items():
             if told.port == port and told.event == event:
                 read: ex.Expression
@@ -368,10 +374,13 @@ class _Transformation:
 
     def types_of_kept_data(self) -> None:
         """Objects and arrays of objects have the ROS type of what is stored in them, in one step or several."""
+        declared = {variable: owned.type for owned, variable in self.variables.items()}
         for variable, places in origins(self.graph).items():
             if holds_objects(variable.type):
                 variable.reception, path = next(iter(places))
                 variable.path.extend(["0" if step == EACH or step.isdigit() else step for step in path])
+                interface, section = self.carriers[variable.reception]
+                variable.type = self.kept.type_of(declared[variable], interface, section, variable.path)
 
     def data(self, transition: robosc.Transition, instance: Instance) -> Carried | None:
         """What `value` means in a transition; None where its event brings no data."""

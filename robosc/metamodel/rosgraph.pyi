@@ -214,4 +214,10 @@ class ArrayType(expression.Type):
 
 class ObjectType(expression.Type):
     """An object, as ROS has it."""
-    def __init__(self, *, source: Place | None = ...) -> None: ...
+    fields: MutableSequence[ObjectField]
+    def __init__(self, *, fields: Iterable[ObjectField] = ..., source: Place | None = ...) -> None: ...
+
+class ObjectField(expression.NamedElement):
+    """A field of an object, by its ROS name."""
+    type: expression.Type
+    def __init__(self, *, type: expression.Type | None = ..., name: str | None = ..., source: Place | None = ...) -> None: ...

@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING, Any
 
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph
-from robosc.ros_types import DefinitionError, RosDistribution, Section
-from robosc.ros_types.wire import Basic, Nested, Sequence
-from robosc.semantics.messages import EACH, Read, holds_objects
+from robosc.ros_types.wire import Basic
+from robosc.semantics.messages import EACH, Read, holds_objects, parts_of, path_of
 from robosc.semantics.messages import reads as all_reads
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
+
+    from robosc.ros_types import RosDistribution, Section
 
 
 #: Elements of an array that a walk makes at most.
@@ -35,6 +36,15 @@ _DEFAULTS: dict[type[ex.Type], tuple[str, Leaf]] = {
 }
 
 
+class Record(SimpleNamespace):
+    """An object of ROS; `wire_types`, of its fields, make none another one."""
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Record) and vars(self) | {"wire_types": {}} == vars(other) | {"wire_types": {}}
+
+
 @dataclass(frozen=True)
 class Field:
     """A field that the model reads or sets: its type in the model, and in ROS as far as that is known."""
@@ -46,7 +56,7 @@ class Field:
     def default(self) -> Any:
         """What ROS holds where nobody set it."""
         if isinstance(self.type, rosgraph.ObjectType):
-            return SimpleNamespace(wire_types={})
+            return Record(wire_types={})
         return [] if isinstance(self.type, rosgraph.ArrayType) else _DEFAULTS[type(self.type)][1]
 
     @property
@@ -62,20 +72,8 @@ class Field:
 
 def wire_type(distribution: RosDistribution, interface: rosgraph.Interface, section: Section, path: Path) -> str | None:
     """The basic ROS type at the end of a path; None where it is unknown."""
-    package, name = interface.package, interface.type
-    found: object = None
-    for step in path:
-        if step.isdigit():
-            found = found.element if isinstance(found, Sequence) else None
-        else:
-            try:
-                fields = distribution.fields(package, name, section)
-            except DefinitionError:
-                return None
-            found = None if fields is None else fields.get(step)
-        if isinstance(found, Nested):
-            package, name, section = found.package, found.name, Section.MESSAGE
-    return found.name if isinstance(found, Basic) else None
+    found = distribution.reached(interface.package, interface.type, section, path)
+    return found[0].name if found and isinstance(found[0], Basic) else None
 
 
 def data_read(reads: Iterable[tuple[Path, Read]], prefix: Path = ()) -> Iterator[tuple[Path, ex.Type]]:
@@ -111,13 +109,13 @@ def message(fields: Mapping[Path, Field], values: Mapping[Path, Leaf]) -> Any:
 
     Elements from `LONGEST` on are left out: what reads them can't.
     """
-    if () in fields:
+    heads = list(dict.fromkeys(path[0] for path in fields if path))
+    if () in fields and not heads:
         return values.get((), fields[()].default)
-    heads = list(dict.fromkeys(path[0] for path in fields))
     if not heads or not all(head.isdigit() for head in heads):
-        return SimpleNamespace(
+        return Record(
             **{head: message(_below(head, fields), _below(head, values)) for head in heads},
-            wire_types={path[0]: field.wire_type for path, field in fields.items() if len(path) == 1},
+            wire_types={head: _wire_type(_below(head, fields)) for head in heads},
         )
     element: dict[Path, Field] = {}
     for head in heads:
@@ -126,6 +124,25 @@ def message(fields: Mapping[Path, Field], values: Mapping[Path, Leaf]) -> Any:
     if () in element:
         return [values.get((str(index),), element[()].default) for index in range(length)]
     return [message(element, _below(str(index), values)) for index in range(length)]
+
+
+def fields_sent(assignment: rosgraph.FieldAssignment) -> Iterator[tuple[Path, ex.Type]]:
+    """The fields that data to be sent has as it sets one: of an object that is handed on all that are known of it."""
+    path, value = tuple(assignment.path), assignment.value
+    yield path, assignment.type
+    variable = value.variable if isinstance(value, rosgraph.WireAccess) else None
+    if variable is not None and isinstance(assignment.type, rosgraph.ObjectType):
+        for inner, kind in parts_of(variable.type, path_of(value)):
+            end = inner.index(EACH) if EACH in inner else None
+            yield path + inner[:end], kind if end is None else rosgraph.ArrayType()
+
+
+def _wire_type(fields: Mapping[Path, Field]) -> str:
+    """The type of what has these fields, or elements."""
+    if () in fields:
+        return fields[()].wire_type
+    element = next((path[0] for path in fields if path[0].isdigit()), None)
+    return "walk/Object" if element is None else f"{_wire_type(_below(element, fields))}[]"
 
 
 def _below(head: str, paths: Mapping[Path, Any]) -> dict[Path, Any]:

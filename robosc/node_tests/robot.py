@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from robosc.metamodel import rosgraph
-from robosc.node_tests.messages import Field, Path, message, wire_type
+from robosc.node_tests.messages import Field, Path, fields_sent, message, wire_type
 from robosc.ros_types import Section
 from robosc.runtime.core.port import Outcome
 
@@ -50,9 +50,9 @@ class Robot:
     def _note(self, interface: rosgraph.Interface, section: Section, sending: rosgraph.Sending) -> None:
         fields = self._fields.setdefault((interface, section), {})
         for field in (field for data in sending.alternatives for field in data.fields):
-            path = tuple(field.path)
-            inside = (*path, "0") if isinstance(field.type, rosgraph.ArrayType) else path
-            fields[path] = Field(field.type, wire_type(self._distribution, interface, section, inside))
+            for path, kind in fields_sent(field):
+                inside = (*path, "0") if isinstance(kind, rosgraph.ArrayType) else path
+                fields[path] = Field(kind, wire_type(self._distribution, interface, section, inside))
 
     # What the controller asks
 

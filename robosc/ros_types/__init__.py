@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from robosc.files.resources import locate
 from robosc.ros_types.folders import Share, Workspace
-from robosc.ros_types.wire import FOLDERS, DefinitionError, Fields, Section, WireType
+from robosc.ros_types.wire import FOLDERS, DefinitionError, Fields, Nested, Section, Sequence, WireType
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -64,6 +64,24 @@ class RosDistribution:
             found = (source.fields(package, name, section) for source in self._sources)
             self._known[key] = next((fields for fields in found if fields is not None), None)
         return self._known[key]
+
+    def reached(
+        self, package: str, name: str, section: Section, path: Iterable[str]
+    ) -> tuple[WireType, Section] | None:
+        """What stands at the end of a path of fields and positions, an object with its section; None: unknown."""
+        found: WireType | None = Nested(package, name)
+        for step in path:
+            if step.isdigit():
+                found = found.element if isinstance(found, Sequence) else None
+            elif isinstance(found, Nested):
+                try:
+                    fields = self.fields(found.package, found.name, section)
+                except DefinitionError:
+                    return None
+                found, section = None if fields is None else fields.get(step), Section.MESSAGE
+            else:
+                return None
+        return None if found is None else (found, section)
 
     def defines(self, package: str, name: str, section: Section) -> bool:
         """Whether there is a section of a type, also one that can't be read."""

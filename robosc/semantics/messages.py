@@ -99,7 +99,9 @@ def is_structured(kind: ex.Type) -> bool:
 
 def holds_objects(kind: ex.Type) -> bool:
     """Whether it is that of an object or of an array of objects: the node hands these on as they came."""
-    return isinstance(kind, rosgraph.ObjectType) or (isinstance(kind, rosgraph.ArrayType) and kind.element is None)
+    if isinstance(kind, rosgraph.ArrayType):
+        return kind.element is None or isinstance(kind.element, rosgraph.ObjectType)
+    return isinstance(kind, rosgraph.ObjectType)
 
 
 def source_of(access: rosgraph.WireAccess) -> rosgraph.NodeVariable | None:
@@ -160,8 +162,17 @@ def kept_reads(graph: rosgraph.RosGraph) -> Iterator[tuple[rosgraph.Reception, P
 
 
 def reads(values: Iterable[ex.Expression]) -> Iterator[tuple[Path, Read]]:
-    """What expressions read of a message; of a conversion's argument that it converts it."""
+    """What expressions read of a message; of a conversion's argument that it converts it.
+
+    Of an object that the node keeps all fields are read that are known: later they may be read, or handed on.
+    """
     for value in values:
+        owner = value.eContainer()
+        kept = owner.variable.type if isinstance(owner, rosgraph.NodeAssignment) else None
+        if isinstance(value, rosgraph.WireAccess) and value.variable is None and kept and holds_objects(kept):
+            for inside, kind in parts_of(kept):
+                path = (*path_of(value), *inside)
+                yield path, Read(value if EACH in path else access_to(path, type(kind)()), kind)
         argument = None
         for _, part in tree(value):
             if isinstance(part, rosgraph.ConversionCall):
@@ -173,6 +184,29 @@ def reads(values: Iterable[ex.Expression]) -> Iterator[tuple[Path, Read]]:
                     yield (*path_of(part), EACH), Read(part, part.type.element)
                 else:
                     yield path_of(part), Read(part, part.type)
+
+
+def parts_of(kind: ex.Type | None, path: Path = ()) -> Iterator[tuple[Path, ex.Type]]:
+    """What is known of a type at the end of a path: the way to each basic value, and its type."""
+    if isinstance(kind, rosgraph.ArrayType):
+        inner = parts_of(kind.element, path[1:])
+        yield from inner if path else (((EACH, *way), part) for way, part in inner)
+    elif isinstance(kind, rosgraph.ObjectType):
+        for field in kind.fields:
+            if path:
+                yield from parts_of(field.type, path[1:]) if field.name == path[0] else ()
+            else:
+                yield from (((field.name, *way), part) for way, part in parts_of(field.type))
+    elif kind is not None:
+        yield (), kind
+
+
+def access_to(path: Path, kind: ex.Type | None = None) -> rosgraph.WireAccess:
+    """What reads the end of a path, a value of a type, out of a message."""
+    steps: list[rosgraph.WireStep] = [
+        rosgraph.IndexStep(index=int(step)) if step.isdigit() else rosgraph.FieldStep(name=step) for step in path
+    ]
+    return rosgraph.WireAccess(steps=steps, type=kind)
 
 
 def shown(values: Iterable[ex.Expression]) -> Shown:

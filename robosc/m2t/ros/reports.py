@@ -9,7 +9,7 @@ from robosc.m2t.c.comments import string_literal
 from robosc.m2t.ros.expressions import CppPrinter, converted
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph, sct
-from robosc.semantics.messages import Read, reads_elements, shown
+from robosc.semantics.messages import Read, access_to, reads_elements, shown
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -68,10 +68,7 @@ def _value(path: Path, part: Read | Shown, printer: CppPrinter, names: CppNames)
         kind = ex.EnumerationType(enumeration=part.conversion.enumeration) if part.conversion else part.type
         text = printer(part.reference)
         return _json(text, kind, names) if part.is_value else f"(static_cast<void>({text}), Json::object())"
-    steps: list[rosgraph.WireStep] = [
-        rosgraph.IndexStep(index=int(step)) if step.isdigit() else rosgraph.FieldStep(name=step) for step in path
-    ]
-    return _list(printer.wire(rosgraph.WireAccess(steps=steps)), part, names)
+    return _list(printer.wire(access_to(path)), part, names)
 
 
 def _list(array: str, parts: Shown, names: CppNames, depth: int = 1) -> str:
