@@ -16,8 +16,11 @@ if TYPE_CHECKING:
     from robosc.m2m.declarations import Declarations
     from robosc.ros_types import Fields, RosDistribution, RosTypes, WireType
 
-#: Of an object with more values nothing is known: a log of them would be of no use.
+#: Of an object of more objects and values nothing is known: a log of them would be of no use.
 MOST_VALUES = 1000
+
+#: The package of `Time` and `Duration`.
+_TIMES = "builtin_interfaces"
 
 _TYPES: Mapping[str, type[ex.Type]] = {
     "boolean": ex.BooleanType,
@@ -96,11 +99,14 @@ class KeptTypes:
         return _TYPES[basic.pop()]() if len(basic) == 1 and kinds == {Basic} else None
 
     def _object(self, declared: robosc.DataType | None, defined: Several[_Defined]) -> rosgraph.ObjectType:
+        self._left -= 1
         made = rosgraph.ObjectType()
         named = {}
         if isinstance(declared, robosc.ComplexDataTypeReference) and isinstance(declared.type, robosc.ObjectDataType):
             named = {given.name: given.type for given in declared.type.properties}
-        known = [(one, fields) for one in defined if (fields := one.fields()) is not None]
+        found = [(one, fields) for one in defined if (fields := one.fields()) is not None]
+        # Of times the two agree on the seconds alone, and rospy not even on their name.
+        known = [(one, fields) for one, fields in found if str(one.wire).partition("/")[0] != _TIMES]
         agreed = [name for name in (known[0][1] if known else ()) if all(name in fields for _, fields in known)]
         for name in dict.fromkeys([*agreed, *named]):
             if self._left < 0:

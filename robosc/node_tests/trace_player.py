@@ -139,6 +139,15 @@ def leaves(value: Any, path: tuple[str, ...] = ()) -> list[tuple[tuple[str, ...]
     return [(path, value)]
 
 
+def with_nan(value: Any) -> Any:
+    """A value of a trace, also a list, in which a number that is not finite is null."""
+    if isinstance(value, list):
+        return [with_nan(inner) for inner in value]
+    if isinstance(value, dict):
+        return {name: with_nan(inner) for name, inner in value.items()}
+    return math.nan if value is None else value
+
+
 def held(message: Any, path: tuple[str, ...]) -> Any:
     """What is in a message at the end of a path."""
     for name in path:
@@ -178,7 +187,7 @@ class Incoming:
                 if read["converted"]:
                     literals.append(found.get(path))
                 elif path in found:
-                    direct[path] = math.nan if found[path] is None else found[path]
+                    direct[path] = with_nan(found[path])
                 if path not in found and any(name.isdigit() for name in path):
                     unread.append(path)
             # Others may read what an event that did not happen would have read, but for one element.
@@ -493,7 +502,12 @@ class Player:
             self._receive(line)
 
     def _begin_batch(self, lines: list[Line], position: int) -> None:
-        """Where something comes in, the node first does what it has not done yet: before its first tick, that is."""
+        """Where something comes in, the node first does what it has not done yet: before its first tick, that is.
+
+        What happens when a time is up does not wait for anything that comes in.
+        """
+        if ".u_after" in lines[position].event:
+            return
         ahead = next((later for later in range(position, len(lines)) if lines[later].direction != "internal"), position)
         if (
             ahead >= self._sent_until

@@ -15,7 +15,7 @@ from robosc.semantics.operators import UnreadableError, as_double, operator_of
 from robosc.semantics.walks import operands, walk
 
 if TYPE_CHECKING:
-    from collections.abc import Generator, Iterable, Sequence
+    from collections.abc import Generator, Iterable
 
 #: A value that a script does not give.
 _UNKNOWN: Any = object()
@@ -45,9 +45,9 @@ def past_end(expressions: Iterable[ex.Expression], value: Any) -> UnreadableErro
     def missing(expression: ex.Expression) -> Generator[ex.Expression, UnreadableError | None, UnreadableError | None]:
         match expression:
             case rosgraph.WireAccess() if not operands(expression) and expression.quantifier is None:
-                return _past_end(expression.steps, value)
+                return _past_end(expression, value)
             case rosgraph.ConversionCall() if not operands(expression.argument):
-                return _past_end(expression.argument.steps, value)
+                return _past_end(expression.argument, value)
             case rosgraph.ArrayQuantifier() | rosgraph.WireAccess() | rosgraph.ConversionCall():
                 return _fault(expression, value)
         operator = operator_of(expression)
@@ -76,9 +76,9 @@ def _fault(expression: ex.Expression, value: Any) -> UnreadableError | None:
     return None
 
 
-def _past_end(steps: Sequence[rosgraph.WireStep], value: Any) -> PastEndError | None:
-    reached = value
-    for step in steps:
+def _past_end(access: rosgraph.WireAccess, value: Any) -> PastEndError | None:
+    reached = _UNKNOWN if access.variable is not None else value  # of what the node keeps nothing is known
+    for step in access.steps:
         if isinstance(step, rosgraph.IndexStep) and isinstance(reached, list | dict):
             length = len(reached) if isinstance(reached, list) else 1 + max(map(int, reached), default=-1)
             assert step.index is not None
@@ -108,7 +108,7 @@ def _known(condition: ex.Expression, value: Any) -> bool | None:
 
 def _read(value: Any, reference: ex.Expression, *given: Any) -> Value:
     """What a reference reads of a value, or of the first that is `given`, an element; behind it stand its indices."""
-    if not isinstance(reference, rosgraph.WireAccess):
+    if not isinstance(reference, rosgraph.WireAccess) or reference.variable is not None:
         raise _UnknownError
     rest = iter(given if reference.quantifier else (value, *given))
     reached = next(rest)

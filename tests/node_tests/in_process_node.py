@@ -28,6 +28,13 @@ if TYPE_CHECKING:
 _OUTCOMES = {"succeeded": Outcome.SUCCEEDED, "aborted": Outcome.ABORTED, "canceled": Outcome.CANCELLED}
 
 
+def by_index(value: Any) -> Any:
+    """Fields in which arrays are objects from index to element."""
+    if isinstance(value, list):
+        value = {str(index): inner for index, inner in enumerate(value)}
+    return {name: by_index(inner) for name, inner in value.items()} if isinstance(value, dict) else value
+
+
 class _Goal(RunningGoal):
     asked: Callable[[], None]
 
@@ -126,7 +133,7 @@ class InProcessNode(Port):
         return next(goal for goal in self._robot.goals.items() if goal[0].identifier == action)
 
     def _made(self, event: sct.Event, fields: dict[str, Any]) -> Any:
-        return message(self._incoming[event].fields, dict(leaves(fields)) if fields else {})
+        return message(self._incoming[event].fields, dict(leaves(by_index(fields))) if fields else {})
 
     def _work(self) -> None:
         while self._event_loop.run_pending() == 0:

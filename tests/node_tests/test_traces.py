@@ -40,6 +40,8 @@ MODELS = {
     "porter": CPP / "porter.rscd",
     "scout": ROOT / "tests" / "ros" / "faults" / "scout.rscd",
     "mission": ROOT / "tests" / "runtime" / "mission.rscd",
+    "kept": ROOT / "tests" / "runtime" / "kept.rscd",
+    "keeper": ROOT / "tests" / "ros" / "kept" / "keeper.rscd",
 }
 SETTINGS = {"porter": CPP / "porter-config.json"}
 
@@ -116,9 +118,11 @@ def test_the_same_call_gives_the_same_test(case: Case) -> None:
 # Logs of robots
 
 
-@pytest.mark.parametrize("case", ["line_follower", "maze_solver", "porter", "courier", "scout"], indirect=True)
+@pytest.mark.parametrize(
+    "case", ["line_follower", "maze_solver", "porter", "courier", "scout", "kept", "keeper"], indirect=True
+)
 def test_a_log_without_messages_is_played(case: Case) -> None:
-    """What the node read is enough to make messages that it reads like that."""
+    """What the node read is enough to make messages that it reads like that, also of what it keeps to hand it on."""
     for line in case.trace:
         line.pop("message", None)
     case.play()

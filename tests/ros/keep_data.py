@@ -81,6 +81,14 @@ class World:
         self.wait("/text", "last")
         self.wait("/twist", [3.0, 0.25, 12.0])
         self.wait("/again", [["last", "", ""], [0.5, 0.25], [0.25, 0.25]])
+        self.poses((float("nan"), 0.5), (4.0, 0.125))  # can't be handed on
+        self.wait("/twist", [4.0, 0.25, 12.0])
+        self.poses((2.0, 0.5), (4.0, 0.125))
+        self.wait("/stamped", [2.0, 0.5])
+        self.poses((2.5, float("inf")), (5.0, 0.125))
+        self.wait("/twist", [5.0, 0.25, 12.0])
+        self.poses((2.5, 0.25), (5.0, 0.125))
+        self.wait("/stamped", [2.5, 0.25])
 
 
 if __name__ == "__main__":

@@ -7,7 +7,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from click.testing import CliRunner
 
+import robosc
+from robosc.cli import main
+from robosc.semantics.messages import parts_of
 from tests.runtime.fake import Record, World
 
 KEPT = Path(__file__).parent / "kept.rscd"
@@ -136,9 +140,53 @@ def test_nothing_of_an_event_that_cannot_be_read_is_stored(world: World) -> None
     assert sent(world, "/again")[0]["name"] == "first"
 
 
-def test_the_log_shows_how_long_an_array_is_and_what_is_read_of_it(world: World) -> None:
+def test_the_log_shows_what_is_kept_of_objects(world: World) -> None:
     hear_route(world, 1.0, 2.0, speeds=(0.5,))
     world.controller._log.flush()
     lines = [json.loads(line) for line in world.log.read_text().splitlines()]
     (line,) = [line for line in lines if line["event"] == "message_route.u_response"]
-    assert line["data"] == {"value": {"poses": [{}, {}], "speeds": [0.5]}}
+    poses = [{"x": 1.0, "tags": [7]}, {"x": 2.0, "tags": [7]}]
+    assert line["data"] == {"value": {"name": "first", "poses": poses, "speeds": [0.5]}}
+
+
+def test_simulate_reads_the_log_back(world: World) -> None:
+    """An index into what the node keeps counts as readable there."""
+    hear_route(world, 1.0, 2.0, 3.0)
+    world.hear("next", data=2)
+    world.wait(0.3)
+    world.controller.close()
+    done = CliRunner().invoke(main, ["simulate", str(KEPT), "--script", str(world.log)])
+    assert done.exit_code == 0, done.stderr
+    answers = [json.loads(line) for line in done.stdout.splitlines()]
+    assert [answer["event"] for answer in answers] == [
+        json.loads(line)["event"] for line in world.log.read_text().splitlines()
+    ]
+    assert all(answer["accepted"] for answer in answers)
+
+
+def test_the_fields_of_ros_types_are_those_of_both_ros(tmp_path: Path) -> None:
+    """`Header` has `seq` in ROS 1 alone, and times have other names; a field that the model names is shown."""
+    model = tmp_path / "keeper.rscd"
+    declared = 'outgoing message path with identifier: "/path", type: nav_msgs/Path'
+    kept = "variable path: nav_msgs/Path variable since: integer initial marked state on"
+    reaction = "on response from path do path := value, since := path.header.stamp.sec"
+    model.write_text(f"robot Keeper {{ component Eye {{ {declared} behaviour {{ {kept} {{ {reaction} }} }} }} }}")
+    graph = robosc.to_rosgraph(robosc.load(model))
+    header = ["header.stamp.sec", "header.frame_id"]
+    pose = ["position.x", "position.y", "position.z", *(f"orientation.{axis}" for axis in "xyzw")]
+    found = [".".join(path) for path, _ in parts_of(graph.variables[0].type)]
+    assert found == [*header, "poses.*.header.frame_id", *(f"poses.*.pose.{part}" for part in pose)]
+
+
+def test_nothing_is_known_of_an_object_of_too_many_values(tmp_path: Path) -> None:
+    """Its fields are never counted to the end: there may be more than anybody could write."""
+    model = tmp_path / "keeper.rscd"
+    types = " ".join(f"datatype object T{n} {{ a: T{n + 1} b: T{n + 1} }}" for n in range(60))
+    declared = 'outgoing message t with identifier: "/t", type: T0 links t'
+    kept = "variable kept: T0 initial marked state on { on response from t do kept := value }"
+    component = f"component Eye {{ {declared} behaviour {{ {kept} }} }}"
+    model.write_text(
+        f"robot Keeper {{ interface t use T from unknown_msgs {types} datatype object T60 {{ }} {component} }}"
+    )
+    graph = robosc.to_rosgraph(robosc.load(model))
+    assert list(parts_of(graph.variables[0].type)) == []

@@ -15,8 +15,9 @@ from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph
 from robosc.metamodel.places import place
 from robosc.metamodel.reflection import tree
+from robosc.semantics.messages import holds_objects, parts_of, path_of
 from robosc.semantics.parameters import controller_parameters, layer_parameters, model_parameters
-from robosc.semantics.typing import DOUBLE, infer
+from robosc.semantics.typing import DOUBLE, ArrayType, declared_type, infer
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -187,16 +188,23 @@ def _nothing_safe(graph: rosgraph.RosGraph, configuration: Configuration) -> Ite
         outside = _from_outside(graph)
         for sending in (sending for publisher in graph.publishers for sending in publisher.sendings):
             fields = [field for provided in sending.alternatives for field in provided.fields]
-            found = next(
-                (field for field in fields if infer(field.value) == DOUBLE and _reads(field.value, outside)), None
-            )
+            found = next((field for field in fields if _may_be_withheld(field, outside)), None)
             if found is not None:
+                what = "is no" if infer(found.value) == DOUBLE else "holds what is no"
                 message = (
-                    f"{sending.name} is not sent where its {'.'.join(found.path)} is no finite number, nor is anything"
-                    " else: the robot goes on as it was told last"
+                    f"{sending.name} is not sent where its {'.'.join(found.path) or 'data'} {what} finite number, nor"
+                    " is anything else: the robot goes on as it was told last"
                 )
                 hint = 'name what is sent then in controller-config.json, as in "onWithheld": ["halt"]; or write []'
                 yield replace(_error(found, message, hint), severity=Severity.WARNING)
+
+
+def _may_be_withheld(field: rosgraph.FieldAssignment, outside: set[rosgraph.NodeVariable]) -> bool:
+    """Whether a field may be set to what holds a double that is not finite, as far as its type is known."""
+    value = field.value
+    if isinstance(value, rosgraph.WireAccess) and value.variable is not None and holds_objects(field.type):
+        return any(isinstance(kind, ex.DoubleType) for _, kind in parts_of(value.variable.type, path_of(value)))
+    return infer(value) in {DOUBLE, ArrayType(DOUBLE)} and _reads(value, outside)
 
 
 def _from_outside(graph: rosgraph.RosGraph) -> set[rosgraph.NodeVariable]:
@@ -218,7 +226,7 @@ def _from_outside(graph: rosgraph.RosGraph) -> set[rosgraph.NodeVariable]:
 
 def _reads(value: ex.Expression, outside: set[rosgraph.NodeVariable]) -> bool:
     return any(
-        (isinstance(part, rosgraph.WireAccess) and isinstance(part.type, ex.DoubleType))
+        (isinstance(part, rosgraph.WireAccess) and declared_type(part.type) in {DOUBLE, ArrayType(DOUBLE)})
         or (isinstance(part, rosgraph.NodeVariableReference) and part.variable in outside)
         or (isinstance(part, ex.Division) and not isinstance(part.right, (ex.IntegerLiteral, ex.DoubleLiteral)))
         for _, part in tree(value)

@@ -211,6 +211,44 @@ def test_what_may_be_no_number_has_something_in_its_place(tmp_path: Path, provid
         assert found(tmp_path, settings, Severity.WARNING, more=more) == []
 
 
+KEPT = """incoming message drive with identifier: "drive", type: %s
+  }
+  component Eye {
+    outgoing message seen with identifier: "eye", type: sensor_msgs/JointState
+    behaviour {
+      variable last: sensor_msgs/JointState
+      variable speeds: array(double)
+      variable names: array(string)
+      initial marked state open {
+        on response from seen do last := value, speeds := value.velocity[0..1], names := value.name
+      }
+    }
+  }
+  provide drive with %s
+  component Arm {"""
+
+
+@pytest.mark.parametrize(
+    ("kind", "provided", "what"),
+    [
+        ("sensor_msgs/JointState", "Eye.last", "data holds what is no"),
+        ("sensor_msgs/JointState", "{ position: Eye.speeds }", "position holds what is no"),
+        ("sensor_msgs/JointState", "{ position: [0.0, Eye.speeds[1]] }", "position holds what is no"),
+        ("sensor_msgs/JointState", "{ name: Eye.names, position: [0.0, 1.0] }", None),
+        ("sensor_msgs/JointState", "{ header: Eye.last.header }", None),
+        ("geometry_msgs/Vector3", "{ x: min(Eye.speeds) }", "x is no"),
+    ],
+)
+def test_what_is_handed_on_may_hold_what_is_not_finite(
+    tmp_path: Path, kind: str, provided: str, what: str | None
+) -> None:
+    more = KEPT % (kind, provided)
+    warnings = found(tmp_path, '{"onShutdown": []}', Severity.WARNING, more=more)
+    end = " finite number, nor is anything else: the robot goes on as it was told last"
+    assert warnings == ([f"cart.rscd:20: drive is not sent where its {what}{end}"] if what else [])
+    assert found(tmp_path, '{"onShutdown": [], "onWithheld": []}', Severity.WARNING, more=more) == []
+
+
 def test_only_topics_that_the_node_hears_have_a_watchdog(tmp_path: Path) -> None:
     settings = '{"onShutdown": [], "watchdogMs": {"eye": 5,\n "halt": 5}}'
     assert found(tmp_path, settings, more=MORE) == [
