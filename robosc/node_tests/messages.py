@@ -39,7 +39,7 @@ _DEFAULTS: dict[type[ex.Type], tuple[str, Leaf]] = {
 class Record(SimpleNamespace):
     """An object of ROS; `wire_types`, of its fields, make none another one."""
 
-    __hash__ = None  # type: ignore[assignment]
+    __hash__ = None
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Record) and vars(self) | {"wire_types": {}} == vars(other) | {"wire_types": {}}
@@ -130,9 +130,8 @@ def fields_sent(assignment: rosgraph.FieldAssignment) -> Iterator[tuple[Path, ex
     """The fields that data to be sent has as it sets one: of an object that is handed on all that are known of it."""
     path, value = tuple(assignment.path), assignment.value
     yield path, assignment.type
-    variable = value.variable if isinstance(value, rosgraph.WireAccess) else None
-    if variable is not None and isinstance(assignment.type, rosgraph.ObjectType):
-        for inner, kind in parts_of(variable.type, path_of(value)):
+    if isinstance(value, rosgraph.WireAccess) and value.variable and isinstance(assignment.type, rosgraph.ObjectType):
+        for inner, kind in parts_of(value.variable.type, path_of(value)):
             end = inner.index(EACH) if EACH in inner else None
             yield path + inner[:end], kind if end is None else rosgraph.ArrayType()
 
