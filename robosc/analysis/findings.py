@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from robosc.analysis.observations import Forbidden
-from robosc.analysis.wording import condition, counterexample_in_words, forbid, listed, name, way_out, words
+from robosc.analysis.wording import condition, counterexample_in_words, forbid, in_words, listed, name, way_out, words
 from robosc.diagnostics import Diagnostic, Severity, in_order
 from robosc.metamodel import sct
 from robosc.metamodel.places import place
@@ -63,6 +63,9 @@ class _Findings:
         done = "taken" if silent else _DONE.get(plant.kind, "sent")
         if observed.forbidden is Forbidden.BY_REQUIREMENTS:
             why, hint = f"wherever it could be, {forbid(observed.requirements, 'it')}", "loosen what it needs"
+            if observed.trace is not None:
+                way = f"after {in_words(observed.trace, self._model)}" if observed.trace else "at the start"
+                why += f", for example {way}"
         elif observed.counterexample is not None and not observed.kept_away:
             why, hint = counterexample_in_words(observed.counterexample, self._model), way_out(observed.counterexample)
             if observed.counterexample.violated and plant.kind == sct.PlantKind.action:
@@ -72,12 +75,18 @@ class _Findings:
             hint = "allow a way to such a state"
             if observed.counterexample is not None:
                 why += f": {counterexample_in_words(observed.counterexample, self._model)}"
+            elif observed.needed is not None:
+                *before, _ = observed.trace or ()
+                after = f" after {in_words(before, self._model)}" if before else ""
+                why += f": the shortest way to one needs {words(observed.needed)}{after}, where "
+                why += forbid(observed.requirements, "it")
         elif silent:
             why, hint = _guard(event), "correct its guard or what leads to its state"
         else:
             why = _not_requested(observed)
             hint = f"write `on request to {name(plant)}` in a state that can be reached"
-        at_fault = observed.requirements or (observed.counterexample and observed.counterexample.violated) or ()
+        required = () if observed.kept_away else observed.requirements
+        at_fault = required or (observed.counterexample and observed.counterexample.violated) or ()
         return _finding(
             _blamed(at_fault, event),
             "never-enabled",

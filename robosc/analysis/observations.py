@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum, auto
 from functools import cached_property
 from itertools import combinations
 from typing import TYPE_CHECKING
 
 from robosc.analysis.blocking import BlockingCounterexample, blocking_counterexample, forbidding, never_ready
-from robosc.analysis.paths import shortest_path
+from robosc.analysis.paths import Layers, Path
 from robosc.metamodel import sct
 from robosc.semantics.roles import plant_of, provide_numbers
 from robosc.synthesis.decoding import Value, value
@@ -18,6 +18,7 @@ from robosc.synthesis.encoding import pick
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
+    from robosc.analysis.paths import TraceStep
     from robosc.analysis.system import SynthesizedSystem
     from robosc.synthesis.bdd import Diagram
     from robosc.synthesis.encoding import Element
@@ -45,9 +46,12 @@ class NeverEnabled:
     """A trigger or tau event that is allowed in no controlled state.
 
     `plants` are those which forbid it alone wherever the robot may come, `requirements` those which forbid it wherever
-    the plants enable it, be it only in states that the supervisor keeps the robot from: see `forbidding`.
-    `kept_away` says that the plants forbid it for that reason only. `counterexample` is there where synthesis forbids
-    it, or holds back what leads to where it could happen, because of a requirement that would be violated.
+    the plants enable it, be it only in states that the supervisor keeps the robot from: see `forbidding`. `trace` is a
+    shortest way of the plants to one of these, where an order, a count or an automaton is among them.
+    `kept_away` says that the plants forbid it for that reason only: a shortest way of the plants to where it could
+    happen goes on with an event that the supervisor holds back. That is for `requirements` on `needed`, the last event
+    of `trace`, or for what `counterexample` says; for neither where such a way costs too much. `counterexample` is
+    there also where synthesis forbids the event itself.
     """
 
     event: sct.Event
@@ -56,6 +60,8 @@ class NeverEnabled:
     requirements: tuple[sct.Requirement, ...] = ()
     kept_away: bool = False
     counterexample: BlockingCounterexample | None = None
+    trace: tuple[TraceStep, ...] | None = None
+    needed: sct.Event | None = None
 
 
 @dataclass(frozen=True)
@@ -208,33 +214,51 @@ class Observer:
             enabled = in_sight if in_sight.satisfiable() else uncontrolled & relation.enabled
             forbidden = not (enabled & relation.requirement).satisfiable()
             if not enabled.satisfiable() or not (in_sight.satisfiable() or forbidden):
-                plants, kept_away = never_ready(relation, controlled), enabled.satisfiable()
-                counterexample = self._on_the_way(enabled) if kept_away and self._system.violations else None
-                yield NeverEnabled(
-                    event, Forbidden.BY_PLANTS, plants=plants, kept_away=kept_away, counterexample=counterexample
+                plants = never_ready(relation, controlled)
+                yield (
+                    self._kept_away(event, plants, enabled)
+                    if enabled.satisfiable()
+                    else NeverEnabled(event, Forbidden.BY_PLANTS, plants=plants)
                 )
             elif forbidden:
-                yield NeverEnabled(
-                    event, Forbidden.BY_REQUIREMENTS, requirements=forbidding(permission.relation, enabled)
-                )
+                requirements = forbidding(permission.relation, enabled)
+                stated = any(one.automaton is not None for one in requirements)
+                way = self._way_of_plants(enabled) if stated else None
+                trace = self._system.trace(way) if way is not None else None
+                yield NeverEnabled(event, Forbidden.BY_REQUIREMENTS, requirements=requirements, trace=trace)
             else:
                 yield NeverEnabled(event, Forbidden.BY_SYNTHESIS, counterexample=self._counterexample(permission))
 
-    def _on_the_way(self, goal: Diagram) -> BlockingCounterexample | None:
-        """What is prevented by what synthesis holds back on a shortest way of the plants to one of these states.
-
-        None where something else stops the robot there, or what is prevented violates no requirement.
-        """
+    def _way_of_plants(self, goal: Diagram) -> Path | None:
+        """A shortest way to one of these states, whatever is required; None where it costs too much."""
         system = self._system
-        within = system.uncontrolled
-        way = shortest_path(system.encoding, system.plant_moves, system.encoding.initial, goal & within, within)
-        for (relation, _), state in zip(way.moves, way.states, strict=False) if way is not None else ():
+        within, effort = system.uncontrolled, None if system.violations else _EFFORT
+        return Layers(system.encoding, system.plant_moves, system.encoding.initial, within).path_to(
+            goal & within, effort
+        )
+
+    def _kept_away(self, event: sct.Event, plants: tuple[sct.Plant, ...], goal: Diagram) -> NeverEnabled:
+        """An event that could happen only where the supervisor lets nobody go, and what it prevents on the way there."""
+        system = self._system
+        way = self._way_of_plants(goal)
+        found = NeverEnabled(event, Forbidden.BY_PLANTS, plants=plants, kept_away=True)
+        if way is None:
+            return found
+        for number, (relation, _) in enumerate(way.moves):
             permission = self._permissions.get(relation.event)
-            if permission is not None and not system.is_in(state, permission.allowed):
-                here = self._held_back(permission) & system.encoding.state(state)
-                found = self._counterexample(permission, here) if here.satisfiable() else None
-                return found if found is not None and found.violated else None
-        return None
+            if permission is None or system.is_in(way.states[number], permission.allowed):
+                continue
+            here = self._held_back(permission) & system.encoding.state(way.states[number])
+            if here.satisfiable():
+                return replace(found, counterexample=self._counterexample(permission, here))
+            asked = relation.asked.items()
+            return replace(
+                found,
+                requirements=tuple(one for one, where in asked if not system.is_in(way.states[number], where)),
+                trace=system.trace(Path(way.states[: number + 2], way.moves[: number + 1])),
+                needed=relation.event,
+            )
+        return found
 
     def _silent_restricted(self) -> Iterator[SilentRestricted]:
         for event, permission in self._permissions.items():

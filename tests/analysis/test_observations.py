@@ -1,5 +1,6 @@
 """What synthesis observes over decision diagrams against the definitions, state by state, on random models."""
 
+from collections.abc import Iterable
 from itertools import combinations
 from unittest.mock import patch
 
@@ -9,7 +10,7 @@ from hypothesis import strategies as st
 
 from robosc.analysis import observations
 from robosc.analysis.blocking import BlockingCounterexample
-from robosc.analysis.observations import Example, Forbidden, Observations, UnreachableState
+from robosc.analysis.observations import Example, Forbidden, NeverEnabled, Observations, UnreachableState
 from robosc.analysis.supervise import diagnose
 from robosc.metamodel import sct
 from robosc.semantics.edges import edges_from
@@ -170,26 +171,7 @@ def test_random_models(random_model):
 def check_details(definitions: Definitions, observed: Observations) -> None:
     """What is said beside the event is true, too."""
     oracle = definitions.oracle
-    for never in observed.never_enabled:
-        enabled = [state for state in oracle.controlled if oracle.enabled(never.event, state)]
-        required = [state for state in enabled if oracle.required(never.event, state)]
-        beyond = [state for state in oracle.uncontrolled if oracle.enabled(never.event, state)]
-        states = enabled or beyond
-        asked = any(oracle.required(never.event, state) for state in states)
-        by_requirements = states and not asked
-        assert never.forbidden is (
-            Forbidden.BY_SYNTHESIS
-            if required
-            else Forbidden.BY_REQUIREMENTS
-            if by_requirements
-            else Forbidden.BY_PLANTS
-        )
-        assert never.kept_away == (not enabled and asked)
-        if never.forbidden is Forbidden.BY_REQUIREMENTS:
-            check_forbidding(oracle, never.event, never.requirements, states)
-        assert (never.counterexample is not None) == bool(required)
-        if never.counterexample is not None:
-            check_counterexample(definitions, never.event, never.counterexample)
+    check_never_enabled(definitions, observed.never_enabled)
     for restricted in observed.silent_restricted:
         check_counterexample(definitions, restricted.event, restricted.counterexample)
     assert list(observed.counterexamples) == [
@@ -272,6 +254,51 @@ def check_example(definitions: Definitions, example: Example, states: set[State]
 def shown(oracle: Oracle, state: State):
     values = dict(zip(oracle.places, state, strict=True))
     return {key: value if isinstance(value, (bool, int)) else value.name for key, value in values.items()}
+
+
+def check_never_enabled(definitions: Definitions, found: Iterable[NeverEnabled]) -> None:
+    """Who forbids each of them, and what is told of the way there."""
+    oracle = definitions.oracle
+    for never in found:
+        enabled = [state for state in oracle.controlled if oracle.enabled(never.event, state)]
+        required = [state for state in enabled if oracle.required(never.event, state)]
+        beyond = [state for state in oracle.uncontrolled if oracle.enabled(never.event, state)]
+        states = enabled or beyond
+        asked = any(oracle.required(never.event, state) for state in states)
+        by_requirements = states and not asked
+        assert never.forbidden is (
+            Forbidden.BY_SYNTHESIS
+            if required
+            else Forbidden.BY_REQUIREMENTS
+            if by_requirements
+            else Forbidden.BY_PLANTS
+        )
+        assert never.kept_away == (not enabled and asked)
+        if never.forbidden is Forbidden.BY_REQUIREMENTS:
+            check_forbidding(oracle, never.event, never.requirements, states)
+        assert (never.counterexample is not None) >= bool(required)
+        if required:
+            check_counterexample(definitions, never.event, never.counterexample)
+        elif never.kept_away:
+            check_barrier(definitions, never)
+        else:
+            assert never.counterexample is None
+
+
+def check_barrier(definitions: Definitions, never: NeverEnabled) -> None:
+    """What holds the robot up on its way to where only the plants would let the event happen."""
+    oracle = definitions.oracle
+    steps = never.counterexample.trace if never.counterexample is not None else never.trace
+    replay = Replay(oracle.model, steps)
+    held_back, before = replay.events[steps[-1].event], replay.after(len(steps) - 1, requirements=True)
+    assert before in oracle.controlled
+    assert held_back.controllable
+    if never.counterexample is not None:
+        assert before in definitions.held_back(held_back)
+    else:
+        assert never.needed is held_back
+        assert oracle.enabled(held_back, before)
+        check_forbidding(oracle, held_back, never.requirements, [before])
 
 
 def check_counterexample(

@@ -219,6 +219,60 @@ def test_the_c_engine_tracks_them(tmp_path: Path) -> None:
         assert verdict.outcome is Outcome.REFUTED
 
 
+GUIDE = """component Guide {
+    behaviour {
+        initial marked state idle { on request to grip goto busy }
+        marked state busy { on response from home goto late on request to drop }
+        marked state late { on request to place }
+    }
+}"""
+
+
+WHEREVER = "wherever it could be, `requirement {}` (line 15) forbids it, for example "
+OUT_OF_REACH = "the supervisor lets the robot reach no state in which it could be sent: "
+
+
+@pytest.mark.parametrize(
+    ("requirement", "name", "why"),
+    [
+        (  # forbidden where it could happen
+            "requirement T: automaton { initial state a { on grip on response from home } state b { on place } }",
+            "place",
+            WHEREVER.format("T: automaton") + "after request to `Arm.grip`, then response from `Arm.home`",
+        ),
+        (
+            "requirement { grip, place } after drop",
+            "grip",
+            WHEREVER.format("{ grip, place } after drop") + "at the start",
+        ),
+        (  # kept out of reach by what is required on the way there
+            "requirement grip after drop",
+            "place",
+            OUT_OF_REACH + "the shortest way to one needs request to `Arm.grip`, where `requirement grip after drop` "
+            "(line 15) forbids it",
+        ),
+        (  # by an answer that can't be prevented
+            "requirement T: automaton { initial state a { on grip goto b on response from home } state b { on grip } }",
+            "place",
+            OUT_OF_REACH + "after request to `Arm.grip`, response from `Arm.home` can come, which `requirement T: "
+            "automaton` forbids",
+        ),
+        (  # by an automaton that could not get back to where it may rest
+            "requirement T: automaton { initial marked state a { on grip goto b } state b { } }",
+            "place",
+            OUT_OF_REACH + "after request to `Arm.grip`, `T` can't get back to a marked state",
+        ),
+    ],
+)
+def test_never_enabled_says_why_with_a_trace(tmp_path: Path, requirement: str, name: str, why: str) -> None:
+    """Where one of these leaves an event never enabled, `never-enabled` names the requirement and the uncontrollable
+    event, with a trace."""
+    findings, made = read_robot(tmp_path, GUIDE, requirement)
+    assert findings == []
+    found = [one.message for one in supervise(made).findings if one.rule == "never-enabled"]
+    assert f"`Arm.{name}` can never be sent: {why}" in found
+
+
 def test_verify_has_a_row_for_each_event_and_refutes_a_guard_that_forgets(tmp_path: Path) -> None:
     made = supervised(tmp_path, "requirement O1: place after each grip")
     row = "requirement O1: place after each grip (line 9)"

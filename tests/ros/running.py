@@ -62,8 +62,9 @@ class Runner:
         return self.command(MODELS[package], *parameters)
 
     def environment(self) -> dict[str, str]:
-        """What the node needs, and the programs that talk to it: `ros.python` runs them."""
-        path = os.pathsep.join(filter(None, [str(self.interfaces), self.ros.environment.get("PYTHONPATH")]))
+        """What the node needs, and the programs that talk to it: `ros.python` runs them; the tool of this tree."""
+        found = [str(self.interfaces), str(PROJECT), self.ros.environment.get("PYTHONPATH")]
+        path = os.pathsep.join(filter(None, found))
         return {**self.ros.environment, "PYTHONPATH": path, "PYTHONDONTWRITEBYTECODE": "1", "PYTHONUNBUFFERED": "1"}
 
 
