@@ -238,7 +238,7 @@ class Observer:
         )
 
     def _kept_away(self, event: sct.Event, plants: tuple[sct.Plant, ...], goal: Diagram) -> NeverEnabled:
-        """An event that could happen only where the supervisor lets nobody go, and what it prevents on the way there."""
+        """An event that could happen only where the supervisor lets nobody go: what it prevents on the way there."""
         system = self._system
         way = self._way_of_plants(goal)
         found = NeverEnabled(event, Forbidden.BY_PLANTS, plants=plants, kept_away=True)
