@@ -56,6 +56,9 @@ class Robot:
 
     # What the controller asks
 
+    def hear(self) -> None:
+        """What the robot sends is handled at once."""
+
     def create(self, interface: rosgraph.Interface, section: Section) -> Message:
         """Data with the fields that the model sets."""
         return message(self._fields[interface, section], {}) if self._fields[interface, section] else None

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import json
 from typing import TYPE_CHECKING
 
+import pytest
+
 from tests.ros.expiries import DURATION, expiries
+from tests.ros.workspaces import HERE, middleware
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -13,6 +17,7 @@ if TYPE_CHECKING:
     from tests.ros.workspaces import Workspace
 
 TRIALS = 10
+GUARD = HERE.parent / "runtime" / "guard.rscd"
 
 
 def test_a_time_is_never_up_early(nodes: Workspace | Runner, tmp_path: Path) -> None:
@@ -20,3 +25,40 @@ def test_a_time_is_never_up_early(nodes: Workspace | Runner, tmp_path: Path) -> 
     found = expiries(nodes, tmp_path / "run", TRIALS, 30)
     assert len(found) == TRIALS
     assert min(found) >= DURATION
+
+
+#: A program that comes late: the package, its class, and what its scans are.
+LATE = {"patience_controller": ("Controller", "sensor"), "guard_layer": ("Layer", "empty")}
+
+
+@pytest.mark.parametrize("package", LATE)
+def test_what_arrived_before_a_time_was_up_is_handled_before_it_where_compiled(
+    ros2_workspace: Workspace, package: str, tmp_path: Path
+) -> None:
+    name, scan = LATE[package]
+    log, install = tmp_path / "events.jsonl", ros2_workspace.folder / "install"
+    library = install / package / "lib" / f"lib{package}_component.so"
+    with middleware(ros2_workspace, tmp_path / "run") as processes:
+        command = [install / "late_arrival/lib/late_arrival/late", library, f"{package}::{name}", scan, log]
+        late = processes.start("late", command)
+        processes.wait_until(lambda: late.poll() is not None, "it has ended")
+        assert late.returncode == 0, processes.logs()
+    assert last_of_scans(log) == 2 * ["message_scan.u_response"]
+
+
+@pytest.mark.parametrize("kind", ["controller", "layer"])
+def test_what_arrived_before_a_time_was_up_is_handled_before_it(run_ros2: Runner, kind: str, tmp_path: Path) -> None:
+    """Whatever the executor of ROS 2 would ask first."""
+    log = tmp_path / "events.jsonl"
+    with middleware(run_ros2, tmp_path / "run") as processes:
+        command = [run_ros2.ros.python, HERE / "late_ros2.py", kind, GUARD]
+        late = processes.start("late", [*command, "--ros-args", "-p", f"event_log:={log}"])
+        processes.wait_until(lambda: late.poll() is not None, "it has ended")
+        assert late.returncode == 0, processes.logs()
+    assert last_of_scans(log) == 2 * ["message_scan.u_response"]
+
+
+def last_of_scans(log: Path) -> list[str]:
+    """What happened last of scans, and of times without one."""
+    events = [json.loads(line)["event"] for line in log.read_text().splitlines()]
+    return [event for event in events if event in {"message_scan.u_response", "component_Base.u_after1"}][-2:]

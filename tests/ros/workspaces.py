@@ -26,6 +26,10 @@ EXAMPLES = HERE.parents[1] / "examples"
 USHER, DRIVER = HERE.parent / "m2t" / "layer", HERE / "usher_driver"
 #: Two generated controllers in one process.
 TWO_IN_ONE = HERE / "faults" / "two_in_one"
+#: A component in an executor that comes late.
+LATE = HERE / "late_arrival"
+#: A managed node with times, kept data, parameters and what is sent on change.
+MANAGED = HERE / "managed"
 CPP = HERE.parent / "m2t" / "cpp"
 
 
@@ -69,6 +73,7 @@ def _packages(target: str) -> list[Package]:
         Package("patience_controller", HERE / "times" / "patience.rscd", target),
         Package("keeper_controller", HERE / "kept" / "keeper.rscd", target),
         Package("usher_layer", USHER / "usher.rscd", f"{target}-layer", USHER / "controller-config.json"),
+        Package("guard_layer", HERE.parent / "runtime" / "guard.rscd", f"{target}-layer"),
     ]
 
 
@@ -94,6 +99,7 @@ ROS1_PACKAGES = [
 ROS2_PACKAGES = [
     *_packages("ros2"),
     Package("managed_porter", CPP / "porter.rscd", "ros2", CPP / "managed-porter-config.json", with_tests=True),
+    Package("managed_watch", MANAGED / "watch.rscd", "ros2", MANAGED / "controller-config.json"),
 ]
 
 
@@ -153,9 +159,8 @@ def ros1_workspace(request: pytest.FixtureRequest) -> Workspace:
 @pytest.fixture(scope="session")
 def ros2_workspace(shared_folder: Path) -> Workspace:
     """The packages of `ROS2_PACKAGES` and `interfaces/ros2`; `ROBOSC_ROS2_WORKSPACE` likewise."""
-    return _workspace(
-        shared_folder, found_or_skipped(2), ROS2_PACKAGES, sorted((HERE / "interfaces" / "ros2").iterdir())
-    )
+    others = [*sorted((HERE / "interfaces" / "ros2").iterdir()), LATE]
+    return _workspace(shared_folder, found_or_skipped(2), ROS2_PACKAGES, others)
 
 
 def _workspace(shared: Path, ros: Ros, packages: Sequence[Package], others: Sequence[Path]) -> Workspace:

@@ -13,6 +13,7 @@ from robosc.runtime.core.settings import SafeMessages, Settings
 from robosc.semantics.parameters import controller_parameters
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from pathlib import Path
 
     from robosc.metamodel import rosgraph
@@ -72,9 +73,15 @@ class FakePort:
     said: list[str] = field(default_factory=list)
     others: dict[Any, list[Endpoint]] = field(default_factory=dict)
     hearing: int = 1
+    #: What has arrived and was not handled yet.
+    arrived: list[Callable[[], None]] = field(default_factory=list)
 
     def now(self) -> float:
         return self.time
+
+    def hear(self) -> None:
+        while self.arrived:
+            self.arrived.pop(0)()
 
     def create(self, interface: rosgraph.Interface, part: str) -> Record:
         return Record()

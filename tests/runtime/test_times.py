@@ -114,13 +114,41 @@ def test_a_clock_that_starts_late(tmp_path: Path) -> None:
     }
 
 
-def test_the_layer_has_timers_too(tmp_path: Path) -> None:
-    """The layer has timers, too."""
+def test_what_arrived_before_a_time_was_up_is_handled_before_it(guard: World) -> None:
+    """What arrived before a time was up is handled before it."""
+    guard.port.arrived.append(lambda: guard.hear("scan"))
+    guard.port.time += 0.6
+    guard.event_loop.run_pending()
+    assert timeouts(guard) == []
+    guard.wait(0.6)
+    assert [name for _, name in timeouts(guard)] == ["after2", "after1"]
+
+
+def a_layer(log: Path) -> tuple[Layer, FakePort, EventLoop]:
+    """The layer of the guard; its clock, and what moves it."""
     graph, port = supervised(GUARD), FakePort()
     event_loop = EventLoop(lambda: port.time)
-    log = tmp_path / "events.jsonl"
     values = {one.name: one.default for one in layer_parameters(graph, Configuration(), str(log))}
-    layer = Layer(graph, Settings(values, Configuration()), port, event_loop)
+    return Layer(graph, Settings(values, Configuration()), port, event_loop), port, event_loop
+
+
+def test_what_the_robot_told_a_layer_before_a_time_was_up_is_handled_before_it(tmp_path: Path) -> None:
+    layer, port, event_loop = a_layer(tmp_path / "events.jsonl")
+    layer.start()
+    scan = next(topic for topic in supervised(GUARD).subscriptions if topic.topic == "/scan")
+    port.arrived.append(lambda: layer.receive(scan, Record()))
+    port.time += 0.6
+    event_loop.run_pending()
+    assert layer._control.state["component_Base"] == "waiting"
+    port.time += 0.6
+    event_loop.run_pending()
+    assert layer._control.state["component_Base"] == "blind"
+
+
+def test_the_layer_has_timers_too(tmp_path: Path) -> None:
+    """The layer has timers, too."""
+    graph = supervised(GUARD)
+    layer, port, event_loop = a_layer(tmp_path / "events.jsonl")
     layer.start()
     sendings = {sending.name: sending for publisher in graph.publishers for sending in publisher.sendings}
     assert layer.passes(sendings["halt"])

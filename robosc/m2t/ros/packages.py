@@ -45,6 +45,7 @@ _HEADERS = {
     "robosc_ros{ros}/alarm": {"timed"},
     "robosc_ros{ros}/action_client": {"controller", "actions"},
     "robosc_ros{ros}/action_proxy": {"layer", "actions"},
+    "robosc_ros{ros}/arrivals": {"controller", "ros2", "subscriptions", "timed"},
     "robosc_ros{ros}/countdown": {"controller", "waits"},
     "robosc_ros{ros}/defaults": {"controller", "defaults"},
     "robosc_ros{ros}/finite": {"controller", "hands_on"},

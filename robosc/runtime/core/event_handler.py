@@ -115,7 +115,8 @@ class EventHandler:
             self._control.settle()
 
     def _expire(self) -> None:
-        """Some time may be up."""
+        """Some time may be up. What arrived before is handled before it."""
+        self._port.hear()
         with self._times:
             while self._control.expire() is not None:
                 self._follow_up()

@@ -230,6 +230,9 @@ class Node(ControllerPort, ABC):
 
     # What is the same on every ROS
 
+    def hear(self) -> None:
+        """What has arrived stands in the event loop, before what is planned."""
+
     def stamp(self, message: Message, frame: str) -> None:
         """Gives a header the node's time and a frame."""
         header: Any = getattr(message, "header", None)

@@ -76,6 +76,9 @@ class Port(Protocol):
     def error(self, text: str) -> None:
         """Logs an error."""
 
+    def hear(self) -> None:
+        """Handles what has arrived already: it is not to wait behind a time that is up."""
+
     def is_served(self, client: Client) -> bool:
         """Whether there is a server."""
 

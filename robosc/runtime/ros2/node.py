@@ -61,6 +61,9 @@ if TYPE_CHECKING:
     from robosc.runtime.core.proxies import ActionProxy, Answer
     from robosc.semantics.parameters import Parameter
 
+#: Messages of a topic that are heard before a time that is up.
+MOST_HEARD = 1000
+
 
 class Ros2Node(Node):
     """A node of ROS 2 named `name`; `arguments` are those of ROS, such as `--ros-args`."""
@@ -258,6 +261,18 @@ class Ros2Node(Node):
                 if own
             ]
         return [endpoint for endpoint in found if endpoint.node != self.full_name and "UNKNOWN" not in endpoint.node]
+
+    def hear(self) -> None:
+        # The executor hears one message at a time, with what is planned in between.
+        for subscription in self.node.subscriptions:
+            if subscription.topic_name == "/clock":
+                continue
+            for _ in range(MOST_HEARD):
+                with subscription.handle:
+                    taken = subscription.handle.take_message(subscription.msg_type, subscription.raw)
+                if taken is None:
+                    break
+                subscription.callback(taken[0])
 
     # Data
 

@@ -13,6 +13,7 @@
 #include <rclcpp/rclcpp.hpp>
 
 #include "robosc/callback_guard.hpp"
+#include "robosc_ros2/arrivals.hpp"
 
 namespace robosc {
 inline namespace v1 {
@@ -41,6 +42,11 @@ class MessageRelay {
     look_ = node.create_wall_timer(std::chrono::milliseconds(20), guard([this] { look(); }));
   }
 
+  /// Hands on what has arrived already.
+  void hear() {
+    if (subscription_ != nullptr) hear_all(*subscription_, [this](const Message& message) { forward(message); });
+  }
+
  private:
   void look() {
     if (!graph_->check_and_clear()) return;
@@ -63,10 +69,12 @@ class MessageRelay {
       sent_.durability(durability);
       publisher_ = node_.create_publisher<Message>(to_, sent_);
     }
-    const auto received = guard_([this](std::shared_ptr<const Message> message) {
-      if (pass_(*message)) publisher_->publish(*message);
-    });
+    const auto received = guard_([this](std::shared_ptr<const Message> message) { forward(*message); });
     subscription_ = node_.create_subscription<Message>(from_, received_, received);
+  }
+
+  void forward(const Message& message) {
+    if (pass_(message)) publisher_->publish(message);
   }
 
   rclcpp::Node& node_;

@@ -1,0 +1,21 @@
+// What has arrived and was not handled yet.
+#ifndef ROBOSC_ROS2_ARRIVALS_HPP_
+#define ROBOSC_ROS2_ARRIVALS_HPP_
+
+#include <rclcpp/rclcpp.hpp>
+
+namespace robosc {
+inline namespace v1 {
+
+/// Handles what has arrived before a time is up: an executor asks timers first.
+template <typename Message, typename Handle>
+void hear_all(rclcpp::Subscription<Message>& subscription, Handle handle) {
+  Message message;
+  rclcpp::MessageInfo info;
+  for (int left = 1000; left > 0 && subscription.take(message, info); --left) handle(message);
+}
+
+}  // namespace v1
+}  // namespace robosc
+
+#endif  // ROBOSC_ROS2_ARRIVALS_HPP_
