@@ -32,10 +32,11 @@ RESULTS, PAGE = HERE / "sanitized.json", ROOT / "docs" / "sanitizers.md"
 SANITIZERS = {"address": "address,undefined", "thread": "thread"}
 SCENARIO = "line_follower"
 CONTROLLERS = [f"{name}_controller" for name in (SCENARIO, "scout", "courier", "porter")]
-PACKAGES = [*CONTROLLERS, "managed_porter", "usher_layer"]
+PACKAGES = [*CONTROLLERS, "managed_porter", "managed_watch", "guard_layer", "usher_layer"]
 #: Loads and unloads in each container.
 ROUNDS = 170
-TESTS = ["tests/ros/faults", "tests/ros/test_scenarios.py", "tests/ros/test_layer.py", "tests/ros/test_ros{}_node.py"]
+TESTS = ["tests/ros/faults", "tests/ros/test_scenarios.py", "tests/ros/test_layer.py", "tests/ros/test_layer_times.py"]
+TESTS += ["tests/ros/test_ros{}_node.py"]
 #: What is left out, and why, for the page.
 OPTIONS = {
     "ASAN_OPTIONS": "detect_leaks=0:new_delete_type_mismatch=0:verify_asan_link_order=0",

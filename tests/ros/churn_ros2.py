@@ -2,8 +2,8 @@
 
 python3 churn_ros2.py ROUNDS
 
-In each round a controller, a managed one that is activated, and a layer come and go. Prints how often something was
-unloaded.
+In each round a controller, two managed ones that are activated, of which one has times, and a layer come and go. Prints
+how often something was unloaded.
 """
 
 import sys
@@ -14,11 +14,12 @@ from composition_interfaces.srv import LoadNode, UnloadNode
 from lifecycle_msgs.msg import Transition
 from lifecycle_msgs.srv import ChangeState
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
-from std_msgs.msg import Bool, Empty, Int32
+from std_msgs.msg import Bool, Empty, Float64MultiArray, Int32
 
 PATIENCE = 120.0
-COMPONENTS = [("scout_controller", "Controller"), ("managed_porter", "Controller"), ("usher_layer", "Layer")]
-RAIN = [("/pulse", Int32), ("/light", Bool), ("/stop", Empty), ("/resume", Empty)]
+MANAGED = ["managed_porter", "managed_watch"]
+COMPONENTS = [*((name, "Controller") for name in ["scout_controller", *MANAGED]), ("usher_layer", "Layer")]
+RAIN = [("/pulse", Int32), ("/light", Bool), ("/stop", Empty), ("/resume", Empty), ("/errand", Float64MultiArray)]
 
 
 class Operator:
@@ -29,7 +30,7 @@ class Operator:
         manager = "/ComponentManager/_container"
         self.loading = self.node.create_client(LoadNode, f"{manager}/load_node")
         self.unloading = self.node.create_client(UnloadNode, f"{manager}/unload_node")
-        self.changing = self.node.create_client(ChangeState, "/managed_porter/change_state")
+        self.changing = [self.node.create_client(ChangeState, f"/{name}/change_state") for name in MANAGED]
 
     def ask(self, client, request):
         if not client.wait_for_service(PATIENCE):
@@ -42,7 +43,8 @@ class Operator:
 
     def load(self, package, plugin):
         fast = ParameterValue(type=ParameterType.PARAMETER_INTEGER, integer_value=1)
-        parameters = [Parameter(name="period_ms", value=fast)]
+        short = ParameterValue(type=ParameterType.PARAMETER_DOUBLE, double_value=0.02)
+        parameters = [Parameter(name="period_ms", value=fast), Parameter(name="pause", value=short)]
         request = LoadNode.Request(package_name=package, plugin_name=f"{package}::{plugin}", parameters=parameters)
         loaded = self.ask(self.loading, request)
         assert loaded.success, loaded.error_message
@@ -68,9 +70,10 @@ if __name__ == "__main__":
     try:
         for _ in range(int(sys.argv[1])):
             numbers = [operator.load(package, plugin) for package, plugin in COMPONENTS]
-            for transition in (Transition.TRANSITION_CONFIGURE, Transition.TRANSITION_ACTIVATE):
-                request = ChangeState.Request(transition=Transition(id=transition))
-                assert operator.ask(operator.changing, request).success
+            for changing in operator.changing:
+                for transition in (Transition.TRANSITION_CONFIGURE, Transition.TRANSITION_ACTIVATE):
+                    request = ChangeState.Request(transition=Transition(id=transition))
+                    assert operator.ask(changing, request).success
             for number in numbers:
                 operator.unload(number)
                 unloaded += 1

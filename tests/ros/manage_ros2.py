@@ -1,6 +1,7 @@
 """What an operator does with nodes of ROS 2: loads components, changes the state of managed nodes, reads parameters.
 
 python3 manage_ros2.py load PACKAGE NAMESPACE EVENT_LOG | unload NUMBER | change NODE TRANSITION | describe NODE NAME...
+    | give NODE NAME NUMBER
 
 Prints what came of it as JSON. The container is `/ComponentManager`; transitions are numbered as in lifecycle_msgs.
 """
@@ -12,7 +13,7 @@ import rclpy
 from composition_interfaces.srv import LoadNode, UnloadNode
 from lifecycle_msgs.srv import ChangeState
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
-from rcl_interfaces.srv import DescribeParameters
+from rcl_interfaces.srv import DescribeParameters, SetParameters
 
 PATIENCE = 120.0
 
@@ -63,6 +64,13 @@ def describe(node, *names):
         ]
         for descriptor in found.descriptors
     }
+
+
+def give(node, name, number):
+    """Sets a parameter; whether the node takes it."""
+    value = ParameterValue(type=ParameterType.PARAMETER_DOUBLE, double_value=float(number))
+    request = SetParameters.Request(parameters=[Parameter(name=name, value=value)])
+    return call(SetParameters, f"{node}/set_parameters", request).results[0].successful
 
 
 if __name__ == "__main__":

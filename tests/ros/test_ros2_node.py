@@ -6,6 +6,7 @@ import json
 import os
 import signal
 import subprocess
+import time
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
@@ -30,6 +31,9 @@ FAILING = "unsigned char _ZN16rclcpp_lifecycle13LifecycleNode{}on_{}ERKNS_5State
 #: How often components come and go; a multi-threaded container without their guard does not outlive ten times.
 ROUNDS = os.environ.get("ROBOSC_ROUNDS", "20")
 HALT = ("outside", "message_halt.c_trigger")
+#: Events of `managed/watch.rscd`.
+ORDER, UP = "message_order.u_response", "component_Base.u_after1"
+SPEED, BEEP = "message_speed.c_trigger", "message_beep.c_trigger"
 
 
 @dataclass(frozen=True)
@@ -103,6 +107,12 @@ def last(log: Path) -> tuple[str, str]:
     return entry["direction"], entry["event"]
 
 
+def log_of(log: Path, event: str) -> list[dict[str, Any]]:
+    """What a log says of an event, each time."""
+    entries = (json.loads(line) for line in log.read_text().splitlines())
+    return [entry for entry in entries if entry["event"] == event]
+
+
 def start_container(graph: Graph, program: str) -> subprocess.Popen[bytes]:
     prefixes = map(Path, graph.processes.environment["AMENT_PREFIX_PATH"].split(":"))
     containers = [prefix / "lib/rclcpp_components" / program for prefix in prefixes]
@@ -135,7 +145,7 @@ def test_components_come_and_go_under_load(graph: Graph, program: str) -> None:
     done = subprocess.run(
         churning, env=graph.processes.environment, capture_output=True, text=True, check=False, timeout=3600
     )
-    assert (done.returncode, done.stdout) == (0, str(3 * int(ROUNDS))), done.stderr + graph.processes.logs()
+    assert (done.returncode, done.stdout) == (0, str(4 * int(ROUNDS))), done.stderr + graph.processes.logs()
     assert container.poll() is None
     assert graph.processes.stop(container) == 0
 
@@ -198,6 +208,108 @@ def test_a_managed_node_that_is_not_active_ends_without_a_word(graph: Graph) -> 
     assert graph.processes.stop(node) == 0
     assert graph.commands("/cmd_vel") == heard
     assert "outside" not in log.read_text()
+
+
+@dataclass(frozen=True)
+class Watch:
+    """The node of `managed/watch.rscd`, and what may be done with it."""
+
+    graph: Graph
+    node: subprocess.Popen[bytes]
+    log: Path
+
+    def change(self, *transitions: int) -> None:
+        assert self.graph.change("/watch", *transitions) == [True] * len(transitions)
+
+    def give(self, name: str, value: float) -> None:
+        assert self.graph.manage("give", "/watch", name, str(value))
+
+    def times(self, event: str) -> int:
+        return len(log_of(self.log, event))
+
+    def order(self, *numbers: float) -> None:
+        """Waits until it is heard."""
+        before, world = self.times(ORDER), self.graph.world
+        self.graph.processes.wait_until(lambda: world.do("listeners", topic="/errand") == 1, "the node listens")
+        world.do("publish", topic="/errand", fields={"data": numbers})
+        self.until(ORDER, before + 1)
+
+    def until(self, event: str, times: int) -> None:
+        self.graph.processes.wait_until(lambda: self.times(event) == times, f"{event} happened {times} times")
+
+    @property
+    def speeds(self) -> list[float]:
+        """What went out."""
+        return [entry["data"]["value"] for entry in log_of(self.log, SPEED)]
+
+    def until_last(self, speed: float) -> None:
+        self.graph.processes.wait_until(lambda: self.speeds[-1:] == [speed], f"{speed} is sent last")
+
+
+@pytest.fixture
+def watch(graph: Graph) -> Watch:
+    """Configured, and not active yet."""
+    (graph.folder / "watch.jsonl").unlink(missing_ok=True)
+    graph.world.do("advertise", topic="/errand", kind="std_msgs/Float64MultiArray")
+    watch = Watch(graph, *graph.start("managed_watch", "watch", "pause:=0.02"))
+    watch.change(CONFIGURE)
+    return watch
+
+
+def test_no_time_is_up_while_a_managed_node_is_not_active(watch: Watch) -> None:
+    watch.order(0.5)
+    time.sleep(0.5)
+    assert (watch.times(UP), watch.times(BEEP)) == (0, 0)
+    before = time.time()
+    watch.change(ACTIVATE)
+    watch.until(BEEP, 1)
+    (up,) = log_of(watch.log, UP)
+    assert up["time"] >= before + 0.02
+    watch.order(0.5)
+    watch.until(BEEP, 2)
+
+
+def test_times_of_a_managed_node_start_anew_where_it_is_activated(watch: Watch) -> None:
+    """As long as the parameter says by then; one that runs keeps its length."""
+    watch.change(ACTIVATE)
+    watch.give("pause", 600.0)
+    watch.order(0.5)
+    watch.change(DEACTIVATE)
+    watch.give("pause", 0.02)
+    time.sleep(0.5)
+    assert watch.times(UP) == 0
+    watch.change(ACTIVATE)
+    watch.until(BEEP, 1)
+    assert watch.times(UP) == 1
+
+
+def test_a_managed_node_keeps_its_data_until_it_is_cleaned_up(watch: Watch) -> None:
+    """And sends on change what differs from what was sent last, once it is active; all of it, where it begins anew."""
+    watch.change(ACTIVATE)
+    watch.until_last(0.0)
+    watch.order(0.5, 2.0)
+    watch.until_last(2.0)
+    watch.give("gain", 2.0)
+    watch.until_last(4.0)
+    watch.change(DEACTIVATE)
+    watch.give("gain", 3.0)
+    watch.order(1.0)
+    assert watch.speeds == [0.0, 2.0, 4.0]
+    watch.change(ACTIVATE)
+    watch.until_last(3.0)
+    watch.change(DEACTIVATE, ACTIVATE)
+    watch.order(0.0)
+    watch.until_last(0.0)
+    assert watch.speeds == [0.0, 2.0, 4.0, 3.0, 0.0]
+    watch.change(DEACTIVATE, CLEAN_UP)
+    watch.give("gain", 5.0)
+    log = watch.log.rename(watch.log.with_suffix(".first"))
+    watch.change(CONFIGURE, ACTIVATE)
+    watch.until_last(0.0)
+    watch.order(1.0)
+    watch.until_last(5.0)
+    assert watch.speeds == [0.0, 5.0]
+    assert len(log_of(log, SPEED)) == 5
 
 
 @pytest.mark.parametrize("parameter", ["period_ms:=0", "watchdog_ms.stop:=-1", "watchdog_stops:=3"])
