@@ -3,6 +3,7 @@
 import json
 import re
 
+import pytest
 from click.testing import CliRunner
 
 from robosc.cli import main
@@ -124,11 +125,21 @@ def test_the_sprayer_gives_up_its_way_where_it_may_not_go_on() -> None:
         assert wheels(play("sprayer", *AUTOMATIC, route(3), trouble))[-1] == ["cancel drive", "halt"]
 
 
-def test_the_stick_waits_for_the_end_of_the_way() -> None:
-    lines = [*AUTOMATIC, route(3), heard("wish"), heard("automatic", False)]
+@pytest.mark.parametrize(
+    ("before", "release", "sent_then"),
+    [
+        pytest.param([*AUTOMATIC, route(3)], heard("automatic", False), ["cancel drive", "halt"], id="mode"),
+        pytest.param([heard("heartbeat"), heard("stop")], heard("continue"), ["halt"], id="stop"),
+    ],
+)
+def test_a_stick_that_was_held_before_it_counted_has_to_be_let_go(
+    before: list[str], release: str, sent_then: list[str]
+) -> None:
+    lines = [*before, heard("wish"), release, heard("wish"), "wait 0.4", heard("heartbeat"), heard("wish")]
     sent = wheels(play("sprayer", *lines))
+    assert sent[len(before) + 1] == sent_then
     assert not any("obey" in names for names in sent[:-1])
-    assert sent[-1] == ["cancel drive", "obey"]
+    assert sent[-1] == ["obey"]
 
 
 def test_a_section_sprays_where_it_is_due_in_the_field() -> None:
