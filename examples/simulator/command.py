@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 
 from .picture import picture
-from .playing import NoControllerError, said
+from .playing import NoControllerError, over, said
 from .scenarios import SCENARIOS
 from .simulation import Simulation
 
@@ -20,7 +20,7 @@ def main(arguments):
     if options.pictures:
         return _draw_all(Path(options.pictures))
     simulation = Simulation(SCENARIOS[options.scenario], options.seed)
-    until = _until(simulation, options.until)
+    until = over(simulation, options.until)
     try:
         if options.ros == "none":
             from .engine import play as play_without
@@ -52,7 +52,7 @@ def _draw_all(folder):
     for name, scenario in SCENARIOS.items():
         said(name)
         simulation = Simulation(scenario)
-        play_without(simulation, _until(simulation, "end"))
+        play_without(simulation, over(simulation))
         (folder / f"{name}.svg").write_text(picture(simulation), encoding="utf-8")
         if not simulation.reached:
             missed.append(name)
@@ -95,12 +95,6 @@ def _positive(text):
 
 def _end(text):
     return text if text in ("goal", "end") else _positive(text)
-
-
-def _until(simulation, until):
-    """A condition: that the run is over."""
-    most = simulation.scenario.patience if until in ("goal", "end") else until
-    return lambda: simulation.time >= most or simulation.ended or (until == "goal" and simulation.reached)
 
 
 def _over_ros(simulation, options, until):

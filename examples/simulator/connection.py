@@ -6,7 +6,7 @@ import queue
 import time
 from abc import ABC, abstractmethod
 
-from .simulation import GoalNews
+from .simulation import Answer, GoalNews
 
 #: What the clocks of ROS show at the start: a clock that shows 0 counts as none.
 EPOCH = 1.0
@@ -23,6 +23,8 @@ class Connection(ABC):
         self.answered = False
         self.last_heard = 0.0
         self._inbox = queue.SimpleQueue()
+        self._calls = []
+        self._ended = False
         #: How often what we have sent is still to come back to ourselves.
         self._echoes = dict.fromkeys(set(simulation.says) & set(simulation.hears), 0)
 
@@ -32,7 +34,10 @@ class Connection(ABC):
         return [topic for topic in needed if self.listeners(topic) <= (topic in self._echoes)]
 
     def send(self, item):
-        """Sends a message or news of a goal."""
+        """Sends a message, an answer or news of a goal."""
+        if isinstance(item, Answer):
+            item.call.put(item.data)
+            return
         if isinstance(item, GoalNews):
             self.tell(item)
             return
@@ -43,6 +48,25 @@ class Connection(ABC):
     def heard(self, topic, data):
         """Keeps a message that has come in; from any thread."""
         self._inbox.put(lambda: self._receive(topic, data))
+
+    def asked(self, service, data):
+        """What the simulation answers to a call of a service; from any thread, which waits for it."""
+        call = queue.SimpleQueue()
+        self._calls.append(call)
+        if self._ended:
+            return {}
+        self.later(lambda: self.simulation.ask(service, call, data))
+        return call.get()
+
+    def hang_up(self):
+        """Answers all calls with nothing: nobody else will."""
+        self._ended = True
+        for call in self._calls:
+            call.put({})
+
+    def alive(self):
+        """Takes it that the controller is there; from any thread."""
+        self.later(self._lives)
 
     def later(self, call):
         """Keeps something to be done when things are received; from any thread."""
@@ -62,9 +86,12 @@ class Connection(ABC):
         if self._echoes.get(topic):
             self._echoes[topic] -= 1
         else:
-            self.answered = True
-            self.last_heard = self.simulation.time
+            self._lives()
             self.simulation.receive(topic, data)
+
+    def _lives(self):
+        self.answered = True
+        self.last_heard = self.simulation.time
 
     @abstractmethod
     def listeners(self, topic):

@@ -9,19 +9,25 @@ from .world import STEP
 
 RAYS, RANGE_MIN, RANGE_MAX = 360, 0.12, 3.5
 EMPTY, NUMBER, TWIST = "std_msgs/Empty", "std_msgs/Float32", "geometry_msgs/Twist"
+BOOLEAN, TRIGGER = "std_msgs/Bool", "std_srvs/Trigger"
 
 
 class Device:
     """Something with topics.
 
-    `says` and `hears` map its topics to ROS types, `serves` its actions; data is a mapping from fields to values. `say`
-    is asked once a `period`.
+    `says` and `hears` map its topics to ROS types, `answers` its services, `serves` its actions; data is a mapping from
+    fields to values. `say` is asked once a `period`. A device with services has `given`, a list that it fills with
+    answers, each (service, call, data).
     """
 
     period = 0.1
     says: dict[str, str] = {}  # noqa: RUF012  # a table, never changed
     hears: dict[str, str] = {}  # noqa: RUF012
+    answers: dict[str, str] = {}  # noqa: RUF012
     serves: dict[str, str] = {}  # noqa: RUF012
+
+    def ask(self, world, service, call):
+        """Takes a call of one of its services, to be answered later."""
 
     def hear(self, world, topic, data):
         """Takes a message from one of the topics that it hears."""
@@ -37,6 +43,10 @@ class Device:
     def news(self):
         """What has happened to it since it was last asked, in words; for the picture."""
         return []
+
+    def areas(self):
+        """The parts of the floor that it has changed; for the picture."""
+        return ()
 
 
 def header(world, frame):

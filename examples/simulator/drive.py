@@ -1,4 +1,4 @@
-"""Two driven wheels, and what their encoders say: a TurtleBot3 Waffle Pi."""
+"""Two driven wheels, and what their encoders say: a TurtleBot3 Waffle Pi, where nothing else is said."""
 
 from __future__ import annotations
 
@@ -20,8 +20,9 @@ class Drive:
     an encoder can't see: less than one of its steps, and wheels that turn while the robot is held.
     """
 
-    def __init__(self, pose):
+    def __init__(self, pose, fastest=MAX_LINEAR, acceleration=ACCELERATION):
         self.pose = pose
+        self._fastest, self._acceleration = fastest, acceleration
         self.odometry = Pose()
         self.linear = self.angular = 0.0
         self._speeds = [0.0, 0.0]
@@ -37,7 +38,7 @@ class Drive:
     def command(self, linear, angular):
         """The speeds to hold from now on, within what the motors can; what is no number is no command."""
         if math.isfinite(linear) and math.isfinite(angular):
-            self.linear = max(-MAX_LINEAR, min(MAX_LINEAR, linear))
+            self.linear = max(-self._fastest, min(self._fastest, linear))
             self.angular = max(-MAX_ANGULAR, min(MAX_ANGULAR, angular))
 
     def step(self, seconds):
@@ -45,7 +46,7 @@ class Drive:
         ways = []
         for wheel, side in enumerate((-1, 1)):
             wanted = self.linear + side * self.angular * TRACK / 2
-            change = ACCELERATION * seconds
+            change = self._acceleration * seconds
             self._speeds[wheel] += max(-change, min(change, wanted - self._speeds[wheel]))
             ways.append(self._speeds[wheel] * seconds)
         self._count(ways)

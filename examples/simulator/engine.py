@@ -20,13 +20,14 @@ from robosc.runtime.core.settings import Settings
 from robosc.semantics.parameters import controller_parameters, layer_parameters
 
 from .playing import tell
-from .simulation import GoalNews
+from .simulation import Answer, GoalNews
 
 EXAMPLES = Path(__file__).resolve().parents[1]
 OUTCOMES = {"succeeded": Outcome.SUCCEEDED, "canceled": Outcome.CANCELLED, "aborted": Outcome.ABORTED}
 ZERO = {"x": 0.0, "y": 0.0, "z": 0.0}
 #: Fields that are there also if nobody sets them.
-DEFAULTS = {"Twist": {"linear": ZERO, "angular": ZERO}, "Int16": {"data": 0}}
+POSE = {"header": {"frame_id": ""}, "pose": {"position": ZERO, "orientation": {**ZERO, "w": 1.0}}}
+DEFAULTS = {"Twist": {"linear": ZERO, "angular": ZERO}, "Int16": {"data": 0}, "NavigateToPose": {"pose": POSE}}
 
 
 def play(simulation, until, models=None, kind=Controller, quiet=False):
@@ -90,8 +91,8 @@ class Node:
         self._controller.start()
 
     def take(self, item):
-        """Takes a message or news of a goal."""
-        if isinstance(item, GoalNews):
+        """Takes a message, an answer or news of a goal."""
+        if isinstance(item, (Answer, GoalNews)):
             self._port.take(item)
         elif item.topic in self._subscriptions:
             subscription, message = self._subscriptions[item.topic], Received(item.data)
@@ -173,29 +174,36 @@ class WorldPort:
         """Headers need no time here."""
 
     def wire_types(self, message):
-        """The types of a message's fields: whole numbers of 16 bits where they are whole by default, else doubles."""
+        """The types of a message's fields, as their values are; of those that are not there yet doubles."""
         return _Types(message)
 
     def publish(self, publisher, message):
         """Sends a message to the world."""
-        self._simulation.receive(publisher.topic, message.data)
+        self._simulation.receive(publisher.topic, _plain(message))
 
     def is_served(self, client):
         """Whether the world has such a server."""
-        return client.identifier in self._simulation.serves
+        return client.identifier in self._simulation.serves or client.identifier in self._simulation.answers
+
+    def call(self, client, request, handlers):
+        """Calls a service of the world."""
+        self._simulation.ask(client.identifier, handlers, _plain(request))
 
     def send_goal(self, client, goal, handlers):
         """Sends a goal to the world."""
         number = next(self._numbers)
         self._goals[number] = handlers
-        if self._simulation.start(client.identifier, number, goal.data):
+        if self._simulation.start(client.identifier, number, _plain(goal)):
             handlers.accepted()
         else:
             handlers.rejected("rejected")
         return Goal(self._simulation, client.identifier, number)
 
     def take(self, news):
-        """Hands on news of a goal."""
+        """Hands on an answer or news of a goal."""
+        if isinstance(news, Answer):
+            news.call.answered(Received(news.data))
+            return
         handlers = self._goals[news.goal]
         if news.what == "feedback":
             handlers.feedback(Received(news.data))
@@ -238,6 +246,9 @@ class Received:
         self._data = data
 
     def __getattr__(self, name):
+        if name.startswith("_"):
+            # Whoever copies an object asks for these before it has data.
+            raise AttributeError(name)
         return _received(self._data[name])
 
 
@@ -251,18 +262,35 @@ class Sent:
     """Data to be filled as ROS fills it; a field of fields comes to be when it is asked for."""
 
     def __init__(self, data):
-        self.__dict__["data"] = data
+        self.__dict__["_data"] = data
 
     def __getattr__(self, name):
-        return Sent(self.data.setdefault(name, {}))
+        value = self._data.setdefault(name, {})
+        return Sent(value) if isinstance(value, dict) else value
 
     def __setattr__(self, name, value):
-        self.data[name] = value
+        self._data[name] = value
 
 
-class _Types:
+def _plain(value):
+    """Data as nested dicts: what is sent, with what was received and is handed on in it."""
+    if isinstance(value, (Sent, Received)):
+        return _plain(value._data)  # noqa: SLF001  # its own module
+    return {name: _plain(part) for name, part in value.items()} if isinstance(value, dict) else value
+
+
+class _Types(dict):
+    """The types of a message's fields: of whole numbers those of 16 bits."""
+
     def __init__(self, message):
-        self._message = message
+        super().__init__((name, _type(value)) for name, value in _plain(message).items())
 
-    def __getitem__(self, name):
-        return "int16" if isinstance(self._message.data.get(name), int) else "float64"
+    def __missing__(self, name):
+        return "float64"
+
+
+def _type(value):
+    if isinstance(value, list):
+        return f"{_type(value[0]) if value else 'float64'}[]"
+    names = {dict: "some/Object", str: "string", bool: "bool", int: "int16"}
+    return names.get(type(value), "float64")

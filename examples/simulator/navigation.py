@@ -28,10 +28,11 @@ class Navigation(Device):
     serves = {ACTION: "nav2_msgs/NavigateToPose"}  # noqa: RUF012
     hears = {"/initialpose": "geometry_msgs/PoseWithCovarianceStamped"}  # noqa: RUF012
     period = 0.2
+    clearance = CLEARANCE
 
     def __init__(self, known_walls):
         """`known_walls` are the map; what else stands there it has to see."""
-        self._map = Grid(CLEARANCE)
+        self._map = Grid(self.clearance)
         for wall in known_walls:
             self._map.block_wall(wall)
         self._origin = None
@@ -129,7 +130,7 @@ class Navigation(Device):
 
     def _plan(self, world, pose):
         self._planned = world.time
-        grid = Grid(CLEARANCE, self._map.blocked)
+        grid = Grid(self.clearance, self._map.blocked)
         for cell in sorted(self._seen):
             grid.block(*grid.centre(cell))
         self._way = grid.way((pose.x, pose.y), self._destination)
@@ -157,7 +158,12 @@ class Navigation(Device):
         x, y = self._way[0]
         off = turned(math.atan2(y - pose.y, x - pose.x) - pose.heading)
         turn = max(-TURN_SPEED, min(TURN_SPEED, 2.5 * off))
-        world.drive.command(0.0 if abs(off) > 0.7 else SPEED * (1 - abs(off)), turn)
+        world.drive.command(0.0 if abs(off) > 0.7 else self._speed(pose) * (1 - abs(off)), turn)
+
+    def _speed(self, pose):
+        """How fast it drives straight ahead."""
+        del pose
+        return SPEED
 
     def _end(self, world, how, words):
         world.drive.command(0.0, 0.0)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from xml.sax.saxutils import escape
 
-#: Pixels of a metre, and around all of it; of a line of text.
-SCALE, MARGIN, LINE = 110, 24, 18
+#: Pixels around all of it; of a line of text.
+MARGIN, LINE = 24, 18
 WAYS = {
     "robot": "stroke='#1f5fa8' stroke-width='2.5'",
     "ball": "stroke='#c0392b' stroke-width='2' stroke-dasharray='5 3'",
@@ -25,11 +25,12 @@ class _Drawing:
     def __init__(self, simulation):
         self.simulation = simulation
         world = simulation.world
+        self.scale = simulation.scenario.scale
         xs = [x for x, _ in self._points()]
         ys = [y for _, y in self._points()]
         self.left, self.top = min(xs) - 0.25, max(ys) + 0.25
-        self.width = (max(xs) + 0.25 - self.left) * SCALE + 2 * MARGIN
-        self.height = (self.top - min(ys) + 0.25) * SCALE + 2 * MARGIN
+        self.width = (max(xs) + 0.25 - self.left) * self.scale + 2 * MARGIN
+        self.height = (self.top - min(ys) + 0.25) * self.scale + 2 * MARGIN
         self.world = world
 
     def _points(self):
@@ -38,6 +39,9 @@ class _Drawing:
             yield wall.x1, wall.y1
             yield wall.x2, wall.y2
         yield from world.line
+        for area in self.simulation.areas:
+            yield area.x1, area.y1
+            yield area.x2, area.y2
         for way in ways.values():
             yield from way
 
@@ -65,13 +69,13 @@ class _Drawing:
 
     def _place(self):
         world = self.world
+        for area in self.simulation.areas:
+            yield self._rectangle(area.x1, area.y1, area.x2, area.y2, area.colour)
+            x, y = self._at(area.x1, area.y2)
+            if area.name:
+                yield f"<text x='{x + 4:.1f}' y='{y + 13:.1f}' fill='#777'>{escape(area.name)}</text>"
         if world.goal:
-            x1, y1, x2, y2 = world.goal
-            x, y = self._at(x1, y2)
-            yield (
-                f"<rect x='{x:.1f}' y='{y:.1f}' width='{(x2 - x1) * SCALE:.1f}' height='{(y2 - y1) * SCALE:.1f}' "
-                "fill='#cfe8cf'/>"
-            )
+            yield self._rectangle(*world.goal, "#cfe8cf")
         if world.line:
             yield f"<polyline points='{self._way(world.line[::5])}' fill='none' stroke='#f2c200' stroke-width='6'/>"
         for wall in world.walls:
@@ -108,9 +112,14 @@ class _Drawing:
             yield f"<circle cx='{x:.1f}' cy='{y:.1f}' r='8' fill='white' stroke='#1f5fa8'/>"
             yield f"<text x='{x:.1f}' y='{y + 3.5:.1f}' font-size='10' text-anchor='middle'>{number + 1}</text>"
 
+    def _rectangle(self, x1, y1, x2, y2, colour):
+        x, y = self._at(x1, y2)
+        width, height = (x2 - x1) * self.scale, (y2 - y1) * self.scale
+        return f"<rect x='{x:.1f}' y='{y:.1f}' width='{width:.1f}' height='{height:.1f}' fill='{colour}'/>"
+
     def _disc(self, x, y, radius, style):
         x, y = self._at(x, y)
-        return f"<circle cx='{x:.1f}' cy='{y:.1f}' r='{radius * SCALE:.1f}' {style}/>"
+        return f"<circle cx='{x:.1f}' cy='{y:.1f}' r='{radius * self.scale:.1f}' {style}/>"
 
     def _way(self, points):
         """Points for a polyline; of those that are drawn at the same place only the first."""
@@ -119,4 +128,4 @@ class _Drawing:
         return " ".join(kept)
 
     def _at(self, x, y):
-        return (x - self.left) * SCALE + MARGIN, (self.top - y) * SCALE + MARGIN
+        return (x - self.left) * self.scale + MARGIN, (self.top - y) * self.scale + MARGIN

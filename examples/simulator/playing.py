@@ -43,6 +43,12 @@ def play(simulation, connection, speed, until):
             connection.receive(max(0.0, started + simulation.time - time.monotonic()))
 
 
+def over(simulation, until="end"):
+    """A condition: that a run is over. It ends at the `goal`, the `end` of what happens, or after so many seconds."""
+    most = simulation.scenario.patience if until in ("goal", "end") else until
+    return lambda: simulation.time >= most or simulation.ended or (until == "goal" and simulation.reached)
+
+
 def tell(simulation, told):
     """Prints what has happened since so many happenings; how many that are now."""
     for happening in simulation.happenings[told:]:

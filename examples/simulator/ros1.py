@@ -7,6 +7,7 @@ import importlib
 import actionlib
 import rospy
 from rosgraph_msgs.msg import Clock
+from std_msgs.msg import String
 
 from .connection import EPOCH, Connection, UnknownTypeError
 
@@ -27,6 +28,10 @@ class Ros1(Connection):
                     raise
         for topic, kind in simulation.hears.items():
             rospy.Subscriber(topic, _class(kind), self._hearer(topic), queue_size=100)
+        if simulation.scenario.alive:
+            rospy.Subscriber(simulation.scenario.alive, String, lambda _: self.alive(), queue_size=100)
+        for service, kind in simulation.answers.items():
+            rospy.Service(service, _class(kind, "srv"), self._answerer(service, _class(kind + "Response", "srv")))
         self._goals = {}
         self._servers = []
         self._feedback = {}
@@ -70,10 +75,14 @@ class Ros1(Connection):
 
     def close(self):
         """Ends the connection."""
+        self.hang_up()
         rospy.signal_shutdown("the scenario has ended")
 
     def _hearer(self, topic):
         return lambda message: self.heard(topic, _plain(message))
+
+    def _answerer(self, service, kind):
+        return lambda request: _filled(kind(), self.asked(service, _plain(request)))
 
     def _starter(self, action):
         def start(handle):
@@ -90,11 +99,11 @@ class Ros1(Connection):
         return lambda handle: self.later(lambda: self.simulation.cancel(action, handle.get_goal_id().id))
 
 
-def _class(kind):
+def _class(kind, folder="msg"):
     """The Python class of a type."""
     package, name = kind.split("/")
     try:
-        return getattr(importlib.import_module(f"{package}.msg"), name)
+        return getattr(importlib.import_module(f"{package}.{folder}"), name)
     except (ImportError, AttributeError):
         raise UnknownTypeError(kind) from None
 

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import importlib
+import threading
+from contextlib import suppress
 
 import rclpy
 from builtin_interfaces.msg import Time
 from rclpy.action import ActionServer, CancelResponse, GoalResponse
-from rclpy.executors import SingleThreadedExecutor
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
+from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor, SingleThreadedExecutor
 from rclpy.qos import qos_profile_sensor_data
 from rosgraph_msgs.msg import Clock
+from std_msgs.msg import String
 
 from .connection import EPOCH, Connection, UnknownTypeError
 
@@ -32,10 +36,13 @@ class Ros2(Connection):
                     raise
         for topic, kind in simulation.hears.items():
             self._node.create_subscription(_class(kind), topic, self._hearer(topic), 100)
+        if simulation.scenario.alive:
+            self._node.create_subscription(String, simulation.scenario.alive, lambda _: self.alive(), 100)
         self._goals = []
         self._executor = SingleThreadedExecutor()
         self._executor.add_node(self._node)
         self._servers = [self._server(action, kind) for action, kind in simulation.serves.items()]
+        self._answerers = _Answerers(self, simulation.answers) if simulation.answers else None
 
     def listeners(self, topic):
         """How many listen to a topic."""
@@ -66,10 +73,13 @@ class Ros2(Connection):
 
     def close(self):
         """Ends the connection."""
+        self.hang_up()
         for server in self._servers:
             server.destroy()
         self._node.destroy_node()
         rclpy.try_shutdown()
+        if self._answerers:
+            self._answerers.join()
 
     def _hearer(self, topic):
         return lambda message: self.heard(topic, _plain(message))
@@ -98,6 +108,32 @@ class Ros2(Connection):
             handle_accepted_callback=accepted,
             cancel_callback=cancel,
         )
+
+
+class _Answerers:
+    """The services, at a node of their own: a thread waits for each answer, as rclpy sends none later."""
+
+    def __init__(self, connection, services):
+        self._connection = connection
+        self._node = rclpy.create_node("world_services")
+        for service, kind in services.items():
+            callback, group = self._answerer(service), MutuallyExclusiveCallbackGroup()
+            self._node.create_service(_class(kind, "srv"), service, callback, callback_group=group)
+        self._executor = MultiThreadedExecutor(len(services) + 1)
+        self._executor.add_node(self._node)
+        self._thread = threading.Thread(target=self._spin, daemon=True)
+        self._thread.start()
+
+    def join(self):
+        """Waits until nobody is at work any longer, after rclpy was shut down."""
+        self._thread.join()
+
+    def _spin(self):
+        with suppress(ExternalShutdownException):
+            self._executor.spin()
+
+    def _answerer(self, service):
+        return lambda request, response: _filled(response, self._connection.asked(service, _plain(request)))
 
 
 class _Goal:

@@ -1,68 +1,19 @@
-"""The eight scenarios of the thesis (section 6.2): where they take place, what happens in them, and what is their goal.
-
-What happens is a script: a generator that yields for how many seconds, or until what, it waits before it goes on.
-"""
+"""The eight scenarios of the thesis (section 6.2) and two larger ones: where they are, what happens, and the goal."""
 
 from __future__ import annotations
 
 import math
 
 from .camera import BallDetector, GoalDetector, LineDetector, ObjectDetector, PersonDetector
-from .devices import EMPTY, RANGE_MAX, Rotator, Steps, Wheels
+from .devices import EMPTY, Odometry, Rotator, Steps, Wheels
+from .field import Boom, Driver, Radio, Receiver, Remote
 from .geometry import Disc, Pose, Segment, box, path, turned
 from .navigation import Navigation
-from .world import Ball, Person, Sight, World
+from .scenario import Scenario, stop_and_continue
+from .warehouse import AisleManager, Battery, Bumpers, Docking, Lift, SafetyLidars, WarehouseNavigation
+from .world import Area, Ball, Person, Sight, World
 
 LINE_PIXELS, VIEW_PIXELS = 1.0, 2.0
-
-
-class Scenario:
-    """A place, its devices, a script and a goal; the base of all eight."""
-
-    #: The example's, too.
-    name = ""
-    #: The model of the controller behind the supervisory layer, where there is one, in the example's folder.
-    controller: str | None = None
-    #: What people send beside pressing buttons: topics and types.
-    people: dict[str, str] = {}  # noqa: RUF012  # a table, never changed
-    #: Topics that a controller need not listen to.
-    unheard: tuple[str, ...] = ("/odom",)
-    #: Seconds after which nobody hopes any longer.
-    patience = 150.0
-
-    def world(self):
-        """The place, as it is at the start."""
-        raise NotImplementedError
-
-    def devices(self, world, noise):
-        """What is there beside the lidar and the encoders."""
-        raise NotImplementedError
-
-    def script(self, simulation):
-        """What people do, and what befalls the robot."""
-        raise NotImplementedError
-
-    def reached(self, simulation):
-        """Whether the goal is reached."""
-        raise NotImplementedError
-
-    def commands_due(self, simulation):
-        """Whether a controller that is alive sends a velocity at each of its ticks."""
-        del simulation
-        return True
-
-    def pose(self, world):
-        """Where the robot is, and what else is of interest about it, for the record."""
-        # JSON knows nothing infinite.
-        gap = min(world.gap, RANGE_MAX)
-        return {"x": world.pose.x, "y": world.pose.y, "heading": world.pose.heading, "gap": gap}
-
-
-def stop_and_continue(simulation, seconds):
-    """Someone presses stop, and after a while continue."""
-    simulation.press("/stop")
-    yield seconds
-    simulation.press("/continue")
 
 
 class LineFollower(Scenario):
@@ -410,6 +361,260 @@ class PersonFollower(Scenario):
         return {**super().pose(world), "person": away}
 
 
+class WarehouseRobot(Scenario):
+    """A hall with a dock, a shelf, and between them an aisle in which people walk."""
+
+    name = "warehouse_robot"
+    people = {  # noqa: RUF012
+        "/order": "geometry_msgs/PoseStamped",
+        "/served": EMPTY,
+        "/dock/again": EMPTY,
+    }
+    alive = "/warehouse_robot_controller/state"
+    scale = 80
+    patience = 300.0
+    start = Pose(-0.7, 0.0)
+    shelf = (7.5, 2.4)
+
+    def world(self):
+        """The robot stands in its dock, a person beside its way."""
+        areas = [
+            Area("dock", -1.1, -0.4, -0.3, 0.4, "#dfe6ee"),
+            Area("aisle", 1.0, -1.5, 6.3, 4.0, "#fbf1d8"),
+            Area("shelf", 7.0, 1.9, 8.0, 2.9, "#e4d5c3"),
+        ]
+        person = Person(3.4, 2.9, 0.15)
+        return World(self.start, walls=self.walls(), person=person, areas=areas, fastest=1.0, acceleration=5.0)
+
+    def walls(self):
+        """What is on the map."""
+        return box(-1.6, -1.5, 9.0, 4.0)
+
+    def sensors(self, noise):
+        """Two lidars, and encoders, which only Nav2 reads."""
+        return [SafetyLidars(noise.up_to(0.005)), Odometry()]
+
+    def devices(self, world, noise):
+        """All that a warehouse has."""
+        del world, noise
+        docking = Docking(self.start.x)
+        navigation = WarehouseNavigation(self.walls(), self.start)
+        return [Bumpers(), Battery(docking, 0.15), Lift(), AisleManager(), docking, navigation]
+
+    def commands_due(self, simulation):
+        """Nav2 drives, but the controller says at each of its ticks how it is."""
+        del simulation
+        return True
+
+    def script(self, simulation):
+        """Two orders; the second ends half way, as the battery is used up."""
+        docking, battery = simulation.device(Docking), simulation.device(Battery)
+        docking.refusals = 2
+        yield from self.to_the_shelf(simulation)
+        yield from self.at_the_shelf(simulation)
+        yield from self.home(simulation)
+        yield lambda: docking.docked and battery.charge > 0.5
+        self.order(simulation)
+        yield lambda: simulation.world.pose.x > 2.0
+        battery.charge = 0.19
+        simulation.happens("the battery runs low")
+        yield lambda: docking.docked
+        yield 1.0
+
+    def to_the_shelf(self, simulation):
+        """People fill the aisle, one of them gets in the way; stop is pressed."""
+        world, aisle = simulation.world, simulation.device(AisleManager)
+        navigation = simulation.device(WarehouseNavigation)
+        yield 1.0
+        aisle.crowded = True
+        self.order(simulation)
+        yield lambda: not simulation.device(Docking).docked and world.pose.x > -0.05
+        yield 1.5
+        aisle.crowded = False
+        simulation.happens("there is room in the aisle")
+        yield lambda: world.pose.x > 1.0
+        simulation.happens("somebody walks into the way")
+        world.person.walk(1.2, world.pose.ahead(2.0))
+        yield lambda: not world.person.way
+        world.person.walk(0.8, world.pose.ahead(0.6))
+        yield lambda: not navigation.under_way
+        yield 1.5
+        simulation.happens("the person walks on")
+        world.person.walk(1.2, (4.6, -1.2))
+        yield lambda: world.pose.x > 4.6 and navigation.under_way
+        yield from stop_and_continue(simulation, 2.0)
+        yield lambda: navigation.arrived == 1
+
+    @staticmethod
+    def at_the_shelf(simulation):
+        """Stop is pressed before the lift moves; it jams once on its way down."""
+        lift, aisle = simulation.device(Lift), simulation.device(AisleManager)
+        lift.jams = 1
+        yield lambda: not aisle.let_in
+        yield from stop_and_continue(simulation, 1.5)
+        yield lambda: lift.height == 1.0
+        yield 1.5
+        simulation.happens("the shelf is served")
+        simulation.say("/served", {})
+
+    @staticmethod
+    def home(simulation):
+        """A lidar is cut off, a bumper touched."""
+        world, navigation = simulation.world, simulation.device(WarehouseNavigation)
+        lidars, bumpers = simulation.device(SafetyLidars), simulation.device(Bumpers)
+        yield lambda: navigation.under_way and world.pose.x < 5.6
+        lidars.silent.add("/front/scan")
+        simulation.happens("the lidar ahead is cut off")
+        yield 2.0
+        lidars.silent.clear()
+        simulation.happens("the lidar speaks again")
+        yield lambda: navigation.under_way and world.pose.x < 3.0
+        bumpers.pressed.add("/left/bumper")
+        simulation.happens("a bumper is touched")
+        yield 1.5
+        bumpers.pressed.clear()
+        simulation.happens("the bumper is free")
+        yield lambda: navigation.arrived == 2
+
+    def reached(self, simulation):
+        """A shelf was served, and the robot has come home twice."""
+        docking, lift = simulation.device(Docking), simulation.device(Lift)
+        served = simulation.device(WarehouseNavigation).arrived == 3 and lift.height == 0.0
+        return served and docking.docked and max(map(abs, simulation.world.drive.speed)) < 0.01
+
+    def order(self, simulation):
+        """Somebody orders the shelf."""
+        simulation.happens("the shelf is ordered")
+        x, y = self.shelf
+        pose = {"position": {"x": x, "y": y}, "orientation": {"z": 0.0, "w": 1.0}}
+        header = {"stamp": simulation.time, "frame_id": "map"}
+        simulation.say("/order", {"header": header, "pose": pose})
+
+
+class Sprayer(Scenario):
+    """The corner of a field: two rows, the second beyond its end; and a way across what has been sprayed."""
+
+    name = "sprayer"
+    people = {"/route": "nav_msgs/Path"}  # noqa: RUF012
+    scale = 40
+    patience = 300.0
+    #: The field's edges are 100 m and 40 m from its middle.
+    first = ((86.5, 36.5), (86.5, 33.5), (101.5, 33.5))
+    second = ((97.5, 30.5), (91.5, 30.5), (91.5, 38.5))
+
+    def world(self):
+        """The sprayer stands beside the field and looks there."""
+        field = Area("field", 84.0, 27.0, 100.0, 40.0, "#f3ecd9")
+        return World(Pose(102.0, 36.5, math.pi), areas=[field], fastest=1.5, acceleration=5.0)
+
+    def sensors(self, noise):
+        """A receiver for satellites."""
+        return [Receiver(noise.up_to(0.03))]
+
+    def devices(self, world, noise):
+        """All that a sprayer has."""
+        del world, noise
+        return [Wheels(), Radio(), Remote(), Boom(), Driver()]
+
+    def script(self, simulation):
+        """By hand into the field, along a route that leads out of it, back by hand, and along another."""
+        yield 1.0
+        self.plan(simulation, self.first)
+        yield 0.5
+        yield from self.steer(simulation, 0.8, lambda x: x < 98.0)
+        yield 0.6
+        self.switch(simulation, automatic=True)
+        yield from self.first_row(simulation)
+        yield from self.second_row(simulation)
+        yield from self.steer(simulation, -0.6, lambda x: x < 97.0)
+        self.plan(simulation, self.second)
+        yield 0.5
+        self.switch(simulation, automatic=True)
+        yield lambda: simulation.device(Driver).arrived == 5
+        yield 1.0
+
+    @staticmethod
+    def first_row(simulation):
+        """The radio, the tank, the satellites."""
+        pose, boom = (lambda: simulation.world.pose), simulation.device(Boom)
+        radio, receiver = simulation.device(Radio), simulation.device(Receiver)
+        yield lambda: pose().x < 94.0
+        radio.in_reach = False
+        simulation.happens("the radio is out of reach")
+        yield 3.0
+        radio.in_reach = True
+        simulation.happens("the radio is back")
+        yield lambda: pose().x < 91.0
+        boom.level = 0.01
+        simulation.happens("the tank is empty")
+        yield 2.5
+        boom.level = 0.5
+        simulation.happens("the tank is filled")
+        yield lambda: pose().y < 35.0
+        receiver.in_view = False
+        simulation.happens("no satellite is in view")
+        yield 2.0
+        receiver.in_view = True
+        simulation.happens("satellites are in view")
+
+    def second_row(self, simulation):
+        """Stop; the mode is switched while the stick is held; mud; the field's end."""
+        driver, pose = simulation.device(Driver), lambda: simulation.world.pose
+        remote = simulation.device(Remote)
+        yield lambda: driver.arrived == 2 and pose().x > 88.0
+        yield from stop_and_continue(simulation, 2.0)
+        yield lambda: pose().x > 91.0
+        remote.stick = (0.5, 0.0)
+        simulation.happens("the stick is pushed, to no avail")
+        yield 1.0
+        self.switch(simulation, automatic=False)
+        yield 1.5
+        remote.stick = None
+        simulation.happens("the stick is let go")
+        yield 0.6
+        yield from self.steer(simulation, 0.5, lambda x: x > 94.0)
+        self.switch(simulation, automatic=True)
+        yield lambda: pose().x > 96.0 and driver.under_way
+        driver.trouble = True
+        yield lambda: pose().x > 100.0 and not driver.under_way
+        yield 1.5
+        self.switch(simulation, automatic=False)
+        yield 0.5
+
+    @staticmethod
+    def steer(simulation, speed, there):
+        """Somebody steers straight on until the sprayer is there, by its x."""
+        remote = simulation.device(Remote)
+        remote.stick = (speed, 0.0)
+        simulation.happens("the stick is pushed")
+        yield lambda: there(simulation.world.pose.x)
+        remote.stick = None
+        simulation.happens("the stick is let go")
+
+    @staticmethod
+    def switch(simulation, automatic):
+        """Somebody switches the mode."""
+        simulation.device(Remote).automatic = automatic
+        simulation.happens("switched to automatic" if automatic else "switched to manual")
+
+    @staticmethod
+    def plan(simulation, points):
+        """Somebody sends a route."""
+        simulation.happens("a route is sent")
+        stamped = {"stamp": simulation.time, "frame_id": "field"}
+        poses = [
+            {"header": stamped, "pose": {"position": {"x": x, "y": y}, "orientation": {"z": 0.0, "w": 1.0}}}
+            for x, y in points
+        ]
+        simulation.say("/route", {"header": stamped, "poses": poses})
+
+    def reached(self, simulation):
+        """At the end of the second route, at rest, as much of the field sprayed as lay on the way."""
+        driver, boom = simulation.device(Driver), simulation.device(Boom)
+        resting = max(map(abs, simulation.world.drive.speed)) < 0.01
+        return driver.arrived == 5 and resting and len(boom.sprayed) > 60
+
+
 LINE_STEP = 0.01
 
 #: All scenarios, by name.
@@ -424,6 +629,8 @@ SCENARIOS = {
         PushBall(),
         PersonFollower(),
         SupervisedLineFollower(),
+        WarehouseRobot(),
+        Sprayer(),
     )
 }
 

@@ -6,7 +6,7 @@ import math
 import random
 from dataclasses import dataclass
 
-from .devices import EMPTY, Lidar, Odometry
+from .devices import EMPTY
 from .world import STEP
 
 BUTTONS = ("/stop", "/continue")
@@ -28,6 +28,15 @@ class GoalNews:
     action: str
     goal: object
     what: str
+    data: dict
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What a service answers to a call, known by what it was given as."""
+
+    service: str
+    call: object
     data: dict
 
 
@@ -55,20 +64,21 @@ class Noise:
 class Simulation:
     """A scenario from its start.
 
-    `advance` lets one step of time pass and gives what is sent; `receive`, `start` and `cancel` take what comes in
-    meanwhile. `ended` says that the script is over, `reached` that the scenario's goal has been.
+    `advance` lets one step of time pass and gives what is sent; `receive`, `ask`, `start` and `cancel` take what comes
+    in meanwhile. `ended` says that the script is over, `reached` that the scenario's goal has been.
     """
 
     def __init__(self, scenario, seed=0):
         self.scenario = scenario
         self.world = scenario.world()
         noise = Noise(seed, scenario.name)
-        self.devices = [Lidar(noise.up_to(0.005)), Odometry(), *scenario.devices(self.world, noise)]
-        #: Topics that anything is sent to, and that anything is heard on, with their types; actions likewise.
+        self.devices = [*scenario.sensors(noise), *scenario.devices(self.world, noise)]
+        #: Topics that anything is sent to, and that anything is heard on, with their types; also services and actions.
         self.says = {topic: kind for device in self.devices for topic, kind in device.says.items()}
         self.says.update(dict.fromkeys(BUTTONS, EMPTY))
         self.says.update(scenario.people)
         self.hears = {topic: kind for device in self.devices for topic, kind in device.hears.items()}
+        self.answers = {service: kind for device in self.devices for service, kind in device.answers.items()}
         self.serves = {action: kind for device in self.devices for action, kind in device.serves.items()}
         self.stopped = False
         self.ended = False
@@ -100,8 +110,13 @@ class Simulation:
         """The device of that class."""
         return next(device for device in self.devices if isinstance(device, kind))
 
+    @property
+    def areas(self):
+        """The parts of the floor that mean something now."""
+        return [*self.world.areas, *(area for device in self.devices for area in device.areas())]
+
     def advance(self):
-        """One step of time; the messages and the news of goals that are sent after it."""
+        """One step of time; the messages, the answers and the news of goals that are sent after it."""
         for device in self.devices:
             device.act(self.world)
         self.world.step()
@@ -118,7 +133,7 @@ class Simulation:
         return [*_taken(self._said), *news]
 
     def _sense(self):
-        """Lets the devices speak whose turn it is; the news of goals."""
+        """Lets the devices speak whose turn it is; their answers and the news of goals."""
         for device in self.devices:
             if self._due(device.period):
                 for topic, data in device.say(self.world):
@@ -132,12 +147,20 @@ class Simulation:
         for new in news:
             if new.what != "feedback":
                 self._note(new.action, new.what)
-        return news
+        answers = [Answer(*answer) for device in self.devices if device.answers for answer in _taken(device.given)]
+        for answer in answers:
+            self._note(answer.service, answer.data)
+        return [*answers, *news]
 
     def receive(self, topic, data):
         """Takes a command from a controller, or a button that somebody else presses."""
         self._note(topic, data)
         self._deliver(topic, data)
+
+    def ask(self, service, call, data):
+        """Takes a call of a service, known by `call`; the answer comes later."""
+        self._note(service, data)
+        next(device for device in self.devices if service in device.answers).ask(self.world, service, call)
 
     def start(self, action, goal, data):
         """Takes a goal, known by `goal` from now on; whether it is accepted."""
@@ -204,9 +227,10 @@ class Simulation:
         self._note("pose", self.scenario.pose(world))
 
     def _note(self, topic, data):
-        if topic == "/scan":
+        if topic.endswith("/scan"):
             # How near the nearest thing ahead is, which is what controllers ask for; None where there is nothing.
-            nearest = min(data["ranges"][:21] + data["ranges"][-20:])
+            ranges = data["ranges"]
+            nearest = min(ranges[:21] + ranges[-20:] if topic == "/scan" else ranges)
             data = nearest if nearest < math.inf else None
         if topic != "/odom":
             self.record.append({"time": round(self.time, 3), "topic": topic, "data": data})

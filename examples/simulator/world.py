@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 
-from .drive import Drive
+from .drive import ACCELERATION, MAX_LINEAR, Drive
 from .geometry import Disc, Pose, Segment
 
 STEP = 0.02
@@ -48,6 +48,18 @@ class Sight:
 
 
 @dataclass
+class Area:
+    """A part of the floor that means something: the corners of a rectangle, its name, its colour in a picture."""
+
+    name: str
+    x1: float
+    y1: float
+    x2: float
+    y2: float
+    colour: str
+
+
+@dataclass
 class World:
     """Walls, pillars, a line on the floor, a ball and its goal, a person, things to be seen, and the robot.
 
@@ -66,12 +78,16 @@ class World:
     goal: tuple[float, float, float, float] | None = None
     person: Person | None = None
     sights: list[Sight] = field(default_factory=list)
+    areas: list[Area] = field(default_factory=list)
+    #: How fast the robot's wheels may roll, and how fast that changes.
+    fastest: float = MAX_LINEAR
+    acceleration: float = ACCELERATION
     steps: int = 0
     travelled: float = 0.0
     touched: int = 0
 
     def __post_init__(self):
-        self.drive = Drive(self.start)
+        self.drive = Drive(self.start, self.fastest, self.acceleration)
 
     @property
     def time(self):

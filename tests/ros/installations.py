@@ -64,6 +64,7 @@ def find_ros1() -> Found:
         "actionlib",
         "geometry_msgs",
         "message_generation",
+        "nav_msgs",
         "roslaunch",
         "rospy",
         "rostest",

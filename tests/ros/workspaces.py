@@ -47,7 +47,7 @@ class Package:
 
 
 def _packages(target: str) -> list[Package]:
-    """The controllers of the eight examples and of the models of the tests, and a layer, for one ROS."""
+    """The controllers of the examples and of the models of the tests, and layers, for one ROS."""
     examples = (
         "line_follower",
         "maze_solver",
@@ -56,7 +56,9 @@ def _packages(target: str) -> list[Package]:
         "person_follower",
         "push_ball",
         "simple_navigation",
+        "sprayer",
         "supervised_line_follower",
+        "warehouse_robot",
     )
     supervised = EXAMPLES / "supervised_line_follower"
     return [

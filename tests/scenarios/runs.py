@@ -9,6 +9,7 @@ from functools import cache
 from typing import Any
 
 from examples.simulator.engine import play
+from examples.simulator.playing import over
 from examples.simulator.scenarios import SCENARIOS
 from examples.simulator.simulation import Simulation
 
@@ -30,8 +31,7 @@ class Run:
 def played(name: str, seed: int = 0, **changes: Any) -> Run:
     """A run of a scenario from start to end; `changes` are those of `examples.simulator.engine.play`."""
     simulation = Simulation(SCENARIOS[name], seed)
-    patience = simulation.scenario.patience
-    log = play(simulation, lambda: simulation.ended or simulation.time > patience, quiet=True, **changes)
+    log = play(simulation, over(simulation), quiet=True, **changes)
     return Run(simulation, log)
 
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from .driving import LineFollower, MazeSolver, ObjectFinder, PersonFollower, PushBall, Stepper
 from .navigating import ObstacleNavigation, SimpleNavigation
+from .showcases import Sprayer, WarehouseRobot
 
 if TYPE_CHECKING:
     from .judging import RuleBook
@@ -19,4 +20,6 @@ BOOKS: dict[str, type[RuleBook]] = {
     "push_ball": PushBall,
     "person_follower": PersonFollower,
     "supervised_line_follower": Stepper,
+    "warehouse_robot": WarehouseRobot,
+    "sprayer": Sprayer,
 }

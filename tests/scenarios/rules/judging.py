@@ -19,6 +19,8 @@ class RuleBook:
 
     def __init__(self) -> None:
         self.stopped = False
+        #: When what is judged was heard or sent.
+        self.time = 0.0
 
     def heard(self, name: str, value: Any) -> None:
         """A communication has brought a value."""
@@ -38,6 +40,7 @@ class RuleBook:
             plant, _, event = entry["event"].partition(".")
             name = plant.partition("_")[2]
             value = entry.get("data", {}).get("value")
+            self.time = entry["time"]
             if entry["direction"] == "in":
                 fault = self.overdue()
                 if fault:

@@ -1,0 +1,242 @@
+"""What is in a warehouse: lidars before and behind, bumpers, a battery, a lift, a dock, an aisle, and Nav2."""
+
+from __future__ import annotations
+
+import math
+
+from .devices import BOOLEAN, NUMBER, RANGE_MAX, TRIGGER, Device, header
+from .geometry import Pose, cast, turned
+from .navigation import Navigation
+from .world import STEP
+
+
+class Server(Device):
+    """Answers calls of services that take no data: each gets its answer when it is due, or when `act` gives it."""
+
+    period = STEP
+
+    def __init__(self):
+        self.given = []
+        self._news = []
+
+    def answer(self, service, call, success, words):
+        """Answers a call; the words are for the picture, too."""
+        self.given.append((service, call, {"success": success, "message": words}))
+        self._news.append(words)
+
+    def news(self):
+        """What was answered, and what else has happened."""
+        news, self._news = self._news, []
+        return news
+
+
+class SafetyLidars(Device):
+    """One lidar looks ahead and one back, each over 60 degrees, a ray every other; `silent` are those cut off."""
+
+    says = {"/front/scan": "sensor_msgs/LaserScan", "/rear/scan": "sensor_msgs/LaserScan"}  # noqa: RUF012
+    #: The rays, in degrees from the middle.
+    rays = range(-30, 31, 2)
+
+    def __init__(self, noise):
+        """`noise` gives the error of each ray, in metres."""
+        self._noise = noise
+        self.silent = set()
+
+    def say(self, world):
+        """Two scans, from the right to the left."""
+        seen = cast(world.pose, world.seen_by_lidar, 360, RANGE_MAX)
+        fields = {"/front/scan": 0, "/rear/scan": 180}
+        return [
+            (topic, self._scan(world, topic, [seen[(middle + ray) % 360] for ray in self.rays]))
+            for topic, middle in fields.items()
+            if topic not in self.silent
+        ]
+
+    def _scan(self, world, topic, distances):
+        return {
+            "header": header(world, topic.split("/")[1] + "_lidar"),
+            "angle_min": math.radians(self.rays[0]),
+            "angle_max": math.radians(self.rays[-1]),
+            "angle_increment": math.radians(self.rays.step),
+            "range_min": 0.05,
+            "range_max": RANGE_MAX,
+            "ranges": [distance + self._noise() if distance < math.inf else distance for distance in distances],
+        }
+
+
+class Bumpers(Device):
+    """Four switches around the robot; `pressed` are those that somebody touches."""
+
+    says = {f"/{side}/bumper": BOOLEAN for side in ("front", "rear", "left", "right")}  # noqa: RUF012
+
+    def __init__(self):
+        self.pressed = set()
+
+    def say(self, world):
+        """The state of each."""
+        del world
+        return [(topic, {"data": topic in self.pressed}) for topic in self.says]
+
+
+class Battery(Device):
+    """Is used up on the way, and charged in the dock; faster than real ones, for those who watch."""
+
+    period = 0.2
+    says = {"/battery_state": "sensor_msgs/BatteryState"}  # noqa: RUF012
+    per_metre, per_second = 0.004, 0.05
+
+    def __init__(self, docking, charge):
+        self._docking = docking
+        self._travelled = 0.0
+        self.charge = charge
+
+    def act(self, world):
+        """Charges or is used."""
+        self.charge -= (world.travelled - self._travelled) * self.per_metre
+        self._travelled = world.travelled
+        if self._docking.docked:
+            self.charge = min(1.0, self.charge + self.per_second * STEP)
+
+    def say(self, world):
+        """How much is left."""
+        return [("/battery_state", {"header": header(world, "battery"), "percentage": self.charge})]
+
+
+class Lift(Server):
+    """Goes up and down below a shelf, each in a second and a half; `jams` is how often it will not come down."""
+
+    answers = {"/lift/raise": TRIGGER, "/lift/lower": TRIGGER}  # noqa: RUF012
+    takes = 1.5
+
+    def __init__(self):
+        super().__init__()
+        #: From 0 (down) to 1.
+        self.height = 0.0
+        self.jams = 0
+        self._call = None
+
+    def ask(self, world, service, call):
+        """Begins to move."""
+        del world
+        if service == "/lift/lower" and self.jams:
+            self.jams -= 1
+            self.answer(service, call, False, "the lift jams")
+        else:
+            self._call = service, call
+
+    def act(self, world):
+        """Moves on."""
+        del world
+        if self._call is None:
+            return
+        service, call = self._call
+        wanted = 1.0 if service == "/lift/raise" else 0.0
+        change = STEP / self.takes
+        self.height += max(-change, min(change, wanted - self.height))
+        if abs(self.height - wanted) < change / 2:
+            self.height, self._call = wanted, None
+            self.answer(service, call, True, "the lift is up" if wanted else "the lift is down")
+
+
+class AisleManager(Server):
+    """Lets robots into the aisle while people leave room there."""
+
+    answers = {"/aisle/enter": TRIGGER, "/aisle/leave": TRIGGER}  # noqa: RUF012
+    takes = 0.3
+
+    def __init__(self):
+        super().__init__()
+        self.crowded = False
+        self.let_in = False
+        self._calls = []
+
+    def ask(self, world, service, call):
+        """Thinks about it."""
+        self._calls.append((world.time + self.takes, service, call))
+
+    def act(self, world):
+        """Answers what it has thought about."""
+        while self._calls and world.time >= self._calls[0][0]:
+            _, service, call = self._calls.pop(0)
+            entering = service == "/aisle/enter"
+            refused = entering and self.crowded
+            if not refused:
+                self.let_in = entering
+            words = "into the aisle" if entering else "out of the aisle"
+            self.given.append((service, call, {"success": not refused, "message": words}))
+            if not refused:
+                self._news.append(words)
+
+
+class Docking(Server):
+    """Drives the robot off its dock, and back into it from before it; `refusals` is how often it will not.
+
+    Both happen along the x axis: the robot stands before its dock at the map's origin.
+    """
+
+    answers = {"/dock": TRIGGER, "/undock": TRIGGER}  # noqa: RUF012
+    speed, turn_speed, precision = 0.3, 1.0, math.radians(1)
+
+    def __init__(self, place):
+        """`place` is where the dock is on the x axis."""
+        super().__init__()
+        self.docked = True
+        self.refusals = 0
+        self._place = place
+        self._call = None
+
+    def ask(self, world, service, call):
+        """Sets off."""
+        del world
+        if service == "/dock" and self.refusals:
+            self.refusals -= 1
+            self.answer(service, call, False, "the dock refuses")
+        else:
+            self._call = service, call
+            self.docked = False
+
+    def act(self, world):
+        """Drives on."""
+        if self._call is None:
+            return
+        service, call = self._call
+        off = turned(-world.pose.heading)
+        if abs(off) > self.precision:
+            world.drive.command(0.0, max(-self.turn_speed, min(self.turn_speed, 4 * off)))
+        elif service == "/undock" and world.pose.x < 0.0:
+            world.drive.command(self.speed, 0.0)
+        elif service == "/dock" and world.pose.x > self._place:
+            world.drive.command(-self.speed, 0.0)
+        else:
+            world.drive.command(0.0, 0.0)
+            self._call, self.docked = None, service == "/dock"
+            self.answer(service, call, True, "in the dock" if self.docked else "off the dock")
+
+
+class WarehouseNavigation(Navigation):
+    """Nav2 that knows where the robot starts, keeps further away from everything, and keeps to a limit of its speed."""
+
+    hears = {"/speed_limit": NUMBER}  # noqa: RUF012
+    clearance = 0.65
+    #: Without a limit it creeps; near the goal, too.
+    creep = 0.2
+
+    def __init__(self, known_walls, start):
+        """`start` is where the robot is at the beginning."""
+        super().__init__(known_walls)
+        self._origin, self._odometry_then = start, Pose()
+        self._limit = self.creep
+
+    @property
+    def under_way(self):
+        """Whether it has a goal."""
+        return self._goal is not None
+
+    def hear(self, world, topic, data):
+        """Takes a limit, in metres a second."""
+        del world, topic
+        self._limit = data["data"]
+
+    def _speed(self, pose):
+        left = math.hypot(self._destination[0] - pose.x, self._destination[1] - pose.y)
+        return min(self._limit, max(self.creep, left))

@@ -1,0 +1,335 @@
+"""What the two showcases may send. Time is that of the log: what fell silent is told from when it was last heard."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from .judging import Fault, RuleBook, first_fault
+
+#: Seconds by which a node may notice silence later than it begins to count: it, and its clock, have other things to do.
+SLACK = 0.3
+NEVER = float("-inf")
+
+
+class WarehouseRobot(RuleBook):
+    """Fetches nothing itself: drives below a shelf, lifts it away from people, comes home and docks."""
+
+    clearance, foresight, silence = 0.5, 1.5, 0.5
+    slow, fast = 0.3, 1.0
+    #: Seconds before another attempt to dock, after so many; and before another to drive.
+    pauses = {1: 5.0, 2: 30.0}  # noqa: RUF012  # a table, never changed
+    pause = 5.0
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.touched = {"Front", "Rear", "Left", "Right"}
+        self.zones = {"Ahead": "obstructed", "Behind": "obstructed"}
+        self.scanned = {"Ahead": NEVER, "Behind": NEVER}
+        self.charged = self.lifted = self.in_aisle = self.asks_aisle = False
+        self.docked, self.asks_dock = True, False
+        self.refused, self.refused_at = 0, NEVER
+        self.phase = "idle"
+        self.under_way, self.failed_at = False, NEVER
+        self.limit: float | None = None
+
+    def heard(self, name: str, value: Any) -> None:
+        done = isinstance(value, dict) and value.get("success") is True
+        self._sense(name, value)
+        self._hear_answer(name, done=done)
+        self._go_on(name, done=done)
+
+    def _sense(self, name: str, value: Any) -> None:
+        """Takes what a sensor says."""
+        device, _, what = name.partition("_")
+        if what == "pressed":
+            (self.touched.add if value else self.touched.discard)(device)
+        elif what == "scan":
+            self.scanned[device], self.zones[device] = self.time, self.zone(value["ranges"])
+        elif name == "charge":
+            self.charged = value["percentage"] >= 0.2 if self.charged else value["percentage"] > 0.3
+
+    def _hear_answer(self, name: str, *, done: bool) -> None:
+        """Takes what became of something that the robot was told to do, or what a person says of it."""
+        match name:
+            case "undock":
+                self.docked = self.docked and not done
+            case "dock" | "dock.u_error":
+                self.docked, self.asks_dock = done, False
+                self.refused, self.refused_at = 0 if done else self.refused + 1, self.time
+            case "try_again":
+                self.refused = self.refused % 3
+            case "enter" | "enter.u_error":
+                self.in_aisle, self.asks_aisle = done, False
+            case "leave":
+                self.in_aisle = self.in_aisle and not done
+            case "lower":
+                self.lifted = self.lifted and not done
+            case "navigate" | "navigate.u_error":
+                self.under_way = False
+                self.failed_at = self.time if name == "navigate.u_error" else NEVER
+
+    def _go_on(self, name: str, *, done: bool) -> None:
+        """What the robot is at, after something was heard."""
+        match self.phase, name:
+            case "idle", "order":
+                self.phase = "outbound"
+            case "outbound", "navigate":
+                self.phase = "at shelf"
+            case "at shelf", "raise" | "raise.u_error":
+                self.phase = "serving" if done else "served"
+            case "serving", "served":
+                self.phase = "served"
+            case "served", "lower" if done:
+                self.phase = "homebound"
+            case "homebound", "navigate":
+                self.phase = "at home"
+            case "at home", "dock" if done:
+                self.phase = "idle"
+        self._turn_back()
+
+    def _turn_back(self) -> None:
+        paused = self.time - self.failed_at < self.pause
+        if self.phase == "outbound" and not (self.docked or self.charged or self.under_way or paused):
+            self.phase = "homebound"
+
+    def zone(self, ranges: list[float | None]) -> str:
+        """What a scan shows; a ray that meets nothing is None in the log."""
+        nearest = min((3.5 if away is None else away for away in ranges), default=0.0)
+        return "obstructed" if nearest < self.clearance else "near" if nearest < self.foresight else "free"
+
+    @property
+    def silent(self) -> bool:
+        """Whether it must have noticed that a lidar says nothing."""
+        return self.time - min(self.scanned.values()) > self.silence + SLACK
+
+    @property
+    def obstacles(self) -> list[tuple[bool, str]]:
+        """What ends a journey."""
+        return [
+            (self.stopped, "stop is pressed"),
+            (bool(self.touched), "a bumper is touched"),
+            ("obstructed" in self.zones.values(), "something is in the way"),
+            (self.silent, "a lidar is silent"),
+            (self.phase == "outbound" and not self.charged, "out with little power"),
+        ]
+
+    def overdue(self) -> Fault:
+        wrong = first_fault(*self.obstacles)
+        free = all(zone == "free" for zone in self.zones.values())
+        return first_fault(
+            (self.under_way and wrong is not None, "the journey has not been cancelled"),
+            (self.limit == self.fast and not free, "the limit is too high"),
+        )
+
+    def sent(self, name: str, value: Any) -> Fault:
+        fault = getattr(self, "_" + name.replace(".c_", "_"))(value)
+        self._turn_back()
+        return fault
+
+    def _navigate(self, value: Any) -> Fault:
+        fault = first_fault(
+            *self.obstacles,
+            (self.under_way, "there is a journey already"),
+            (not self.in_aisle, "nobody has let it into the aisle"),
+            (self.docked or self.asks_dock, "it is in its dock"),
+            (self.phase not in ("outbound", "homebound"), "it has nowhere to go"),
+            (self.lifted, "the shelf is lifted"),
+            (self.time - self.failed_at < self.pause, "it has just failed"),
+            (self.phase == "homebound" and value["pose"]["header"]["frame_id"] != "map", "that is not home"),
+        )
+        self.under_way = True
+        return fault
+
+    def _navigate_cancel(self, _: Any) -> Fault:
+        blind = self.time - min(self.scanned.values()) >= self.silence
+        may_go_on = not blind and first_fault(*self.obstacles) is None
+        fault = first_fault((not self.under_way, "there is no journey"), (may_go_on, "it may go on"))
+        self.under_way = False
+        return fault
+
+    def _enter(self, _: Any) -> Fault:
+        fault = first_fault(
+            (self.docked, "it is still in its dock"),
+            (self.phase not in ("outbound", "homebound"), "it has nothing to do there"),
+            (self.lifted, "people are there"),
+            (self.in_aisle or self.asks_aisle, "it is there already"),
+        )
+        self.asks_aisle = True
+        return fault
+
+    def _leave(self, _: Any) -> Fault:
+        return first_fault(
+            (not self.in_aisle, "it is not there"),
+            (self.under_way, "it drives there"),
+            (self.phase in ("outbound", "homebound"), "it is not yet done there"),
+        )
+
+    def _raise(self, _: Any) -> Fault:
+        fault = first_fault(
+            (self.stopped, "the lift is stopped"),
+            (self.in_aisle or self.asks_aisle, "it is among people"),
+            (self.phase != "at shelf", "it is not below the shelf"),
+            (self.lifted, "it is up"),
+        )
+        self.lifted = True
+        return fault
+
+    def _lower(self, _: Any) -> Fault:
+        return first_fault(
+            (self.stopped, "the lift is stopped"),
+            (not self.lifted and self.phase == "served", "it is down"),
+            (self.phase != "served", "somebody takes something"),
+        )
+
+    def _undock(self, _: Any) -> Fault:
+        return first_fault(
+            (self.stopped, "the dock is stopped"),
+            (not self.docked, "it is off its dock"),
+            (self.phase != "outbound", "nothing is ordered"),
+            (not self.charged, "little power"),
+        )
+
+    def _dock(self, _: Any) -> Fault:
+        fault = first_fault(
+            (self.stopped, "the dock is stopped"),
+            (self.phase != "at home", "it is not at home"),
+            (self.docked or self.asks_dock, "it docks already"),
+            (self.refused == 3, "nobody was asked"),
+            (self.time - self.refused_at < self.pauses.get(self.refused, 0.0), "it was refused just now"),
+        )
+        self.asks_dock = True
+        return fault
+
+    def _speed_limit(self, value: Any) -> Fault:
+        free = all(zone == "free" for zone in self.zones.values())
+        self.limit = round(value, 3)
+        return first_fault(
+            (self.limit not in (self.slow, self.fast), "that is no limit"),
+            (self.limit == self.fast and not free, "too fast for what is near"),
+            (
+                self.limit == self.slow and free and self.time - min(self.scanned.values()) < self.silence,
+                "nothing is near",
+            ),
+        )
+
+
+def both(*claims: bool | None) -> bool | None:
+    """Whether all of these hold; None: nobody can tell."""
+    return False if False in claims else None if None in claims else True
+
+
+class Sprayer(RuleBook):
+    """Drives along a route by itself, or as a stick says; sprays what is due."""
+
+    half_length, half_width = 100.0, 40.0
+    #: Seconds after which what is silent counts for nothing; before another attempt to drive.
+    silences = {"radio": 1.0, "odometry": 0.5, "stick": 0.3}  # noqa: RUF012
+    pause = 5.0
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.heard_at = dict.fromkeys(self.silences, NEVER)
+        self.within = self.filled = self.automatic = self.driving = False
+        #: Whether the stick, while it is held, was pushed when it counted; None: nobody can tell.
+        self.pushed: bool | None = False
+        self.left, self.failed_at = 0, NEVER
+        self.due = dict.fromkeys(("Left", "Middle", "Right"), False)
+
+    def speaks(self, what: str) -> bool | None:
+        """Whether something is heard; None: it may just have been found silent."""
+        silent = self.time - self.heard_at[what]
+        return True if silent < self.silences[what] else False if silent > self.silences[what] + SLACK else None
+
+    @property
+    def may_steer(self) -> bool | None:
+        """Whether the stick counts."""
+        return both(not self.stopped, self.speaks("radio"), not self.automatic)
+
+    @property
+    def safe(self) -> bool | None:
+        """Whether it may drive by itself, in automatic mode."""
+        return both(not self.stopped, self.speaks("radio"), both(self.within, self.speaks("odometry")))
+
+    @property
+    def by_hand(self) -> bool | None:
+        """Whether the stick is obeyed."""
+        self._let_go()
+        return both(self.may_steer, self.pushed, self.speaks("stick"), not self.driving)
+
+    def sprays(self, section: str) -> bool | None:
+        """Whether a section's valve is open."""
+        driven = True if self.driving else self.by_hand
+        return both(self.safe, self.filled, driven, self.due[section])
+
+    def _let_go(self) -> None:
+        """A stick does not count any more once it must not."""
+        if self.may_steer is False:
+            self.pushed = False
+        elif self.may_steer is None and self.pushed:
+            self.pushed = None
+
+    def heard(self, name: str, value: Any) -> None:
+        self._let_go()
+        match name:
+            case "heartbeat":
+                self.heard_at["radio"] = self.time
+            case "odometry":
+                place = value["pose"]["pose"]["position"]
+                self.within = abs(place["x"]) <= self.half_length and abs(place["y"]) <= self.half_width
+                self.heard_at["odometry"] = self.time
+            case "wish":
+                held = self.speaks("stick")
+                if held is not True:
+                    self.pushed = self.may_steer if held is False or self.may_steer is self.pushed else None
+                self.heard_at["stick"] = self.time
+            case "level":
+                self.filled = value > 0.02 if self.filled else value > 0.1
+            case "automatic":
+                self.automatic = value
+            case "route":
+                self.left = self.left if self.driving else len(value["poses"])
+            case "drive" | "drive.u_error":
+                self.driving = False
+                self.failed_at = self.time if name == "drive.u_error" else NEVER
+                self.left -= name == "drive"
+            case _ if name.endswith("_sprayed"):
+                self.due[name.partition("_")[0]] = not value
+        self._let_go()
+
+    def overdue(self) -> Fault:
+        must_end = self.driving and both(self.safe, self.automatic) is False
+        return first_fault((must_end, "the journey has not been cancelled"))
+
+    def sent(self, name: str, value: Any) -> Fault:
+        section, _, valve = name.partition("_")
+        if valve in ("open", "shut"):
+            return first_fault(
+                (value is not (valve == "open"), "that is not what the valve is told"),
+                (valve == "open" and self.sprays(section) is False, "nothing is to be sprayed"),
+                (valve == "shut" and self.sprays(section) is True, "that is to be sprayed"),
+            )
+        match name:
+            case "obey":
+                return first_fault(
+                    (self.driving, "it drives by itself"),
+                    (self.may_steer is False, "the stick does not count"),
+                    (self.by_hand is False, "nobody holds the stick"),
+                )
+            case "halt":
+                return first_fault(
+                    (self.driving, "the wheels are not its own"), (self.by_hand is True, "the stick is held")
+                )
+            case "drive.c_cancel":
+                may_go_on = both(self.safe, self.automatic) is True
+                fault = first_fault((not self.driving, "there is no journey"), (may_go_on, "it may go on"))
+                self.driving = False
+                return fault
+        fault = first_fault(
+            (self.driving, "there is a journey already"),
+            (not self.automatic, "it is driven by hand"),
+            (self.safe is False, "it may not drive there"),
+            (self.left <= 0, "the route is at its end"),
+            (self.time - self.failed_at < self.pause, "it has just failed"),
+        )
+        self.driving = True
+        return fault
