@@ -15,6 +15,7 @@ from robosc import configuration as config
 from robosc.runtime.core.controller import Controller
 from robosc.runtime.core.event_loop import EventLoop
 from robosc.runtime.core.layer import Layer
+from robosc.runtime.core.node_data import BLANK
 from robosc.runtime.core.port import Outcome
 from robosc.runtime.core.settings import Settings
 from robosc.semantics.parameters import controller_parameters, layer_parameters
@@ -240,7 +241,7 @@ class Goal:
 
 
 class Received:
-    """Data as ROS gives it: fields are attributes."""
+    """Data as ROS gives it: fields are attributes, and at their defaults where nobody has set them."""
 
     def __init__(self, data):
         self._data = data
@@ -249,7 +250,7 @@ class Received:
         if name.startswith("_"):
             # Whoever copies an object asks for these before it has data.
             raise AttributeError(name)
-        return _received(self._data[name])
+        return _received(self._data[name]) if name in self._data else BLANK
 
 
 def _received(value):
