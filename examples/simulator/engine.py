@@ -166,6 +166,9 @@ class WorldPort:
         """The world's time."""
         return self._simulation.time
 
+    def hear(self):
+        """Nothing waits: all that is sent has arrived."""
+
     def create(self, interface, part):
         """Data to be filled."""
         del part
