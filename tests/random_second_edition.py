@@ -3,8 +3,24 @@
 from __future__ import annotations
 
 from random import Random
+from typing import TYPE_CHECKING
 
-from tests.random_robots import BOOLEAN, DOUBLE, INTEGER, NONE, Communication, Component, Type, Variable, Writer, paths
+from tests.random_robots import (
+    BOOLEAN,
+    COMPARED,
+    DOUBLE,
+    INTEGER,
+    NONE,
+    Communication,
+    Component,
+    Type,
+    Variable,
+    Writer,
+    paths,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 _NAMED = (
     "constant k0: integer = 1 + 1",
@@ -12,7 +28,15 @@ _NAMED = (
     "constant k2: boolean = k0 > 3",
     "function f0(a: integer, b: integer): integer = if a > b then a - b else k0",
     "function f1(a: boolean): boolean = !a or k2",
+    "function f2(a: double, b: integer): double = if a > b then a / 2 else -a + k1",
+    "function f3(a: boolean, b: integer): boolean = if f1(a) then f0(b, k0) > 0 else f1(b = 1)",
 )
+#: What a call needs for each parameter, by the kind of what it gives.
+_CALLS = {
+    "integer": (("f0", INTEGER, INTEGER),),
+    "boolean": (("f1", BOOLEAN), ("f3", BOOLEAN, INTEGER)),
+    "double": (("f2", DOUBLE, INTEGER),),
+}
 
 
 class SecondWriter(Writer):
@@ -24,16 +48,20 @@ class SecondWriter(Writer):
         self.constants = [("k0", INTEGER), ("k1", DOUBLE), ("k2", BOOLEAN)]
         self.conditions: list[str] = []
         self.templates: list[str] = []
+        #: States of requirement automata, which requirements and properties alone may read.
+        self.turns: list[tuple[str, Type]] = []
+        self.grips = False
 
     def robot(self, name: str) -> str:
         head, *lines, end = super().robot(name).split("\n")
-        finite = self.readable(finite=True)
+        sent = [(c, m) for c in self.components for m in c.communications if m.kind != "outgoing"]
+        lines += [self.automaton(number, sent) for number in self.many(2) if sent]
+        finite = [*self.readable(finite=True), *self.turns, *self.turns]
         for number in self.many(2):
             condition = self.expression(BOOLEAN, finite, 2)
             lines.append(f"condition q{number} = {condition}")
             self.conditions.append(f"q{number}")
-        sent = [(c, m) for c in self.components for m in c.communications if m.kind != "outgoing"]
-        for number in self.many(1):
+        for number in self.many(2):
             lines.append(self.one([self.invariant, self.order])(number, sent))
         if self.conditions and sent:
             target = self.reference(*self.one(sent))
@@ -41,6 +69,54 @@ class SecondWriter(Writer):
                 f"requirement N: {target} needs {self.one(self.conditions)} or {self.expression(BOOLEAN, finite, 2)}"
             )
         return "\n".join([head, *_NAMED, *lines, *self.templates, *kept(self.seed), end])
+
+    def imported(self, number: int) -> str:
+        """Now and then a component that a template of a library makes."""
+        if self.one([True, True, False]):
+            return super().imported(number)
+        tries = self.one(["", ", 2", ", tries: k0"])
+        component = Component(
+            f"G{number}",
+            [
+                Communication("gripped", "outgoing", data={"response": BOOLEAN}),
+                Communication("grip", "incoming", sent=INTEGER),
+            ],
+            [Variable("times", INTEGER, may_be_needed=True)],
+            ["open", "closing"],
+        )
+        topic = self.maybe(f' with {{ grip: "/l{number}/grip" }}')
+        component.text = f'component G{number} from GripperLibrary import Gripper("/g{number}"{tries}){topic}'
+        self.components.append(component)
+        self.conditions.append(f"G{number}.tired")
+        if not self.grips:
+            self.conditions.append(f"({self.one(['all', 'any'])} Gripper: Gripper.{self.one(['open', 'times > 1'])})")
+            self.conditions.append(f"(count Gripper: Gripper.closing) {self.one(COMPARED)} 1")
+        self.grips = True
+        return component.text
+
+    def automaton(self, number: int, sent: list[tuple[Component, Communication]]) -> str:
+        """A requirement automaton, whose states others read. It forbids requests, and no answers."""
+        states = "abc"[: self.one([2, 3])]
+        chosen = self.random.sample(sent, min(len(sent), self.random.randint(1, 2)))
+        requests = [self.reference(*found) for found in chosen]
+        answers = [self.reference(c, m) for c in self.components for m in c.communications if "response" in m.data]
+        answers = self.random.sample(answers, min(len(answers), self.random.randrange(2)))
+        known = [*self.readable(finite=True), *self.turns]
+        self.turns += [(f"T{number}.{state}", BOOLEAN) for state in states]
+        made = []
+        for index, state in enumerate(states):
+            after = states[(index + 1) % len(states)]
+            inside = [f"on request to {requests[0]} goto {after}"] if index == 0 else []
+            for event in requests[1 if index == 0 else 0 :]:
+                guard = self.maybe(f" if {self.expression(BOOLEAN, known, 2)}")
+                inside.append(f"on {self.one(['request to ', ''])}{event}{guard}{self.maybe(f' goto {after}')}")
+            for event in answers:
+                condition = self.expression(BOOLEAN, known, 1)
+                inside += [f"on response from {event} if {condition} goto {after}"] * (self.random.randrange(2))
+                inside.append(f"on response from {event}{self.maybe(f' goto {states[0]}')}")
+            kinds = f"{'initial ' * (index == 0)}{self.maybe('marked ', 3)}"
+            made.append(f"{kinds}state {state} {{ {' '.join(inside)} }}")
+        return f"requirement T{number}{self.maybe(chr(34) + 'in turns' + chr(34), 3)}: automaton {{ {' '.join(made)} }}"
 
     def declare(self, number: int) -> None:
         super().declare(number)
@@ -94,8 +170,11 @@ class SecondWriter(Writer):
         return self.one([known, f"({told})", f"({known}) {self.one(['and', 'or'])} ({told})"])
 
     def invariant(self, number: int, _sent: list[tuple[Component, Communication]]) -> str:
-        condition = self.expression(BOOLEAN, self.readable(finite=True), 2)
+        read = [*self.readable(finite=True), *self.turns, *self.turns]
+        condition = self.expression(BOOLEAN, read, 2)
         named = self.one([f"I{number}: ", f'I{number} "as it is": ', ""])
+        if self.random.randrange(4) == 0:
+            return f"property {named}reachable {condition}{self.maybe(f' from {self.expression(BOOLEAN, read, 1)}')}"
         return f"{self.one(['requirement', 'property'])} {named}{self.one(['never', 'always'])} {condition}"
 
     def order(self, number: int, sent: list[tuple[Component, Communication]]) -> str:
@@ -126,7 +205,23 @@ class SecondWriter(Writer):
                 super(SecondWriter, self).expression(kind, reads, depth - 1, constant=constant) for _ in range(2)
             )
             return f"(if {condition} then {one} else {other})"
+        if depth > 0 and self.random.randrange(6) == 0:
+            made = self.call(kind, reads, depth)
+            if made is not None:
+                return made
         return super().expression(kind, reads, depth, constant=constant)
+
+    def call(self, kind: Type, reads: list[tuple[str, Type]], depth: int) -> str | None:
+        """A call of a function; one that gives an integer reads something, so that it is no constant out of range."""
+        alike = [text for text, found in reads if found.kind == "integer"]
+        calls = _CALLS.get(kind.kind, ())
+        if not calls or (kind.kind == "integer" and not alike):
+            return None
+        name, *parameters = self.one(calls)
+        given = [self.expression(parameter, reads, depth - 1) for parameter in parameters]
+        if kind.kind == "integer":
+            given[0] = self.one(alike)
+        return f"{name}({', '.join(given)})"
 
     def literals(self, kind: Type) -> list[str]:
         named = [name for name, found in self.constants if found == kind]
@@ -142,7 +237,7 @@ def kept(seed: int) -> list[str]:
     def one(*choices: str) -> str:
         return random.choice(choices)
 
-    index = one("0", "k0", "size(value.poses) - 1", "mod(keptNext, 2)")
+    index = one("0", "k0", "size(value.poses) - 1", "mod(k0, 2)")
     number = one(
         "value.position[0]", "max(value.position)", "min(value.position[0..k0])", "double(keptNext) + keptReach"
     )
@@ -165,6 +260,8 @@ def kept(seed: int) -> list[str]:
         "// How far it looks.",
         f"parameter keptReach: double(0.1..5.0) = {one('0.5', 'k1')}",
         f"parameter keptPause: integer(1..60) = {one('1', 'k0')}",
+        "function keptGain(d: double): double = if d < keptReach then 0.1 else min(keptReach, d / 2)",
+        *nested(one),
         "datatype enum KeptAhead(limit: double, where: integer = 0) from sensor_msgs/LaserScan to {",
         "value.ranges[where] < limit -> keptNear",
         f"{one('all', 'any')} r in value.ranges[0..where]: r < limit -> keptNear default -> keptClear }}",
@@ -181,7 +278,8 @@ def kept(seed: int) -> list[str]:
         "variable keptNext: integer(0..k0 + 1) variable ahead: KeptAhead = KeptAhead.keptNear",
         "on response from keptScan do ahead := value",
         f"on response from keptJoints if {one('all', 'any')} r in {numbers}: {body}",
-        f"do level := {number}, rounded := {whole}(level * {one('1.5', '-0.5')}), keptNext := {counted}",
+        f"do level := {one(number, f'keptGain({number})')}, rounded := {whole}(level * {one('1.5', '-0.5')}),",
+        f"keptNext := {counted}",
         f"on response from keptJoints if keptNext > 0 do joints := value{one('', ', keptNext := keptNext - 1')}",
         "initial marked state keptNone {",
         f"on response from keptRoute if size(value.poses) > k0 or value.poses[{index}].pose.position.x > keptReach",
@@ -193,6 +291,44 @@ def kept(seed: int) -> list[str]:
         f"requirement keptGo needs {needed}",
         one("requirement at most k0 keptAgain since keptRoute", "requirement keptAgain after each keptJoints", ""),
         *random.sample(provided, random.randint(1, 3)),
+    ]
+
+
+def nested(one: Callable[..., str]) -> list[str]:
+    """A component that keeps objects within objects, as a whole and in parts, of data types of its own."""
+    place = one("0", "nestAt", "size(value.list) - 1", "mod(nestAt, 2)")
+    read = one(
+        "outer.list[nestAt].deep.known",
+        "any i in list: i.deep.known or (any t in i.tags: t > nestAt)",
+        "all t in inner.tags: t = k0 or inner.deep.known",
+        "size(outer.inner.deep.name) > size(outer.list)",
+    )
+    given = one("outer", "{ inner: Nest.inner, list: Nest.list }", "{ list: Nest.outer.list[0..Nest.nestAt] }")
+    whole = "Nest.outer" if given == "outer" else given
+    parts = one("Nest.inner.deep", "Nest.outer.list[Nest.nestAt].deep", "{ name: Nest.deep.name, known: Nest.nestSaw }")
+    return [
+        "datatype object NestDeep { known: boolean name: string }",
+        "datatype object NestInner { x: double tags: array(integer) deep: NestDeep }",
+        "datatype object NestOuter { inner: NestInner list: array(NestInner) }",
+        "component Nest {",
+        'outgoing message nestTold with identifier: "/nest/told", type: NestOuter links i',
+        'outgoing message nestIndex with identifier: "/nest/index", type: integer(0..2)',
+        'service nestAsked with identifier: "/nest/asked", request: NestDeep, response: NestInner links i',
+        f'incoming message nestOut with identifier: "/nest/out", type: NestOuter{one("", ", send: change")} links i',
+        "behaviour {",
+        "variable outer: NestOuter variable inner: NestInner variable deep: NestDeep variable list: array(NestInner)",
+        "variable nestAt: integer(0..2) variable nestSaw: boolean variable nestSum: double",
+        f"on response from nestTold do outer := value, inner := value.list[{place}], list := outer.list",
+        "on response from nestIndex do nestAt := value",
+        "initial marked state nestIdle { on request to nestAsked goto nestBusy }",
+        "state nestBusy {",
+        f"on response from nestAsked if value.deep.known do inner := value, deep := value.deep, nestSaw := {read}",
+        "goto nestIdle",
+        "on response from nestAsked do deep := inner.deep, nestSum := max(inner.x, value.x) goto nestIdle",
+        "on error from nestAsked goto nestIdle }",
+        "} }",
+        f"provide nestOut with {whole}",
+        f"provide nestAsked with {parts}",
     ]
 
 

@@ -169,6 +169,12 @@ class Terms:
                 kind is greater and side.values.low == other.values.high
             ):
                 kind = ex.Equation
+            # Not the least is above it, not the greatest below: the opposites of those above, however they are said.
+            if kind is ex.Inequation and other.sort is int:
+                if side.values.low == other.values.low:
+                    kind = ex.GreaterThan if side is right else ex.LessThan
+                elif side.values.low == other.values.high:
+                    kind = ex.LessThan if side is right else ex.GreaterThan
             # Of two locations or literals: not to be one is to be the other.
             if (
                 kind is ex.Inequation
