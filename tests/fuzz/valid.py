@@ -5,7 +5,7 @@ from __future__ import annotations
 import subprocess
 from dataclasses import dataclass
 from random import Random
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from robosc import configuration as config
 from robosc.configuration import Configuration
@@ -27,10 +27,9 @@ from tests.synthesis.oracle import Oracle
 from tests.synthesis.test_read_back import read, supervised_states
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
     from pathlib import Path
 
-    from robosc.metamodel.expression import NamedElement
     from robosc.synthesis import Synthesis
 
 TARGETS = ("cif", "supervisor", "ros1", "ros2", "xmi")
@@ -110,17 +109,21 @@ def _cif_says_the_same(models: Models) -> None:
 def _read(text: str, model: sct.SupervisoryControlModel) -> sct.SupervisoryControlModel:
     """The model in a text of CIF, with the names of the given one where CIF has to call something else."""
     again, names = read(text), CifNames(model)
-    for mine, theirs in zip(_named(model), _named(again), strict=False):
-        if theirs.name == names.declared(mine).removeprefix("$"):
-            theirs.name = mine.name
+
+    def alike(ours: Iterable[Any], theirs: Iterable[Any]) -> list[tuple[Any, Any]]:
+        found = {element.name: element for element in theirs}
+        called = ((mine, names.declared(mine).removeprefix("$")) for mine in ours)
+        return [(mine, found[name]) for mine, name in called if name in found]
+
+    pairs = alike(model.enumerations, again.enumerations) + alike(model.plants, again.plants)
+    for mine, theirs in list(pairs):
+        members = ["literals", "events", "inputs", "variables"]
+        members += ["locations"] if isinstance(mine, sct.Plant) and not is_numbered(mine) else []
+        for member in members:
+            pairs += alike(getattr(mine, member, ()), getattr(theirs, member, ()))
+    for mine, theirs in pairs:
+        theirs.name = mine.name
     return again
-
-
-def _named(model: sct.SupervisoryControlModel) -> list[NamedElement]:
-    owners = [*model.enumerations, *model.plants]
-    members = ("literals", "events", "inputs", "variables")
-    named = owners + [element for owner in owners for member in members for element in getattr(owner, member, ())]
-    return named + [location for plant in model.plants if not is_numbered(plant) for location in plant.locations]
 
 
 def _counts(synthesis: Synthesis) -> tuple[int, int]:
