@@ -207,12 +207,15 @@ class Terms:
         return self._make(kind, tuple(parts), None, None, BOOLEAN)
 
     def complements(self, conditions: Iterable[Term]) -> dict[Term, Term]:
-        """The opposites of conditions, each of which comes after its operands; junctions are turned inside out."""
+        """The opposites of conditions, each after its operands; junctions and choices are turned inside out."""
         opposite: dict[Term, Term] = {}
         for condition in conditions:
             if condition.operator in (engine.And, engine.Or):
                 kind = engine.Or if condition.operator is engine.And else engine.And
                 opposite[condition] = self.junction(kind, [opposite[operand] for operand in condition.operands])
+            elif condition.operator is ex.Conditional and condition.sort is None:
+                chosen, *branches = condition.operands
+                opposite[condition] = self.operation(ex.Conditional, chosen, *(opposite[branch] for branch in branches))
             elif condition.sort is None:
                 opposite[condition] = self.negation(condition)
         return opposite

@@ -388,3 +388,35 @@ def test_the_transformation_is_linear() -> None:
     steps = (500, 2000)
     sizes = [sum(1 for _ in tree(transform(_long(count, nested=True)))) for count in steps]
     assert sizes[1] <= sizes[0] * (steps[1] / steps[0]) * 1.1
+
+
+@pytest.mark.parametrize(
+    "guards",
+    [
+        ("times >= 3", "value"),
+        ("times <= 0", "value"),
+        ("times != 3", "value"),
+        ("3 > times", "times = 0 and value"),
+        ("(if a then b else times >= 3) and value", "times != 0 and (if value then a else b)"),
+        ("(times > 0 => (if b then a else !value)) and value", "a = b and value"),
+    ],
+)
+def test_transitions_that_are_tried_in_order_leave_nothing_open(guards: tuple[str, str]) -> None:
+    """Of an answer whose conditions read its data, and the bounds of a variable: it is never blocked."""
+    first, second = guards
+    for most in (3, 3000):
+        text = f"""robot R {{ component G {{
+            outgoing message gripped with type: boolean
+            behaviour {{
+                variable times: integer(0..{most}) variable a: boolean variable b: boolean
+                initial marked state on {{
+                    on response from gripped if {first} do times := 0
+                    on response from gripped if {second} do times := times + 1
+                    on response from gripped do a := b, b := value
+                }}
+            }}
+        }} }}"""
+        model = robosc.to_sct(robosc.load(text=text.replace("= 3", f"= {most}")))
+        robosc.synthesize(model)
+        (event,) = [event for event in transform(model).events if event.event.name == "u_response"]
+        assert list(event.guard.terms) == []
