@@ -73,7 +73,8 @@ def diagnose(
         found = vars(solution.synthesis)
         with solution.synthesis.statistics.during(Phase.OBSERVE if solution.synthesis.supervisor else Phase.GUARDS):
             system = SynthesizedSystem(model, solution.encoding, solution.relations, solution.states)
-            system.uncontrolled = solution.uncontrolled
+            if solution.uncontrolled is not None:
+                system.uncontrolled = solution.uncontrolled
             if solution.synthesis.supervisor is None:
                 return Diagnosis(**found, reason=reason_of_emptiness(system))
             observer = Observer(system, solution.permissions)

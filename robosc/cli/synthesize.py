@@ -135,8 +135,9 @@ def _event(event: sct.Event, guard: sct.EventGuard | None, synthesis: Synthesis)
 def _show(model: sct.SupervisoryControlModel, synthesis: Diagnosis) -> None:
     """What tells something: the choice among data to send restricts nothing that the robot does."""
     assert synthesis.supervisor is not None
-    states = f"{synthesis.controlled_states} states, of {synthesis.uncontrolled_states} without requirements"
-    say(f"{model.name}: {states}")
+    without = synthesis.uncontrolled_states
+    beside = "" if without is None else f", of {without} without requirements"
+    say(f"{model.name}: {synthesis.controlled_states} states{beside}")
     for guard in synthesis.supervisor.guards:
         if guard.event.kind == sct.EventKind.data:
             continue

@@ -156,7 +156,7 @@ class ReachabilityProperty(Property):
 
 class Supervisor(expression.Located):
     """The maximally permissive, controllable, non-blocking supervisor."""
-    uncontrolledStates: int
+    uncontrolledStates: int | None
     controlledStates: int
     bddNodes: int
     settlingBound: int | None

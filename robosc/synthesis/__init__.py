@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, TypeVar
 from robosc.diagnostics import Diagnostic, ModelError, Severity
 from robosc.metamodel import sct
 from robosc.metamodel.places import place
-from robosc.semantics.roles import event_name
+from robosc.semantics.roles import event_name, is_from_cif
 from robosc.synthesis.bdd import Diagrams, with_enough_memory
 from robosc.synthesis.cover import separating_expression
 from robosc.synthesis.encoding import Encoding, Layout
@@ -51,14 +51,15 @@ COMPLETION_EFFORT = 2_000_000
 class Synthesis:
     """The result of synthesis. All but the seconds is the same on every run.
 
-    `supervisor` is None where it is empty. A state is an assignment of locations and variables: `uncontrolled_states`
-    counts those that the plants reach without requirements, `controlled_states` those under the supervisor.
+    `supervisor` is None where it is empty. A state is an assignment of locations and variables: `controlled_states`
+    counts those under the supervisor, `uncontrolled_states` those that the plants reach without requirements, None for
+    a model from CIF: plants that only requirements keep together can have diagrams that no controlled system has.
     `bdd_nodes` are the nodes of the diagrams of the controlled states and of what says of each controllable event where
     it is allowed; `statistics`, what it cost.
     """
 
     supervisor: sct.Supervisor | None
-    uncontrolled_states: int
+    uncontrolled_states: int | None
     controlled_states: int
     bdd_nodes: int
     statistics: Statistics
@@ -77,7 +78,7 @@ class Solution:
 
     `relations` are those of all events, in the order of the plants, `permissions` those of the controllable ones: none
     where the supervisor is empty. `states` is what the fixpoint found, `uncontrolled` what the plants reach without
-    requirements.
+    requirements, None where that is not counted.
     """
 
     synthesis: Synthesis
@@ -85,7 +86,7 @@ class Solution:
     relations: Sequence[EventRelation]
     permissions: Sequence[Permission]
     states: SupervisedStates
-    uncontrolled: Diagram
+    uncontrolled: Diagram | None
 
 
 def synthesize(
@@ -168,12 +169,15 @@ def _solved(model: sct.SupervisoryControlModel, layout: Layout, capacity: int, s
         encoding = Encoding(layout, diagrams)
         relations = event_relations(model, encoding)
         _refuse_overlapping(relations)
-        plants, moves = steps(plant_moves(relations)), required_moves(relations)
+        moves = required_moves(relations)
     with statistics.during(Phase.FIXPOINT):
-        uncontrolled = reachable(diagrams, plants, encoding.initial, diagrams.true)
+        uncontrolled, all_states = None, None
+        if not is_from_cif(model):
+            uncontrolled = reachable(diagrams, steps(plant_moves(relations)), encoding.initial, diagrams.true)
+            all_states = encoding.count_plants(uncontrolled)
         violating = diagrams.any_of(violations(model, relations, encoding).values())
         found = supervise(encoding, moves, violating)
-    all_states, nodes = encoding.count_plants(uncontrolled), found.controlled.node_count()
+    nodes = found.controlled.node_count()
     if not found.controlled.satisfiable():
         empty = Synthesis(None, all_states, 0, nodes, statistics)
         return Solution(empty, encoding, relations, (), found, uncontrolled)

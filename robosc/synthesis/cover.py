@@ -65,13 +65,15 @@ class _Cover:
 
     def tidied(self, products: list[Product]) -> list[Product]:
         """The products without those whose states the others cover too, each no wider than it reads well."""
-        kept = list(products)
-        for product in products:
-            index = next(index for index, other in enumerate(kept) if other is product)
-            left = self._wanted
-            for other in kept[:index] + kept[index + 1 :]:
-                left &= ~self._states(other)
-            kept[index : index + 1] = [self._narrowed(product, left)] if left.satisfiable() else []
+        behind = [self._encoding.diagrams.false]
+        for product in reversed(products):
+            behind.append(behind[-1] | self._states(product))
+        kept, covered = [], self._encoding.diagrams.false
+        for product, others in zip(products, reversed(behind[:-1]), strict=True):
+            left = self._wanted & ~covered & ~others
+            if left.satisfiable():
+                kept.append(self._narrowed(product, left))
+                covered |= self._states(kept[-1])
         return kept
 
     def _narrowed(self, product: Product, states: Diagram) -> Product:

@@ -133,6 +133,8 @@ def supervise(encoding: Encoding, moves: Sequence[Move], violating: Diagram) -> 
         rounds.append(good)
         if not (initial & good).satisfiable():
             return SupervisedStates(rounds, alive, diagrams.false)
+    if len(rounds) == 1:
+        return SupervisedStates(rounds, alive, good)
     return SupervisedStates(rounds, alive, reachable(diagrams, steps, initial & good, good))
 
 

@@ -57,8 +57,7 @@ def _lines(model: sct.SupervisoryControlModel, supervisor: sct.Supervisor) -> It
     taken |= {member.name for plant in model.plants if not plant.origin for member in plant.variables}
     for enumeration in model.enumerations:
         taken |= {enumeration.name, *(literal.name for literal in enumeration.literals)}
-    states = f"{supervisor.controlledStates} of {supervisor.uncontrolledStates} states."
-    yield from document([f"{model.name} under its supervisor: {states}"], sign="@@")
+    yield from document([f"{model.name} under its supervisor: {supervisor.controlledStates} states."], sign="@@")
     yield f'import "{model.source.file.name}";'
     yield ""
     added = any(guard.synthesis for guard in supervisor.guards)
