@@ -11,7 +11,7 @@ import click
 from robosc.analysis.supervise import EmptySupervisorError, supervise
 from robosc.analysis.system import counted
 from robosc.analysis.wording import called, change
-from robosc.cli import put, say
+from robosc.cli import EMPTY_SUPERVISOR, put, say
 from robosc.cli.options import Paths, memory, model, paths
 from robosc.cli.progress import synthesizing
 from robosc.cli.reading import read_models
@@ -21,6 +21,7 @@ from robosc.metamodel.places import place
 from robosc.semantics.printing import RobotPrinter, SctPrinter, conjunction
 from robosc.semantics.roles import SILENT, event_name
 from robosc.semantics.walks import copied
+from robosc.synthesis import count
 
 if sys.platform != "win32":
     import resource
@@ -28,22 +29,24 @@ if sys.platform != "win32":
 if TYPE_CHECKING:
     from robosc.analysis.observations import Weight
     from robosc.analysis.supervise import Diagnosis
-    from robosc.synthesis import Statistics, Synthesis
+    from robosc.synthesis import Counts, Statistics, Synthesis
 
 
 @click.command("synthesize")
 @model
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
+@click.option("--counts", is_flag=True, help="Count states only: no guards, no findings.")
 @memory
 @paths
-def command(model: str, as_json: bool, megabytes: int, paths: Paths) -> None:
+def command(model: str, as_json: bool, counts: bool, megabytes: int, paths: Paths) -> None:
     """Synthesize the supervisor of a robot: its states, and when it allows what.
 
     MODEL is a .rscd file with a robot, a .cif file, or an .xmi file that `transform --to xmi` wrote. A guard says where
     the supervisor allows an event, beyond what the robot itself forbids; what no requirement asks for and synthesis had
     to add is shown apart. Of each requirement it is said in how many states it matters: where it forbids what the robot
     could do; of `never` and `always`, how many states they forbid. --json lists all events, those for the data to send
-    and those from the robot, too, and tells what synthesis cost.
+    and those from the robot, too, and tells what synthesis cost. --counts writes no guards out, which for some models
+    takes longer than all else.
 
     \b
     Examples:
@@ -54,6 +57,9 @@ def command(model: str, as_json: bool, megabytes: int, paths: Paths) -> None:
     """
     with Report(aside=True) as report:
         plants = read_models(model, paths, report, cif=True).sct
+        if counts:
+            _count(plants, megabytes << 20, as_json=as_json)
+            return
         try:
             with synthesizing() as statistics:
                 supervision = supervise(plants, memory=megabytes << 20, statistics=statistics, weigh=True)
@@ -66,20 +72,42 @@ def command(model: str, as_json: bool, megabytes: int, paths: Paths) -> None:
         show(plants, supervision.synthesis)
 
 
+def _count(model: sct.SupervisoryControlModel, memory: int, *, as_json: bool) -> None:
+    with synthesizing() as statistics:
+        counted = count(model, memory=memory, statistics=statistics)
+    if as_json:
+        put(json.dumps(_counts(model, counted, statistics), indent=2))
+    else:
+        say(_states(model, counted))
+    if not counted.controlled_states:
+        raise click.exceptions.Exit(EMPTY_SUPERVISOR)
+
+
+def _counts(
+    model: sct.SupervisoryControlModel, counted: Counts | Synthesis, statistics: Statistics, **more: Any
+) -> dict[str, Any]:
+    return {
+        "robot": model.name,
+        "uncontrolled_states": counted.uncontrolled_states,
+        "controlled_states": counted.controlled_states,
+        "empty": counted.controlled_states == 0,
+        **more,
+        "seconds": round(sum(statistics.seconds.values()), 3),
+        "bdd_nodes": counted.bdd_nodes,
+        **_cost(statistics),
+    }
+
+
 def _show_json(model: sct.SupervisoryControlModel, synthesis: Diagnosis) -> None:
     guards = {guard.event: guard for guard in synthesis.supervisor.guards} if synthesis.supervisor else {}
     events = [event for plant in model.plants for event in plant.events] if synthesis.supervisor else []
-    answer = {
-        "robot": model.name,
-        "uncontrolled_states": synthesis.uncontrolled_states,
-        "controlled_states": synthesis.controlled_states,
-        "empty": synthesis.supervisor is None,
-        "requirements": [_weight(weight) for weight in synthesis.weights],
-        "events": [_event(event, guards.get(event), synthesis) for event in events],
-        "seconds": round(synthesis.seconds, 3),
-        "bdd_nodes": synthesis.bdd_nodes,
-        **_cost(synthesis.statistics),
-    }
+    answer = _counts(
+        model,
+        synthesis,
+        synthesis.statistics,
+        requirements=[_weight(weight) for weight in synthesis.weights],
+        events=[_event(event, guards.get(event), synthesis) for event in events],
+    )
     put(json.dumps(answer, indent=2))
 
 
@@ -132,12 +160,16 @@ def _event(event: sct.Event, guard: sct.EventGuard | None, synthesis: Synthesis)
     }
 
 
+def _states(model: sct.SupervisoryControlModel, counted: Counts | Synthesis) -> str:
+    without = counted.uncontrolled_states
+    beside = "" if without is None else f", of {without} without requirements"
+    return f"{model.name}: {counted.controlled_states} states{beside}"
+
+
 def _show(model: sct.SupervisoryControlModel, synthesis: Diagnosis) -> None:
     """What tells something: the choice among data to send restricts nothing that the robot does."""
     assert synthesis.supervisor is not None
-    without = synthesis.uncontrolled_states
-    beside = "" if without is None else f", of {without} without requirements"
-    say(f"{model.name}: {synthesis.controlled_states} states{beside}")
+    say(_states(model, synthesis))
     for guard in synthesis.supervisor.guards:
         if guard.event.kind == sct.EventKind.data:
             continue

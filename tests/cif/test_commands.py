@@ -82,7 +82,7 @@ def test_transform_adds_the_supervisor_to_the_specification(tmp_path: Path) -> N
     assert result.exit_code == 0, result.output
     assert (
         (tmp_path / "motor.supervised.cif").read_text()
-        == """@@doc("motor under its supervisor: 28 of 120 states.")
+        == """@@doc("motor under its supervisor: 28 states.")
 import "motor.cif";
 
 @doc("What synthesis added.")
@@ -125,3 +125,17 @@ def test_other_commands_say_that_they_do_not_take_it(command: list[str], specifi
     result = CliRunner().invoke(main, [command[0], specification, *command[1:]])
     assert result.exit_code == 2
     assert "is CIF: so far" in result.output
+
+
+def test_synthesize_counts_without_guards(specification: str) -> None:
+    result = CliRunner().invoke(main, ["synthesize", specification, "--counts", "--json"])
+    assert result.exit_code == 0
+    answer, whole = (
+        json.loads(CliRunner().invoke(main, ["synthesize", specification, *option, "--json"]).output)
+        for option in (["--counts"], [])
+    )
+    assert answer["controlled_states"] == whole["controlled_states"] > 0
+    assert answer["uncontrolled_states"] is None
+    assert "events" not in answer
+    said = CliRunner().invoke(main, ["synthesize", specification, "--counts"]).output
+    assert said == f"{answer['robot']}: {answer['controlled_states']} states\n"
