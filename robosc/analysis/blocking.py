@@ -50,7 +50,9 @@ def reason_of_emptiness(system: SynthesizedSystem) -> Reason:
 
 def _uncontrollable(system: SynthesizedSystem) -> Reason:
     encoding, found = system.encoding, system.found
-    before = encoding.state(unavoidable(system, encoding.initial_codes).states[-2])
+    # Of several initial states those that can't even reach a marked one say nothing of what is uncontrollable.
+    start = pick(encoding.initial & found.alive[0], encoding.layout.state)
+    before = encoding.state(unavoidable(system, start).states[-2])
     blocked = found.rounds[0] & ~found.alive[0]
     first = _path(system, system.moves, encoding.initial, before)
     last = _path(system, _uncontrollable_moves(system), before, blocked)
@@ -72,12 +74,13 @@ def _uncontrollable(system: SynthesizedSystem) -> Reason:
 def _blocked_from_the_start(system: SynthesizedSystem) -> Reason:
     encoding = system.encoding
     path = shortest_path(encoding, system.plant_moves, encoding.initial, encoding.all_marked, system.diagrams.true)
-    unmarked = system.never_marked(encoding.initial_codes)
-    violated = system.violated(encoding.initial_codes)
+    start = encoding.initial_codes if path is None else path.states[0]
+    unmarked = system.never_marked(start)
+    violated = system.violated(start)
     if violated:
-        return replace(_described(system, (), [], encoding.initial_codes), violated=violated)
+        return replace(_described(system, (), [], start), violated=violated)
     if path is None:
-        return _described(system, unmarked, [], encoding.initial_codes)
+        return _described(system, unmarked, [], start)
     steps = system.trace(path)
     for index, ((relation, _), codes, after) in enumerate(zip(path.moves, path.states, path.states[1:], strict=False)):
         if not system.is_in(codes, relation.requirement):

@@ -70,9 +70,14 @@ class SupervisedSystem:
         self.violations = violations(model, relations.values(), encoding)
 
     @cached_property
+    def initial(self) -> Diagram:
+        """The states in which the system starts: one, but for models from CIF."""
+        return self.encoding.initial
+
+    @cached_property
     def controlled(self) -> Diagram:
         """The states that are reachable under the supervisor: none if it is empty."""
-        return reachable(self.diagrams, steps(self.moves), self.encoding.initial, self.diagrams.true)
+        return reachable(self.diagrams, steps(self.moves), self.initial, self.diagrams.true)
 
     @cached_property
     def uncontrolled(self) -> Diagram:
@@ -87,7 +92,7 @@ class SupervisedSystem:
     @cached_property
     def layers(self) -> Layers:
         """The controlled states by their distance from the initial one."""
-        return self.layers_from(self.encoding.initial_codes)
+        return Layers(self.encoding, self.moves, self.initial, self.controlled)
 
     def layers_from(self, start: Codes) -> Layers:
         """The controlled states by their distance from one of them."""
@@ -251,6 +256,11 @@ class GuardedSystem(SupervisedSystem):
         ]
         self.moves = [(relation, step) for relation, _, step in supervised if step is not None]
         self.internal = internal_events(supervised, self.guards.values())
+
+    @cached_property
+    def initial(self) -> Diagram:
+        """The initial states that the supervisor leaves."""
+        return self.encoding.initial & self.encoding.holds(self.supervisor.initial)
 
     def guard(self, event: sct.Event) -> Diagram:
         """Where the supervisor lets an event happen: everywhere, if it has no guard for the event."""

@@ -99,7 +99,8 @@ def read_models(path: str, paths: Paths, report: Report, *, cif: bool = False) -
     """
     if path.endswith(".cif") and not cif:
         raise CallError(
-            f"{path} is CIF: so far `check`, `synthesize`, `explain`, `diagram` and `transform --to cif,xmi` take it"
+            f"{path} is CIF, which stands for no ROS and no control loop: `check`, `synthesize`, `explain`, `verify`,"
+            " `simulate`, `diagram` and `transform --to cif,supervisor,xmi` take it"
         )
     root = read(path, paths, report)
     if isinstance(root, rsc.Library):

@@ -51,7 +51,7 @@ def command(
 ) -> None:
     """Try a supervised robot: step by step by hand, by a script, or at random.
 
-    MODEL is a .rscd file with a robot, or an .xmi file that `transform --to xmi` wrote. Without --script and --random
+    MODEL is a .rscd file with a robot, a .cif file, or an .xmi file that `transform --to xmi` wrote. Without --script and --random
     commands are read from the terminal; `h` lists them. A line of a script is an event with its data, or a line of an
     event log. Only what the script names happens, unless --loop runs the control loop between the lines.
 
@@ -69,7 +69,7 @@ def command(
     if loop and script is None:
         raise click.UsageError("--loop needs a --script")
     with Report(aside=True) as report:
-        models = read_models(model, paths, report)
+        models = read_models(model, paths, report, cif=not loop)
         set_parameters(models.rosgraph, given)
         settings = _settings(model, chosen, report) if loop else None
         supervise_models(models, report)

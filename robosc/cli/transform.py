@@ -68,8 +68,8 @@ def command(
 ) -> None:
     """Check a robot, synthesize its supervisor and generate the TARGETs from it, all of them or none.
 
-    MODEL is a .rscd file with a robot, or an .xmi file that an earlier `--to xmi` wrote; for `--to cif` also a .cif
-    file, beside which the result belongs: it imports it.
+    MODEL is a .rscd file with a robot, or an .xmi file that an earlier `--to xmi` wrote; where no ROS is asked for also
+    a .cif file, beside which its CIF belongs: it imports it.
 
     \b
     Examples:
@@ -84,7 +84,7 @@ def command(
         tested = [target.name for target in TARGETS.values() if target.tested_ros]
         raise CallError(f"--with-tests is for {' and '.join(tested)}: the other targets have none")
     with Report(form) as report:
-        models = read_models(model, paths, report, cif=all(target.name in ("cif", "xmi") for target in targets))
+        models = read_models(model, paths, report, cif=not any(target.needs_graph for target in targets))
         for target in targets:
             if target.needs_graph and models.rosgraph is None:
                 raise CallError(f"{model} has no ROS graph, which {target.name} needs: give its .rosgraph.xmi or .rscd")

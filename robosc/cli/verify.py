@@ -50,7 +50,7 @@ def command(
 ) -> None:
     """Prove what a supervised robot promises, or refute it by a shortest trace.
 
-    MODEL is a .rscd file with a robot, or an .xmi file that `transform --to xmi` wrote, whose supervisor is taken as it
+    MODEL is a .rscd file with a robot, a .cif file, or an .xmi file that `transform --to xmi` wrote, whose supervisor is taken as it
     is. Examined are the supervised system, with its requirements, its silent events, its control loop; and whether the
     generated C and CIF do the same. docs/verify.md says what each property means.
 
@@ -63,7 +63,7 @@ def command(
     Exit status: 0 nothing refuted, 1 refuted or errors in the model, 2 a wrong call, 3 no supervisor exists.
     """
     with Report(aside=True) as report:
-        models = read_models(model, paths, report)
+        models = read_models(model, paths, report, cif=True)
         settings = read_configuration(model, chosen, report)
         if junit:
             refuse(junit)

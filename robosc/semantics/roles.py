@@ -81,8 +81,14 @@ class Roles:
 
     @cached_property
     def incoming(self) -> tuple[sct.Event, ...]:
-        """What comes from the robot: the caller performs it."""
-        return self._of(sct.EventKind.response, sct.EventKind.error, sct.EventKind.feedback)
+        """What comes from the robot, and all events of a model from CIF: the caller performs it."""
+        return self._of(
+            sct.EventKind.response,
+            sct.EventKind.error,
+            sct.EventKind.feedback,
+            sct.EventKind.plain,
+            sct.EventKind.input,
+        )
 
     @cached_property
     def timeouts(self) -> tuple[sct.Event, ...]:

@@ -1,12 +1,15 @@
-"""Issue 13: commands that take a `.cif` file, and those that do not yet."""
+"""Commands that take a `.cif` file, and those that can't."""
 
 import json
+import re
+import subprocess
 from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
 
 from robosc.cli import main
+from tests.m2t.supervisor.driver import STRICT
 
 _TEXT = """controllable c_on, c_off;
 uncontrollable u_fail;
@@ -118,13 +121,83 @@ def test_names_are_those_of_the_specification(tmp_path: Path) -> None:
     assert "edge a.b.d when false;" in (tmp_path / "nested.supervised.cif").read_text()
 
 
+@pytest.mark.build
+def test_verify_proves_what_it_says_of_robots(specification: str) -> None:
+    result = CliRunner().invoke(main, ["verify", specification, "--json"])
+    assert result.exit_code == 0, result.output
+    verdicts = {verdict["property"]: verdict["outcome"] for verdict in json.loads(result.stdout)["properties"]}
+    assert verdicts == {
+        "non-blocking": "proved",
+        "controllability": "proved",
+        "requirement c_on needs Motor.n != 2 (line 14)": "proved",
+        "maximal permissiveness": "proved",
+        "model-translation": "skipped",
+        "c-translation": "proved",
+        "cif-translation": "skipped",
+    }
+
+
+def test_simulate_plays_events(specification: str, tmp_path: Path) -> None:
+    script = tmp_path / "script.txt"
+    script.write_text('c_on\nu_fail\npressed {"value": true}\nu_fail\nc_off\nc_on\nc_off\nc_on\n')
+    result = CliRunner().invoke(main, ["simulate", specification, "--script", str(script)])
+    assert result.exit_code == 0, result.output
+    answers = [json.loads(line) for line in result.stdout.splitlines()]
+    assert [answer["by"] for answer in answers] == [None, "plant", None, None, None, None, None, None]
+    assert answers[-1]["state"]["Motor.n"] == 2
+    drawn = CliRunner().invoke(main, ["simulate", specification, "--random", "20"])
+    assert len(drawn.stdout.splitlines()) == 20
+
+
+def test_of_several_initial_states_the_first_that_is_good_is_taken(tmp_path: Path) -> None:
+    path = tmp_path / "motor.cif"
+    path.write_text(
+        _TEXT.replace("int[0..3] n", "int[0..3] n in {3, 2, 1}") + "requirement Motor.n < 3; initial Motor.n > 1;"
+    )
+    result = CliRunner().invoke(main, ["simulate", str(path)], input="s\n")
+    assert "Motor.n = 2\n" in result.output
+
+
+_STEPS = """#include "motor_supervisor.h"
+#include <stdio.h>
+int main(void)
+{
+    motor_supervisor motor;
+    motor_init(&motor);
+    printf("%d", motor_perform(&motor, motor_specification_u_fail));
+    printf("%d", motor_perform(&motor, motor_specification_c_on));
+    motor.inputs.specification_pressed = true;
+    printf("%d", motor_perform(&motor, motor_specification_pressed));
+    printf("%d", motor_enabled(&motor, motor_specification_u_fail));
+    printf("%d", motor_enabled(&motor, motor_specification_c_on));
+    printf(" %s %d\\n", motor_event_name(motor_specification_c_on), motor.state.Motor_n);
+    return 0;
+}
+"""
+
+
+@pytest.mark.build
+def test_the_supervisor_in_c_goes_step_by_step(specification: str, tmp_path: Path) -> None:
+    result = CliRunner().invoke(main, ["transform", specification, "--to", "supervisor", "-o", str(tmp_path)])
+    assert result.exit_code == 0, result.output
+    folder = tmp_path / "supervisor"
+    (folder / "main.c").write_text(_STEPS)
+    compiler = ["gcc", "-std=c99", *STRICT, "main.c", "motor_supervisor.c", "-o", "motor"]
+    subprocess.run(compiler, cwd=folder, check=True)
+    done = subprocess.run([folder / "motor"], check=True, capture_output=True, text=True)
+    assert done.stdout == "01110 c_on 1\n"
+    # No control loop, and what it would need.
+    header = (folder / "motor_supervisor.h").read_text()
+    assert not re.search("tick|hooks|settings|batch|robot that", header)
+
+
 @pytest.mark.parametrize(
-    "command", [["verify"], ["simulate", "--random", "3"], ["run", "--ros2"], ["transform", "--to", "supervisor,cif"]]
+    "command", [["simulate", "--loop", "--script", "-"], ["run", "--ros2"], ["transform", "--to", "supervisor,ros2"]]
 )
-def test_other_commands_say_that_they_do_not_take_it(command: list[str], specification: str) -> None:
+def test_what_needs_ros_or_a_control_loop_does_not_take_it(command: list[str], specification: str) -> None:
     result = CliRunner().invoke(main, [command[0], specification, *command[1:]])
     assert result.exit_code == 2
-    assert "is CIF: so far" in result.output
+    assert "is CIF, which stands for no ROS and no control loop" in result.output
 
 
 def test_synthesize_counts_without_guards(specification: str) -> None:
@@ -139,3 +212,15 @@ def test_synthesize_counts_without_guards(specification: str) -> None:
     assert "events" not in answer
     said = CliRunner().invoke(main, ["synthesize", specification, "--counts"]).output
     assert said == f"{answer['robot']}: {answer['controlled_states']} states\n"
+
+
+def test_no_supervisor_where_each_initial_state_is_lost_in_its_own_way(tmp_path: Path) -> None:
+    """One initial state is stuck itself, another one comes to where it is against its will."""
+    path = tmp_path / "lost.cif"
+    path.write_text(
+        "uncontrollable u; plant P: location stuck: initial; location on: initial; marked; edge u goto stuck; end"
+    )
+    result = CliRunner().invoke(main, ["synthesize", str(path)])
+    assert result.exit_code == 3
+    assert "the supervisor is empty" in result.output
+    assert "`u`" in result.output

@@ -16,13 +16,14 @@ from typing import TYPE_CHECKING
 from robosc.analysis.system import GuardedSystem, counted
 from robosc.analysis.verify.differences import different, happening, on_one_side, refuted, where
 from robosc.analysis.verify.loop_walk import LoopWalk
-from robosc.analysis.verify.transitions import of_system
+from robosc.analysis.verify.transitions import AmbiguityError, of_system
 from robosc.analysis.verify.verdict import Outcome, Verdict
 from robosc.files.resources import locate
 from robosc.files.writing import temporary_folder
 from robosc.m2t.c.comments import string_literal
 from robosc.m2t.c.names import CNames
-from robosc.semantics.roles import event_name
+from robosc.semantics.roles import event_name, is_from_cif
+from robosc.semantics.start import first_state
 from robosc.synthesis import MEMORY
 from robosc.synthesis.bdd import Diagrams, with_enough_memory
 from robosc.synthesis.encoding import Encoding, Layout, domain_size, smallest
@@ -75,6 +76,8 @@ def validate_c(model: sct.SupervisoryControlModel, files: Mapping[str, str], eff
             if fault is not None:
                 return refuted(PROPERTY, fault)
             return with_enough_memory(trial.run, MEMORY)
+    except AmbiguityError as open_:
+        return Verdict(PROPERTY, Outcome.SKIPPED, "", f"{open_}, and {TEXT} takes the first")
     except OSError as error:  # that says nothing about the C
         return Verdict(PROPERTY, Outcome.SKIPPED, "", f"it can't be tried in the folder for temporary files: {error}")
 
@@ -155,6 +158,7 @@ class _Trial:
             f"#define ENGINE_EVENTS {names.macro}_EVENT_COUNT\n"
             f"#define FOR_DURATIONS(DO) {' '.join(durations)}\n"
             + ("#define TIMES\n" if any(event.timer for event in self._events) else "")
+            + ("#define STEPWISE\n" if is_from_cif(self._model) else "")
         )
 
     def run(self, capacity: int) -> Verdict:
@@ -167,8 +171,9 @@ class _Trial:
         known = system.supervisor.controlledStates or 0
         widest = max((prod(map(domain_size, event.inputs)) for event in self._events), default=1)
         states = effort.states if known <= effort.states and known * widest <= effort.steps else 0
-        loop = LoopWalk(self._model, min(effort.operations, _LOOP // max(len(self._events), 1)))
-        (self._folder / "script").write_text("\n".join(loop.script), encoding="ascii")
+        stepwise = is_from_cif(self._model)
+        loop = None if stepwise else LoopWalk(self._model, min(effort.operations, _LOOP // max(len(self._events), 1)))
+        (self._folder / "script").write_text("\n".join(loop.script if loop else ()), encoding="ascii")
         command = ["./explorer", "reference", str(states), str(effort.steps), str(effort.walk), "script"]
         done = self._done(command)
         if done.returncode != 0:
@@ -176,7 +181,7 @@ class _Trial:
         found, *said = done.stdout.split("\n")
         word, *numbers = found.split()
         verdict = self._verdict(system, word, list(map(int, numbers)))
-        fault = loop.difference(said, TEXT) if verdict.outcome is not Outcome.REFUTED else None
+        fault = loop.difference(said, TEXT) if loop and verdict.outcome is not Outcome.REFUTED else None
         return verdict if fault is None else refuted(PROPERTY, fault)
 
     def _reference(self, system: GuardedSystem) -> Iterator[str]:
@@ -189,7 +194,8 @@ class _Trial:
         for cell in (*self._cells, *self._inputs):
             levels = self._layout.domains[cell].levels[::-1]
             yield " ".join(map(str, (domain_size(cell) - 1, len(levels), *levels)))
-        yield from (str(encoding.initial_codes[cell]) for cell in self._cells)
+        start = _start(self._model)
+        yield from (str(start[cell]) for cell in self._cells)
         yield from effects
 
     def _effects(self, system: GuardedSystem, nodes: _Nodes) -> Iterator[str]:
@@ -215,7 +221,7 @@ class _Trial:
                 return refuted(PROPERTY, f"{TEXT} has no event `{event_name(self._events[numbers[0]])}`")
             case "initial":
                 codes = dict(zip(self._cells, numbers, strict=True))
-                return refuted(PROPERTY, f"at the start {different(codes, system.encoding.initial_codes, TEXT)}")
+                return refuted(PROPERTY, f"at the start {different(codes, _start(self._model), TEXT)}")
         return self._difference(system, numbers)
 
     def _difference(self, system: GuardedSystem, numbers: Sequence[int]) -> Verdict:
@@ -235,6 +241,11 @@ class _Trial:
         else:
             what = f"after {step}, {'' if possible else 'which can not happen, '}{different(after, expected, TEXT)}"
         return refuted(PROPERTY, what + where(system, event, state), way)
+
+
+def _start(model: sct.SupervisoryControlModel) -> dict[Element, int]:
+    """The code of each element at the start."""
+    return {cell: value - smallest(cell) for cell, value in first_state(model).items()}
 
 
 class _Nodes:

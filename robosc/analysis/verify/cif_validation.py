@@ -20,6 +20,7 @@ from robosc.analysis.verify.verdict import Outcome, Verdict
 from robosc.diagnostics import ModelError
 from robosc.metamodel import sct
 from robosc.semantics.edges import edges_by_event
+from robosc.semantics.roles import is_from_cif
 from robosc.synthesis import MEMORY, arithmetic
 from robosc.synthesis.bdd import Diagrams, with_enough_memory
 from robosc.synthesis.encoding import Encoding, Layout, pick, referenced, smallest
@@ -44,7 +45,11 @@ def validate_cif(model: sct.SupervisoryControlModel, files: Mapping[str, str]) -
     States correspond by `Correspondence`; then initial and marked states must be the same, and every event must do the
     same in every state, reachable or not. `files` are the texts by their names. Raises MemoryError where the decision
     diagrams take more than 4 GB.
+
+    A model from CIF is not written as CIF again: that it was read as CIF means it is not examined.
     """
+    if is_from_cif(model):
+        return Verdict(PROPERTY, Outcome.SKIPPED, "", "the model was read from CIF, and its own text stays")
     verdicts = (
         _validate(model, files[f"{model.name}.cif"], supervised=False),
         _validate(model, files[f"{model.name}.supervised.cif"], supervised=True),

@@ -24,6 +24,7 @@
  *     ENGINE(name), ENGINE_EVENTS  `name` with the supervisor's prefix; how many events the supervisor has
  *     FOR_DURATIONS(DO)            DO(number, member of the settings) for the times that are set on the robot
  *     TIMES                        where the model has timers, so that the supervisor takes the time
+ *     STEPWISE                     where the supervisor has no control loop
  */
 #include "model.h"
 
@@ -407,7 +408,11 @@ static void load(void)
 static bool begin(void)
 {
     uint64_t code[CELLS + 1];
+#ifdef STEPWISE
+    ENGINE(init)(&robot);
+#else
     ENGINE(init)(&robot, NULL, NULL NOW);
+#endif
     get(code);
     if (memcmp(code, initial, CELLS * sizeof *code) != 0) {
         printf("initial");
@@ -428,6 +433,7 @@ static bool begin(void)
     return true;
 }
 
+#ifndef STEPWISE
 /* ---- The control loop ---- */
 
 static bool withheld[ENGINE_EVENTS + 1];
@@ -531,6 +537,7 @@ static void follow(void)
         tell(code, CELLS);
     }
 }
+#endif
 
 int main(int arguments, char **argument)
 {
@@ -543,11 +550,13 @@ int main(int arguments, char **argument)
         if (!explore(strtoull(argument[2], NULL, 10), strtoull(argument[3], NULL, 10))) {
             walk(strtoull(argument[4], NULL, 10));
         }
+#ifndef STEPWISE
         reference = fopen(argument[5], "r");
         if (reference == NULL) {
             return 1;
         }
         follow();
+#endif
     }
     return 0;
 }

@@ -109,7 +109,7 @@ class ControlLoop:
     @cached_property
     def states(self) -> Diagram:
         """The states that it comes to, those in which internal events are yet to happen among them."""
-        return self._after(self.system.encoding.initial, self._waits)
+        return self._after(self.system.initial, self._waits)
 
     def after(self, codes: Mapping[Element, int]) -> Diagram:
         """The states that it comes to from one of them, running to completion every time."""
@@ -152,7 +152,7 @@ class ControlLoop:
     def path_to(self, goal: Diagram) -> Path:
         """A way from the initial state to one of these states: of those with the fewest batches, always the same."""
         system = self.system
-        layers, seen = [system.encoding.initial], system.encoding.initial
+        layers, seen = [system.initial], system.initial
         batches = [(batch, system.diagrams.true) for batch in self._alone]
         batches += [(batch, self._waits) for batch, _ in self._waiting]
         while not (layers[-1] & goal).satisfiable():

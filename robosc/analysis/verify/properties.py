@@ -16,7 +16,7 @@ from robosc.analysis.wording import listed, name, words
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 from robosc.semantics.printing import RobotPrinter
-from robosc.semantics.roles import event_name, plant_of
+from robosc.semantics.roles import event_name, is_from_cif, plant_of
 from robosc.semantics.walks import copied
 from robosc.synthesis.encoding import referenced
 from robosc.synthesis.fixpoint import coreachable, supervise
@@ -40,17 +40,27 @@ _NEVER_QUIESCENT = "the control loop never again rests in a state in which all c
 
 
 def properties(system: GuardedSystem) -> list[Callable[[], Verdict]]:
-    """All that a model with its supervisor is to satisfy: a property for each requirement among them."""
-    loop = ControlLoop(system)
+    """All that a model with its supervisor is to satisfy: a property for each requirement among them.
+
+    A model from CIF has no control loop, and its plants may refuse what comes.
+    """
+    stepwise = is_from_cif(system.model)
     return [
         partial(non_blocking, system),
         partial(controllability, system),
-        partial(input_enabledness, system),
+        *([] if stepwise else [partial(input_enabledness, system)]),
         *(partial(requirement_holds, system, requirement) for requirement in system.model.requirements),
         *(partial(invariant_holds, system, invariant) for invariant in system.model.invariants),
         *(partial(claim_holds, system, claimed) for claimed in system.model.properties),
-        partial(no_dead_events, system),
+        *([] if stepwise else [partial(no_dead_events, system)]),
         partial(maximal_permissiveness, system),
+        *([] if stepwise else _in_the_loop(system)),
+    ]
+
+
+def _in_the_loop(system: GuardedSystem) -> list[Callable[[], Verdict]]:
+    loop = ControlLoop(system)
+    return [
         partial(finite_response, system),
         partial(bounded_response, system),
         partial(confluence, loop),

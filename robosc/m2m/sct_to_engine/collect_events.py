@@ -36,6 +36,8 @@ _SENTENCES = {
     sct.EventKind.tau: "{what} changes by itself{steps}.",
     sct.EventKind.data: "{what} is to be sent {data}.",
     sct.EventKind.timeout: "{what} has waited {time}{steps}.",
+    sct.EventKind.plain: "{name} happens{steps}.",
+    sct.EventKind.input: "{name} gets a value.",
 }
 
 

@@ -78,7 +78,7 @@ class Lowering:
         if isinstance(expression, ex.Negation):
             return parts[0]
         if isinstance(expression, ex.FunctionCall):
-            return self.terms.modulo(*parts)
+            return self.terms.called(expression.function, *parts)
         if isinstance(expression, (ex.BinaryExpression, ex.UnaryMinus, ex.Conditional)):
             operator = type(expression)
             return self.terms.operation(operator if positive else COMPLEMENTS.get(operator, operator), *parts)

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, TypeVar
 from robosc.metamodel import engine, sct
 from robosc.metamodel import expression as ex
 from robosc.semantics.domains import domain, storage
-from robosc.semantics.evaluation import evaluate
 from robosc.semantics.naming import Names
+from robosc.semantics.start import first_state
 from robosc.semantics.walks import copied
 
 if TYPE_CHECKING:
@@ -21,10 +21,11 @@ def place_state(model: sct.SupervisoryControlModel) -> dict[sct.Plant | sct.Disc
     """The location of each plant that has several and each variable, in the order of the plants."""
     names = Names()
     placed: dict[sct.Plant | sct.DiscreteVariable, engine.StateVariable] = {}
+    start = first_state(model)
     for plant in model.plants:
-        for element, name, kind, initial in _state(plant):
+        for element, name, kind in _state(plant):
             variable = element if isinstance(element, sct.DiscreteVariable) else None
-            made = engine.StateVariable(plant=plant, variable=variable, name=names.fresh(name), initial=initial)
+            made = engine.StateVariable(plant=plant, variable=variable, name=names.fresh(name), initial=start[element])
             placed[element] = _keep(made, kind)
     return placed
 
@@ -41,20 +42,11 @@ def place_inputs(model: sct.SupervisoryControlModel) -> dict[sct.Input, engine.I
     return placed
 
 
-def _state(plant: sct.Plant) -> Iterator[tuple[sct.Plant | sct.DiscreteVariable, str, ex.Type, int]]:
+def _state(plant: sct.Plant) -> Iterator[tuple[sct.Plant | sct.DiscreteVariable, str, ex.Type]]:
     if len(plant.locations) > 1:
-        initial = next(number for number, location in enumerate(plant.locations) if location.initial)
-        yield plant, plant.name, engine.LocationType(plant=plant), initial
+        yield plant, plant.name, engine.LocationType(plant=plant)
     for variable in plant.variables:
-        assert variable.initial is not None
-        initial = int(evaluate(variable.initial, _position))  # type: ignore[call-overload]
-        yield variable, f"{plant.origin or plant.name}.{variable.name}", variable.type, initial
-
-
-def _position(reference: ex.Expression) -> int:
-    """The position of a literal in its enumeration."""
-    assert isinstance(reference, ex.EnumerationLiteralReference)
-    return list(reference.literal.eContainer().literals).index(reference.literal)
+        yield variable, f"{plant.origin or plant.name}.{variable.name}", variable.type
 
 
 def _keep(declared: _Declared, kind: ex.Type) -> _Declared:

@@ -140,6 +140,18 @@ class Terms:
             return self._comparison(kind, *operands)
         return self._make(kind, operands, None, int, _interval(kind, *operands))
 
+    def called(self, function: str, value: Term, *others: Term) -> Term:
+        """A function of integers: those of a model from CIF are written out by cases, as `m2m` does it of robots."""
+        match function, others:
+            case "mod", (divisor,):
+                return self.modulo(value, divisor)
+            case "abs", ():
+                below = self.operation(ex.LessThan, value, self.constant(int, 0))
+                return self.operation(ex.Conditional, below, self.operation(ex.UnaryMinus, value), value)
+        [other] = others
+        better = self.operation(ex.LessThan if function == "min" else ex.GreaterThan, other, value)
+        return self.operation(ex.Conditional, better, other, value)
+
     def modulo(self, value: Term, divisor: Term) -> Term:
         """What `mod` gives: remainders have the sign of the value, so one that may be negative is made positive."""
         if Interval(0, divisor.values.low - 1).holds(value.values):

@@ -15,6 +15,7 @@ from robosc.metamodel import engine, sct
 from robosc.metamodel import expression as ex
 from robosc.metamodel.reflection import tree
 from robosc.semantics.durations import duration_text
+from robosc.semantics.roles import is_from_cif
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -53,6 +54,7 @@ def generate(
         "p": names.prefix,
         "u": names.macro,
         "settings": settings,
+        "stepwise": is_from_cif(model),
         **_Preparation(transform(model), names).all(),
     }
     loaded = environment("robosc.m2t.c", templates)

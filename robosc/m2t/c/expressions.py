@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robosc.metamodel import engine
+from robosc.metamodel import engine, sct
 from robosc.metamodel import expression as ex
 from robosc.semantics.domains import Width, domain, storage
 from robosc.semantics.operators import COMPARISONS, PRECEDENCE, SYMBOLS
@@ -52,7 +52,14 @@ def clamp(saturation: engine.Saturation) -> str:
 class CPrinter(Printer):
     """Prints expressions over `state->…`, `inputs->…` and, for values before the event, `old.…`."""
 
-    symbols = {**SYMBOLS, ex.Equation: "==", engine.Remainder: "%", engine.And: "&&", engine.Or: "||"}  # noqa: RUF012  # ClassVar in the parent
+    symbols = {  # noqa: RUF012  # ClassVar in the parent
+        **SYMBOLS,
+        ex.Equation: "==",
+        engine.Remainder: "%",
+        sct.Quotient: "/",
+        engine.And: "&&",
+        engine.Or: "||",
+    }
 
     def __init__(self, names: CNames) -> None:
         self._names = names

@@ -1,0 +1,97 @@
+"""Where a run starts. A model from CIF may start in several states: the first is taken, in the order of its text.
+
+The first is that of the earliest location or the lowest value for each plant and variable in turn, of those states that
+all predicates on the start and the supervisor let it start in.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, TypeAlias
+
+from robosc.metamodel import expression as ex
+from robosc.metamodel import sct
+from robosc.metamodel.reflection import tree
+from robosc.semantics.domains import domain
+from robosc.semantics.evaluation import Program
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+#: What has a state; a plant stands for its location, which is given by its number.
+_Element: TypeAlias = "sct.Plant | sct.DiscreteVariable"
+
+
+def first_state(model: sct.SupervisoryControlModel) -> dict[_Element, int]:
+    """The number of the location of each plant, and the value of each variable: of an enumeration its position.
+
+    Raises ValueError where no state satisfies all predicates: then the model has no supervisor.
+    """
+    choices = {element: values for plant in model.plants for element, values in _choices(plant)}
+    predicates = list(model.initialPredicates)
+    if model.supervisor is not None and model.supervisor.initial is not None:
+        predicates.append(model.supervisor.initial)
+    start: dict[_Element, int] = {element: values[0] for element, values in choices.items()}
+    order = list(choices)
+    place = {element: number for number, element in enumerate(order)}
+    # Each predicate is asked as soon as all that it reads is chosen.
+    asked: dict[int, list[Program[bool]]] = {}
+    for predicate in predicates:
+        last = max((place[element] for element in _read(predicate)), default=-1)
+        asked.setdefault(last, []).append(Program(predicate, _reader(start)))
+    if not all(program() for program in asked.get(-1, ())):
+        raise ValueError("no state is initial")
+    # Only what predicates read has to be searched through.
+    searched = sorted({place[element] for predicate in predicates for element in _read(predicate)})
+    left: list[Iterator[int]] = []
+    while len(left) < len(searched):
+        left.append(iter(choices[order[searched[len(left)]]]))
+        while not _next(start, order[searched[len(left) - 1]], left[-1], asked.get(searched[len(left) - 1], [])):
+            left.pop()
+            if not left:
+                raise ValueError("no state is initial")
+    return start
+
+
+def _next(
+    start: dict[_Element, int], element: _Element, values: Iterator[int], predicates: list[Program[bool]]
+) -> bool:
+    """Takes the next value with which the predicates hold; false where there is none."""
+    for value in values:
+        start[element] = value
+        if all(predicate() for predicate in predicates):
+            return True
+    return False
+
+
+def _choices(plant: sct.Plant) -> Iterator[tuple[_Element, range | list[int]]]:
+    yield plant, [number for number, location in enumerate(plant.locations) if location.initial]
+    for variable in plant.variables:
+        if variable.initial is None:
+            low, high = domain(variable.type)
+            yield variable, range(low, high + 1)
+        else:
+            yield variable, [int(Program[int](variable.initial, _reader({}))())]
+
+
+def _read(predicate: ex.Expression) -> Iterator[_Element]:
+    for _, part in tree(predicate):
+        if isinstance(part, sct.LocationReference):
+            yield part.location.eContainer()
+        elif isinstance(part, sct.VariableReference):
+            yield part.variable
+
+
+def _reader(start: dict[_Element, int]) -> Callable[[ex.Expression], Callable[[], int]]:
+    def reader(reference: ex.Expression) -> Callable[[], int]:
+        match reference:
+            case sct.LocationReference():
+                plant = reference.location.eContainer()
+                number = list(plant.locations).index(reference.location)
+                return lambda: start[plant] == number
+            case sct.VariableReference():
+                return lambda: start[reference.variable]
+        assert isinstance(reference, ex.EnumerationLiteralReference)
+        position = list(reference.literal.eContainer().literals).index(reference.literal)
+        return lambda: position
+
+    return reader
