@@ -51,9 +51,9 @@ def command(
 ) -> None:
     """Try a supervised robot: step by step by hand, by a script, or at random.
 
-    MODEL is a .rscd file with a robot, a .cif file, or an .xmi file that `transform --to xmi` wrote. Without --script and --random
-    commands are read from the terminal; `h` lists them. A line of a script is an event with its data, or a line of an
-    event log. Only what the script names happens, unless --loop runs the control loop between the lines.
+    MODEL is a .rscd file with a robot, a .cif file, or an .xmi file that `transform --to xmi` wrote. Without --script
+    and --random commands are read from the terminal; `h` lists them. A line of a script is an event with its data, or a
+    line of an event log. Only what the script names happens, unless --loop runs the control loop between the lines.
 
     \b
     Examples:

@@ -50,9 +50,9 @@ def command(
 ) -> None:
     """Prove what a supervised robot promises, or refute it by a shortest trace.
 
-    MODEL is a .rscd file with a robot, a .cif file, or an .xmi file that `transform --to xmi` wrote, whose supervisor is taken as it
-    is. Examined are the supervised system, with its requirements, its silent events, its control loop; and whether the
-    generated C and CIF do the same. docs/verify.md says what each property means.
+    MODEL is a .rscd file with a robot, a .cif file, or an .xmi file that `transform --to xmi` wrote, whose supervisor
+    is taken as it is. Examined are the supervised system, with its requirements, silent events, control loop; and
+    whether the generated C and CIF do the same. docs/verify.md says what each property means.
 
     \b
     Examples:
