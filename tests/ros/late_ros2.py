@@ -1,6 +1,8 @@
 """Runs a model as a node of ROS 2 that does nothing for a while, in which a scan arrives and a time is up.
 
 python3 late_ros2.py controller|layer MODEL --ros-args -p event_log:=LOG
+
+Prints when it goes on.
 """
 
 import sys
@@ -36,6 +38,7 @@ def spin(node, handler):
         handler.flush_log()
     publisher.publish(Empty())
     time.sleep(SLEEP)
+    sys.stdout.write(f"on at {time.time()}\n")
     for _ in range(3):
         node._spin_once()
     handler.close()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from typing import TYPE_CHECKING
 
 import pytest
@@ -43,7 +44,7 @@ def test_what_arrived_before_a_time_was_up_is_handled_before_it_where_compiled(
         late = processes.start("late", command)
         processes.wait_until(lambda: late.poll() is not None, "it has ended")
         assert late.returncode == 0, processes.logs()
-    assert last_of_scans(log) == 2 * ["message_scan.u_response"]
+    assert first_of_late(tmp_path / "run" / "late.log", log) == "message_scan.u_response"
 
 
 @pytest.mark.parametrize("kind", ["controller", "layer"])
@@ -55,10 +56,12 @@ def test_what_arrived_before_a_time_was_up_is_handled_before_it(run_ros2: Runner
         late = processes.start("late", [*command, "--ros-args", "-p", f"event_log:={log}"])
         processes.wait_until(lambda: late.poll() is not None, "it has ended")
         assert late.returncode == 0, processes.logs()
-    assert last_of_scans(log) == 2 * ["message_scan.u_response"]
+    assert first_of_late(tmp_path / "run" / "late.log", log) == "message_scan.u_response"
 
 
-def last_of_scans(log: Path) -> list[str]:
-    """What happened last of scans, and of times without one."""
-    events = [json.loads(line)["event"] for line in log.read_text().splitlines()]
-    return [event for event in events if event in {"message_scan.u_response", "component_Base.u_after1"}][-2:]
+def first_of_late(output: Path, log: Path) -> str:
+    """Whether a scan or its absence came first when a program went on, as it says itself."""
+    (on,) = re.findall(r"^on at (\S+)$", output.read_text(), re.MULTILINE)
+    entries = [json.loads(line) for line in log.read_text().splitlines()]
+    late = [str(entry["event"]) for entry in entries if entry["time"] >= float(on)]
+    return next(event for event in late if event in {"message_scan.u_response", "component_Base.u_after1"})

@@ -1,9 +1,10 @@
 // Loads a component and does nothing for a while, in which a scan arrives and a time is up.
 //
 // late LIBRARY CLASS sensor|empty LOG: sends scans of either type until the event log has one, lets all be handled,
-// sends one more, and spins again only when the time is up.
+// sends one more, and spins again only when the time is up. Prints when.
 #include <chrono>
 #include <cstddef>
+#include <cstdio>
 #include <fstream>
 #include <iterator>
 #include <memory>
@@ -45,6 +46,8 @@ void come_late(rclcpp::Executor& executor, rclcpp::Node& robot, const std::strin
   }
   publisher->publish(Scan());
   std::this_thread::sleep_for(2s);
+  const std::chrono::duration<double> now = std::chrono::system_clock::now().time_since_epoch();
+  std::printf("on at %f\n", now.count());
   executor.spin_some(100ms);
 }
 
