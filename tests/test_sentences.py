@@ -15,6 +15,7 @@ from robosc.analysis.verify import validate_c, validate_cif, verify_system
 from robosc.analysis.verify.verdict import Outcome
 from robosc.cli import main
 from robosc.configuration import Configuration, ControlLoop
+from robosc.diagnostics import ModelError
 from robosc.engine import Engine
 from robosc.m2t import cif, supervisor
 from robosc.m2t.c import engine
@@ -245,3 +246,20 @@ def test_abs_min_max_are_written_out_by_cases_in_cif(tmp_path: Path) -> None:
     text = re.sub(r'//.*|".*?"', "", files["R.cif"])
     assert not [word for word in ("abs(", "min(", "max(") if word in text]
     assert validate_cif(model, files).outcome is Outcome.PROVED
+
+
+# Hints
+
+
+@pytest.mark.parametrize("word", ["all", "any", "count", "never", "always", "reachable", "each", "after"])
+def test_a_word_that_is_read_as_a_name_shows_its_construct(tmp_path: Path, word: str) -> None:
+    """A word of this page in a place where it can't stand gets a hint that shows the construct meant."""
+    path = written(
+        tmp_path, "component Base { incoming message go with type: none }", f"requirement go needs {word} > 1"
+    )
+    with pytest.raises(ModelError) as raised:
+        robosc.load(path)
+    (finding,) = raised.value.diagnostics
+    assert finding.hint is not None
+    assert finding.hint.startswith("write ")
+    assert f"{word}" in finding.hint

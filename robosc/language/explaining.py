@@ -37,7 +37,7 @@ _FOREIGN = {
 }
 #: Words of other languages, and words of ours where they can't stand: what is written for what they seem to mean.
 _CONSTANT = "write `constant name: type = value`"
-_PARAMETER = "nothing is set on the robot itself; write `constant name: type = value`"
+_PARAMETER = "write `parameter name: type = value` in the robot, a library or a component"
 _TIME = "write `after 3.0 s goto state` in a state, or `after 500 ms without message goto state` for its silence"
 _FUNCTION = "write `function name(parameter: type): type = expression`"
 _INVARIANT = "write `requirement never condition` or `requirement always condition`; `property` only verifies it"
@@ -69,6 +69,8 @@ _MEANT = {
     "unless": "write `if` and `!` before the condition",
     "var": "write `variable`",
 }
+#: The hints for words of ours that are names where their construct can't stand.
+CONSTRUCTS = {word: _MEANT[word] for word in ("all", "any", "count", "never", "always", "reachable", "each", "after")}
 #: What other languages call the basic types.
 BASIC_TYPES = {
     **dict.fromkeys(("int", "int8", "int16", "int32", "int64", "uint8", "uint16", "uint32", "long"), "integer"),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from robosc.language.explaining import BASIC_TYPES, did_you_mean
+from robosc.language.explaining import BASIC_TYPES, CONSTRUCTS, did_you_mean
 from robosc.language.interface_types import declare, is_made, link_interface, ros_properties, ros_property
 from robosc.language.scopes import Declared, File, Names, Scope, by_name
 from robosc.language.text import Repair
@@ -444,6 +444,7 @@ class _Linker:
             named = self._scope.usable(rsc.NamedExpression)
             known = [*components, *members, *named, *self._scope.usable(rsc.EnumValue)]
             hint = OWN_MEMBERS if self._is_library and self._elsewhere(name) else self._elsewhere(name)
+            hint = hint or CONSTRUCTS.get(name.text)
             self._missing(name, "there is no component, variable, state or enum value", known, hint, listed=False)
 
     def _named_value(self, access: rsc.Access, name: Name) -> bool:
