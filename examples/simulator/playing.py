@@ -11,6 +11,10 @@ from .world import STEP
 ANSWER_WITHIN, PATIENCE = 0.25, 120.0
 #: As long may the first answer take: a controller hears of the clock late, and counts its period from then.
 FIRST_ANSWER_WITHIN = 2.0
+#: How long it waits, in real time, for a controller that may have nothing to tell, before it takes a step; how many
+#: seconds of its own it does so.
+NUDGE, GIVEN_UP = 1.0, 3.0
+SILENT = "the controller sends nothing any longer"
 #: How long the time at the start is told, in real time, before the world goes on.
 INTRODUCTION = 0.5
 
@@ -38,7 +42,7 @@ def play(simulation, connection, speed, until):
         told = tell(simulation, told)
         if speed != 1:
             connection.receive(STEP / speed)
-            _wait(connection, lambda: _in_step(simulation, connection), "the controller sends nothing any longer")
+            _keep_step(simulation, connection)
         else:
             connection.receive(max(0.0, started + simulation.time - time.monotonic()))
 
@@ -59,6 +63,23 @@ def tell(simulation, told):
 def said(text, stream=None):
     """Prints a line at once, also where the output is not a terminal."""
     print(text, file=stream or sys.stdout, flush=True)
+
+
+def _keep_step(simulation, connection):
+    """Waits for a controller that has fallen behind.
+
+    One that tells its state does so where something has happened before its tick. What the world has said may come
+    after that tick, and the next one comes with the time: so the world takes a step now and then.
+    """
+    if simulation.scenario.alive is None:
+        _wait(connection, lambda: _in_step(simulation, connection), SILENT)
+        return
+    until = time.monotonic() + NUDGE
+    while not _in_step(simulation, connection) and time.monotonic() < until:
+        if simulation.time > connection.last_heard + GIVEN_UP:
+            raise NoControllerError(SILENT)
+        connection.clock(simulation.time)
+        connection.receive(0.02)
 
 
 def _in_step(simulation, connection):

@@ -8,6 +8,7 @@ from itertools import pairwise
 import pytest
 
 from examples.simulator.engine import EXAMPLES
+from examples.simulator.field import Boom
 from examples.simulator.picture import picture
 from examples.simulator.scenarios import SCENARIOS
 from tests.scenarios.rules.books import BOOKS
@@ -121,3 +122,28 @@ def test_the_layer_blocks_steps_of_a_controller_that_knows_no_danger() -> None:
     waiting = [pose["travelled"] for pose in poses(run.record, 8.0, 11.0)]
     assert max(waiting) - min(waiting) < 0.01
     assert sum(8.0 < time < 11.0 for time in blocked) > 20
+
+
+def test_the_dock_is_asked_again_after_ever_longer_pauses() -> None:
+    run = run_of("warehouse_robot")
+    asked = [entry["time"] for entry in run.log if entry["event"] == "service_dock.c_trigger"]
+    first, second, third, _ = asked
+    assert (second - first, third - second) == pytest.approx((5.0, 30.0), abs=0.2)
+
+
+def test_the_warehouse_robot_is_slow_where_it_comes_near_to_something() -> None:
+    run = run_of("warehouse_robot")
+    limits = [entry["data"]["data"] for entry in run.record if entry["topic"] == "/speed_limit"]
+    assert limits[:4] == [0.3, 1.0, 0.3, 1.0]
+
+
+def test_the_sprayer_leaves_out_what_has_been_sprayed() -> None:
+    boom = run_of("sprayer").simulation.device(Boom)
+    assert len(boom.sprayed) > 60
+    # At the edges of squares, and where a route begins within one.
+    assert boom.twice < 0.1 * len(boom.sprayed)
+
+
+def test_the_sprayer_sprays_nothing_beyond_the_field() -> None:
+    boom = run_of("sprayer").simulation.device(Boom)
+    assert max(column for column, _ in boom.sprayed) < 100
