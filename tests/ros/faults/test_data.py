@@ -37,7 +37,7 @@ def test_array_too_short(scout: Scout) -> None:
     scout.until(lambda: len(scout.speeds(since)) > 5, "the robot drives on")
     assert set(scout.speeds(since)) == {PACE}
     # The other event of the same message goes on; this one has not happened.
-    assert scout.events(since, "message_view.u_response")
+    scout.until_event(since, "message_view.u_response")
     assert scout.events(since, "message_rays.u_response") == []
     assert (scout.variable("Lidar", "pace"), scout.variable("Lidar", "scans")) == (PACE, scans)
     # At most one report in five seconds.
