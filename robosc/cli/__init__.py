@@ -29,6 +29,7 @@ INTERNAL_ERROR = 70
 INTERRUPTED = 130
 
 _COMMANDS = {
+    "new": "Begin a model of a robot.",
     "check": "Say what is wrong with models.",
     "transform": "Generate code and models.",
     "synthesize": "Show the supervisor.",

@@ -14,7 +14,19 @@ from robosc.files import reading as files
 
 from .conftest import Run
 
-COMMANDS = ["check", "transform", "synthesize", "explain", "verify", "simulate", "run", "format", "rule", "diagram"]
+COMMANDS = [
+    "new",
+    "check",
+    "transform",
+    "synthesize",
+    "explain",
+    "verify",
+    "simulate",
+    "run",
+    "format",
+    "rule",
+    "diagram",
+]
 
 
 def loaded_by(*arguments: str) -> set[str]:
