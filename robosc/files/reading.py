@@ -75,6 +75,11 @@ def input_named(found: os.stat_result) -> str | None:
     return (_noted.get() or {}).get(_identity(found))
 
 
+def inputs() -> list[str]:
+    """The names of all files that were read within `noting`, in the order in which they first were."""
+    return list((_noted.get() or {}).values())
+
+
 def kind(mode: int) -> str:
     """What stands where a regular file is wanted, such as `a pipe`, from its mode."""
     return _KINDS.get(stat.S_IFMT(mode), "something else")
