@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
-from robosc.diagnostics import Severity
+from robosc.diagnostics import Related, Severity
 from robosc.metamodel import expression as ex
 from robosc.metamodel.places import place
 from robosc.metamodel.reflection import tree
@@ -24,6 +24,7 @@ class Finding:
 
     `relies_on` is an element that must be free of syntax errors for the finding to be true: what is concluded from
     something being absent. `relies_on_names` are the classes whose own names must be resolved within it, too.
+    `related` is another element that the message speaks of.
     """
 
     element: ex.Located
@@ -31,6 +32,13 @@ class Finding:
     hint: str
     relies_on: ex.Located | None = None
     relies_on_names: tuple[type[ex.Located], ...] = ()
+    related: ex.Located | None = None
+
+    def places(self) -> tuple[Related, ...]:
+        """Where the other element that it speaks of stands."""
+        if self.related is None or self.related.source is None:
+            return ()
+        return (Related(*place(self.related), "this is what the finding speaks of"),)
 
     def can_be_false(self, findings: Sequence[Diagnostic]) -> bool:
         """Whether what reading the text found makes it doubtful."""

@@ -39,6 +39,7 @@ _COMMANDS = {
     "run": "Be a robot's controller on ROS, without a build.",
     "format": "Lay out models in the one canonical way.",
     "rule": "Say what a rule means.",
+    "lsp": "Serve an editor: findings while typing, completion, and more.",
     "diagram": "Draw a model or a metamodel.",
 }
 
@@ -177,7 +178,8 @@ def run() -> NoReturn:
             main(prog_name="robosc")
         except SystemExit as end:
             status = end.code if isinstance(end.code, int) else 0
-        sys.stdout.flush()
+        if not sys.stdout.closed:  # a server closes it when its editor goes
+            sys.stdout.flush()
     except KeyboardInterrupt:
         pass  # told below
     except BrokenPipeError:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from difflib import unified_diff
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
@@ -13,6 +12,7 @@ from robosc.cli import ERRORS_FOUND, CallError, interruption, say
 from robosc.cli.report import Report
 from robosc.diagnostics.visible import visible
 from robosc.files import reading as files
+from robosc.files.finding import files_below
 from robosc.files.writing import write_file
 from robosc.language.formatting import format_text
 from robosc.language.text import decode
@@ -59,10 +59,7 @@ def command(models: Sequence[str], check: bool, diff: bool) -> None:
 
 
 def _files(model: str) -> Iterator[str]:
-    """The files of one argument, those of a folder in the order of their paths.
-
-    Hidden folders are left out, and so is what leads out of the folder, or waits for others: links, pipes, devices.
-    """
+    """The files of one argument, those of a folder in the order of their paths."""
     if model == "-":
         yield _STDIN
     elif model.endswith(".xmi"):
@@ -70,10 +67,7 @@ def _files(model: str) -> Iterator[str]:
     elif not Path(model).is_dir():
         yield model
     else:
-        for folder, inner, names in os.walk(model, onerror=_refuse):
-            inner[:] = sorted(folder for folder in inner if not folder.startswith("."))
-            paths = (Path(folder, name) for name in sorted(names) if name.endswith(".rscd"))
-            yield from (str(path) for path in paths if path.is_file() and not path.is_symlink())
+        yield from files_below(model, ".rscd", _refuse)
 
 
 def _refuse(error: OSError) -> NoReturn:

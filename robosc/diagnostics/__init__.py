@@ -47,11 +47,21 @@ class Edit:
     text: str
 
 
+@dataclass(frozen=True, order=True)
+class Related:
+    """A place that a finding speaks of, and what is there."""
+
+    file: str
+    span: Span
+    message: str
+
+
 @dataclass(frozen=True)
 class Diagnostic:
     """One finding of one rule at one place.
 
     `hint` says how to mend it. Where that is so simple that a program can do it, `edits` do it in the finding's file.
+    `related` are other places that it speaks of.
     """
 
     file: str
@@ -61,6 +71,7 @@ class Diagnostic:
     message: str
     hint: str | None = None
     edits: tuple[Edit, ...] = ()
+    related: tuple[Related, ...] = ()
 
 
 class ModelError(Exception):

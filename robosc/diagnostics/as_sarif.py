@@ -50,6 +50,14 @@ def _result(finding: Diagnostic, rule_index: int) -> dict[str, Any]:
         "message": {"text": finding.message + hint},
         "locations": [{"physicalLocation": {"artifactLocation": artifact, "region": _region(finding.span)}}],
     }
+    if finding.related:
+        result["relatedLocations"] = [
+            {
+                "physicalLocation": {"artifactLocation": {"uri": _uri(other.file)}, "region": _region(other.span)},
+                "message": {"text": other.message},
+            }
+            for other in finding.related
+        ]
     if finding.edits:
         replacements = [
             {"deletedRegion": _region(edit.span), "insertedContent": {"text": edit.text}} for edit in finding.edits

@@ -2,17 +2,25 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 from robosc.files.resources import locate
 
 
-def rules() -> list[str]:
+@cache
+def rules() -> tuple[str, ...]:
     """The identifiers of all rules that have a page, in alphabetical order."""
-    return sorted(path.stem for path in locate("docs/rules").glob("*.md"))
+    return tuple(sorted(path.stem for path in locate("docs/rules").glob("*.md")))
 
 
 def page(rule: str) -> str | None:
     """The page of a rule in Markdown; None where there is no such rule."""
     return locate(f"docs/rules/{rule}.md").read_text(encoding="utf-8") if rule in rules() else None
+
+
+def address(rule: str) -> str | None:
+    """The URI of the page of a rule on this computer; None where there is no such rule."""
+    return locate(f"docs/rules/{rule}.md").as_uri() if rule in rules() else None
 
 
 def summary(text: str) -> str:

@@ -62,7 +62,12 @@ class LibraryPath:
 
     def _declared_name(self, path: Path) -> str | None:
         try:
-            found = _HEADER.match(self._documents.read(path, is_input=False))
+            return declared_name(self._documents.read(path, is_input=False))
         except OSError:
             return None
-        return found[1].decode("ascii") if found else None
+
+
+def declared_name(content: bytes) -> str | None:
+    """The name of the library that a text in UTF-8 declares; None where it declares none."""
+    found = _HEADER.match(content)
+    return found[1].decode("ascii") if found else None

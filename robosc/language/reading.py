@@ -39,6 +39,11 @@ class Reading:
     files: dict[str, File]
 
     @property
+    def file(self) -> File:
+        """The file itself."""
+        return next(iter(self.files.values()))
+
+    @property
     def texts(self) -> dict[str, str]:
         """What was read, by the paths that the findings carry."""
         return {path: file.text.content for path, file in self.files.items()}

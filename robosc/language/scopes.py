@@ -84,14 +84,20 @@ class Reference:
     """A name in a text: where it stands (offsets, the end exclusive) and the element that it stands for.
 
     `target` is None where the name is not resolved. Its `source` is its whole declaration; the reference that
-    `is_declaration` is the name in there.
+    `is_declaration` is the name in there. `user` is the element whose `feature` refers.
     """
 
     name: str
     start: int
     end: int
     target: Any
-    is_declaration: bool = False
+    user: Any = None
+    feature: str = ""
+
+    @property
+    def is_declaration(self) -> bool:
+        """Whether this is the name in the declaration of its target."""
+        return self.user is None
 
 
 @dataclass(eq=False)
@@ -117,12 +123,9 @@ class File:
     @cached_property
     def names(self) -> list[Reference]:
         """All names in the text that stand for something, in order; those in skipped text are not known."""
-        found = [
-            Reference(name.text, name.start, name.end, element, is_declaration=True)
-            for element, name in self.declared_names.items()
-        ]
+        found = [Reference(name.text, name.start, name.end, element) for element, name in self.declared_names.items()]
         found += (
-            Reference(name.text, name.start, name.end, getattr(element, feature))
+            Reference(name.text, name.start, name.end, getattr(element, feature), element, feature)
             for element, names in self.references.items()
             for feature, name in names.items()
         )

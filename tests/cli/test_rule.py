@@ -12,7 +12,7 @@ def test_a_page(run: Run) -> None:
 
 
 def test_all_rules(run: Run) -> None:
-    assert run("rule").stdout.split() == rules()
+    assert run("rule").stdout.split() == list(rules())
 
 
 def test_no_such_rule(run: Run) -> None:

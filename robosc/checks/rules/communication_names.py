@@ -33,6 +33,7 @@ def unique_communication(base: rsc.Base) -> Iterator[Finding]:
                 second.communication if own else second.instance.component,
                 f"{_describe(second)} has the name of {_describe(first)}, expected a name of its own",
                 _new_name(first, second, base),
+                related=first.communication,
             )
 
 

@@ -145,7 +145,7 @@ def _given(
             yield Finding(argument, "an argument without name stands behind one with a name", "name its parameter")
         elif parameter in found:
             message = f"parameter `{parameter.name}` has an argument already{on_line(found[parameter])}"
-            yield Finding(argument, message, "leave one of the two out")
+            yield Finding(argument, message, "leave one of the two out", related=found[parameter])
         else:
             found[parameter] = argument
             yield from _typed(argument.value, parameter, settable=isinstance(definition, rsc.EnumDataType))

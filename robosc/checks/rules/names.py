@@ -137,6 +137,7 @@ def single_behaviour(base: rsc.Base) -> Iterator[Finding]:
                 other,
                 f"`{component.name}` has another behaviour already{on_line(every[0])}, expected one",
                 "move its states, variables and transitions to the first one, or to a component of their own",
+                related=every[0],
             )
 
 
@@ -159,4 +160,5 @@ def _declared_again(kind: str, second: ex.NamedElement, first: ex.NamedElement, 
         second,
         f"{kind} `{second.name}` has the name of {other}{on_line(first)}, expected a name of its own in {where}",
         f"rename one of the two, such as `{second.name}_2`",
+        related=first,
     )

@@ -149,6 +149,7 @@ def repeated_events(base: rsc.Base) -> Iterator[Finding]:
                         f"this transition of state `{state.name}` is never tried: another one for this event, without"
                         f" condition, stands before it{on_line(always[key])}",
                         "move it before that one, or leave one of the two out",
+                        related=always[key],
                     )
                 elif transition.guard is None:
                     always[key] = transition

@@ -105,7 +105,7 @@ def _repeated(
             firsts.setdefault(event, (second, state))
             if first is not second and second not in reported:
                 reported.add(second)
-                yield Finding(second, *_never_taken(component, event, (first, other), state))
+                yield Finding(second, *_never_taken(component, event, (first, other), state), related=first)
 
 
 def _never_taken(

@@ -34,3 +34,27 @@ def format_text(text: Text) -> tuple[str | None, list[Diagnostic]]:
     if [word.text for word in words] != [word.text for word in Tokens(formatted)]:
         raise AssertionError(f"{text.file}: the layout changed the words")
     return formatted, []
+
+
+def format_edits(text: Text, start: int = 0, end: int | None = None) -> list[tuple[int, int, str]]:
+    """What to replace (offsets, the end exclusive, and the text to write) for the layout of what is in a range.
+
+    Empty where the text has syntax errors, or that layout already.
+    """
+    formatted, _ = format_text(text)
+    if formatted is None:
+        return []
+    end = len(text.content) if end is None else end
+    before, after = _gaps(text.content), _gaps(formatted)
+    return [
+        (first, last, formatted[new_first:new_last])
+        for (first, last), (new_first, new_last) in zip(before, after, strict=True)
+        if start <= last and first <= end and text.content[first:last] != formatted[new_first:new_last]
+    ]
+
+
+def _gaps(content: str) -> list[tuple[int, int]]:
+    """What is before, between and behind the words of a text."""
+    words = list(Tokens(content))
+    starts, ends = [word.start for word in words], [word.end for word in words]
+    return list(zip([0, *ends], [*starts, len(content)], strict=True))

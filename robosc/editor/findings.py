@@ -1,0 +1,57 @@
+"""Findings as the protocol has them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from lsprotocol import types
+
+from robosc.diagnostics import Severity, in_order
+from robosc.diagnostics.rules import address
+from robosc.editor.places import span_range
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from robosc.diagnostics import Diagnostic
+    from robosc.editor.project import Analysis, Snapshot
+    from robosc.language import Text
+
+_SEVERITIES = {
+    Severity.ERROR: types.DiagnosticSeverity.Error,
+    Severity.WARNING: types.DiagnosticSeverity.Warning,
+}
+
+
+def published(snapshot: Snapshot, analyses: Iterable[Analysis]) -> dict[Path, list[types.Diagnostic]]:
+    """What is to be said of each text that these analyses read, by its path: what is found from several counts once."""
+    findings: dict[str, list[Diagnostic]] = {}
+    texts: dict[str, Text] = {}
+    for analysis in analyses:
+        texts |= {file: read.text for file, read in analysis.reading.files.items()}
+        for finding in analysis.findings:
+            findings.setdefault(finding.file, []).append(finding)
+    return {
+        Path(file): [diagnostic(snapshot, finding, texts) for finding in in_order(findings.get(file, ()))]
+        for file in texts
+    }
+
+
+def diagnostic(snapshot: Snapshot, finding: Diagnostic, texts: Mapping[str, Text]) -> types.Diagnostic:
+    """A finding with its hint below, the page of its rule as a link, and the places that it speaks of."""
+    page = address(finding.rule)
+    related = []
+    for other in finding.related:
+        if other.file in texts:
+            place = types.Location(snapshot.uri(other.file), span_range(texts[other.file], other.span))
+            related.append(types.DiagnosticRelatedInformation(place, other.message))
+    return types.Diagnostic(
+        range=span_range(texts[finding.file], finding.span),
+        message=finding.message + (f"\nhint: {finding.hint}" if finding.hint else ""),
+        severity=_SEVERITIES[finding.severity],
+        code=finding.rule,
+        code_description=types.CodeDescription(page) if page else None,
+        source="robosc",
+        related_information=related or None,
+    )

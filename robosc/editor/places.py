@@ -1,0 +1,32 @@
+"""Places of the language's texts as the protocol has them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from lsprotocol import types
+
+if TYPE_CHECKING:
+    from robosc.diagnostics import Span
+    from robosc.editor.project import Snapshot
+    from robosc.language import Text
+
+
+def to_range(text: Text, start: int, end: int) -> types.Range:
+    """The range between two offsets."""
+    return types.Range(types.Position(*text.to_utf16(start)), types.Position(*text.to_utf16(max(start, end))))
+
+
+def span_range(text: Text, span: Span) -> types.Range:
+    """The range of a span."""
+    return to_range(text, text.offset(span.line, span.column), text.offset(span.end_line, span.end_column))
+
+
+def to_offset(text: Text, position: types.Position) -> int:
+    """The offset of a position."""
+    return text.from_utf16(position.line, position.character)
+
+
+def location(snapshot: Snapshot, text: Text, start: int, end: int) -> types.Location:
+    """The range between two offsets of a text, with the text's URI."""
+    return types.Location(snapshot.uri(text.file), to_range(text, start, end))

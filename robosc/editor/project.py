@@ -1,0 +1,256 @@
+"""The texts of an editor and what was read of them.
+
+The server changes texts as its messages come; answers are computed from a `Snapshot`, which never changes.
+"""
+
+from __future__ import annotations
+
+import gc
+import os
+import re
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING
+from urllib.parse import quote
+
+from pygls.uris import from_fs_path, to_fs_path
+
+from robosc.checks import check
+from robosc.diagnostics import in_order
+from robosc.files.finding import files_below
+from robosc.language import Documents, Text, read
+from robosc.language.libraries import declared_name
+from robosc.ros_types import RosTypes
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from typing import Any
+
+    from robosc.diagnostics import Diagnostic
+    from robosc.language import File, Reading, Reference
+
+_BREAK = re.compile(r"\r\n|\r|\n")
+#: So many analyses leave their models to the collector of circles before it is called.
+_COLLECTED = 16
+
+
+@dataclass(frozen=True)
+class Document:
+    """An open text, as the editor counts its versions."""
+
+    uri: str
+    version: int | None
+    content: str
+
+
+class Project:
+    """What an editor has open, its folders, and the settings of the server."""
+
+    def __init__(self, libraries: Sequence[Path | str] = (), interfaces: Sequence[Path | str] = ()) -> None:
+        """`libraries` are the folders for libraries after a text's own, `interfaces` those with ROS packages below."""
+        self.libraries = tuple(Path(folder).resolve() for folder in libraries)
+        self.interfaces = tuple(interfaces)
+        self.folders: tuple[Path, ...] = ()
+        self._documents: Mapping[Path, Document] = {}
+        self._memory = _Memory()
+        self._ros_types: RosTypes | None = None
+
+    def path(self, uri: str) -> Path:
+        """The path of a document; one that has no file, such as an unsaved text, stands in the first folder."""
+        name = to_fs_path(uri)
+        if name is not None:
+            return Path(name).resolve()
+        folder = self.folders[0] if self.folders else Path.cwd()
+        return folder / quote(uri, safe="")
+
+    def open(self, uri: str, version: int | None, content: str) -> Path:
+        """Puts a text in place of a file, or what it is now in place of what it was."""
+        path = self.path(uri)
+        if path not in self._documents:
+            self._memory.forget()
+        self._documents = {**self._documents, path: Document(uri, version, content)}
+        return path
+
+    def change(self, uri: str, version: int | None, changes: Iterable[tuple[Range | None, str]]) -> None:
+        """Replaces ranges of an open text, in UTF-16 positions, one after the other; None: the whole text."""
+        document = self._documents.get(self.path(uri))
+        if document is None:
+            return
+        content = document.content
+        for place, text in changes:
+            content = text if place is None else _replaced(content, place, text)
+        self.open(uri, version, content)
+
+    def close(self, uri: str) -> None:
+        """Lets the file count again."""
+        path = self.path(uri)
+        self._documents = {other: document for other, document in self._documents.items() if other != path}
+        self._memory.forget()
+
+    def forget(self) -> None:
+        """Reads everything again: files or settings have changed."""
+        self._memory.forget()
+        self._ros_types = None
+
+    def snapshot(self) -> Snapshot:
+        """The project as it is now."""
+        self._ros_types = self._ros_types or RosTypes(self.interfaces)
+        return Snapshot(self._documents, self.folders, self.libraries, self._ros_types, self._memory)
+
+    def is_current(self, snapshot: Snapshot) -> bool:
+        """Whether no text has changed since a snapshot was taken."""
+        return snapshot.documents is self._documents
+
+
+#: The first line and unit, the last line and unit.
+Range = tuple[int, int, int, int]
+
+
+def _replaced(content: str, place: Range, text: str) -> str:
+    """A text, its line breaks as the editor has them, with another one in place of a range."""
+    line, unit, end_line, end_unit = place
+    breaks = [found.span() for found in _BREAK.finditer(content)]
+    start = _offset(content, breaks, line, unit)
+    end = _offset(content, breaks, end_line, end_unit)
+    return content[:start] + text + content[max(start, end) :]
+
+
+def _offset(content: str, breaks: Sequence[tuple[int, int]], line: int, unit: int) -> int:
+    if line > len(breaks):
+        return len(content)
+    start = breaks[line - 1][1] if line else 0
+    end = breaks[line][0] if line < len(breaks) else len(content)
+    return start + Text("", content[start:end]).from_utf16(0, unit)
+
+
+@dataclass(eq=False)
+class Analysis:
+    """What came of reading a text and of checking what was read."""
+
+    path: Path
+    reading: Reading
+    findings: list[Diagnostic]
+
+    @property
+    def file(self) -> File:
+        """The text itself."""
+        return self.reading.file
+
+    @property
+    def text(self) -> Text:
+        """The text itself, its line breaks line feeds."""
+        return self.file.text
+
+    @cached_property
+    def declarations(self) -> Mapping[Any, tuple[File, Reference]]:
+        """Where the names of all elements are declared, libraries included."""
+        return {
+            name.target: (file, name)
+            for file in self.reading.files.values()
+            for name in file.names
+            if name.is_declaration
+        }
+
+    def key(self, element: Any) -> tuple[str, int] | None:
+        """What tells an element from all others, in the analysis of any text: the file and offset of its name."""
+        found = self.declarations.get(element)
+        return None if found is None else (found[0].text.file, found[1].start)
+
+
+@dataclass
+class _Memory:
+    """The last analysis of each text, and what it depends on."""
+
+    analyses: dict[Path, tuple[Analysis, Mapping[Path, str], Mapping[Path, str | None]]] = field(default_factory=dict)
+    made: int = 0
+
+    def forget(self) -> None:
+        self.analyses = {}
+
+    def count(self) -> None:
+        """Models hold each other in circles: those of texts that have gone are collected now and then."""
+        self.made += 1
+        if self.made % _COLLECTED == 0:
+            gc.collect()
+
+
+@dataclass(frozen=True, eq=False)
+class Snapshot:
+    """The project at one moment. Analyses are made when they are asked for, and kept for later snapshots."""
+
+    documents: Mapping[Path, Document]
+    folders: tuple[Path, ...]
+    libraries: tuple[Path, ...]
+    ros_types: RosTypes
+    memory: _Memory
+
+    @cached_property
+    def texts(self) -> Documents:
+        """The open texts over the files."""
+        return Documents({str(path): document.content for path, document in self.documents.items()})
+
+    def analysis(self, path: Path) -> Analysis | None:
+        """What is in the text at a path; None where there is no such text that can be read."""
+        memory = self.memory.analyses
+        known = memory.get(path)
+        if known is not None:
+            analysis, contents, headers = known
+            same = all(self._content(file) == content for file, content in contents.items())
+            if same and headers == self._headers:
+                return analysis
+        try:
+            reading = read(path, self.libraries, self.ros_types, self.texts)
+        except OSError:
+            memory.pop(path, None)
+            return None
+        findings = in_order([*reading.findings, *check(reading.base, reading.findings, self.ros_types)])
+        analysis = Analysis(path, reading, findings)
+        files = [Path(file).resolve() for file in reading.files]
+        contents = {file: self.documents[file].content for file in files if file in self.documents}
+        memory[path] = analysis, contents, self._headers
+        self.memory.count()
+        return analysis
+
+    def _content(self, path: Path) -> str | None:
+        document = self.documents.get(path)
+        return None if document is None else document.content
+
+    @cached_property
+    def _headers(self) -> Mapping[Path, str | None]:
+        """Which open text declares which library: when one is renamed, other texts find another one."""
+        return {
+            path: declared_name(document.content.encode("utf-8", "surrogatepass"))
+            for path, document in self.documents.items()
+        }
+
+    def open_analyses(self) -> Iterator[Analysis]:
+        """The analyses of all open texts."""
+        for path in self.documents:
+            analysis = self.analysis(path)
+            if analysis is not None:
+                yield analysis
+
+    def models(self) -> list[Path]:
+        """All texts that the editor has open or that are in its folders, without those in hidden folders."""
+        found = dict.fromkeys(self.documents)
+        for folder in self.folders:
+            found |= dict.fromkeys(Path(path).resolve() for path in files_below(folder, ".rscd"))
+        return list(found)
+
+    def analyses_with(self, word: str) -> Iterator[Analysis]:
+        """The analyses of all texts of the project in which a word stands."""
+        for path in self.models():
+            try:
+                content = self.texts.read(path, is_input=False)
+            except OSError:
+                continue
+            if re.search(rf"\b{re.escape(word)}\b".encode(), content):
+                analysis = self.analysis(path)
+                if analysis is not None:
+                    yield analysis
+
+    def uri(self, file: str) -> str:
+        """The URI of a file, as the editor itself writes it where it has the file open."""
+        document = self.documents.get(Path(file).resolve())
+        return document.uri if document is not None else str(from_fs_path(os.fspath(file)))

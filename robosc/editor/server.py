@@ -1,0 +1,266 @@
+"""The server: messages of the protocol in, answers and findings out.
+
+Messages are taken as they come, on the one thread of the event loop; answers are computed one after the other on
+another thread, so that typing never waits. A request that is cancelled before its turn is never computed, and one whose
+text has changed by then is answered with "content modified".
+"""
+
+from __future__ import annotations
+
+import asyncio
+import gc
+import logging
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from lsprotocol import types
+from pygls.exceptions import JsonRpcException
+from pygls.lsp.server import LanguageServer
+from pygls.protocol import LanguageServerProtocol, lsp_method
+
+from robosc.editor import reading
+from robosc.editor.findings import published
+from robosc.editor.project import Project
+from robosc.language.grammar import language
+
+if TYPE_CHECKING:
+    from collections.abc import Awaitable, Callable, Generator, Mapping, Sequence
+    from pathlib import Path
+
+    from robosc.editor.project import Analysis, Snapshot
+
+_Answer = TypeVar("_Answer")
+#: How long after the last key findings are looked for, in seconds, where the editor sets nothing else.
+_PAUSE = 0.15
+#: What is asked about one text, and what answers it: of the project, of the text, and of what was asked.
+_ANSWERS: Mapping[str, Callable[[Snapshot, Analysis, Any], Any]] = {
+    types.TEXT_DOCUMENT_DOCUMENT_SYMBOL: reading.symbols,
+    types.TEXT_DOCUMENT_FOLDING_RANGE: reading.folding_ranges,
+    types.TEXT_DOCUMENT_SELECTION_RANGE: reading.selection_ranges,
+    types.TEXT_DOCUMENT_HOVER: reading.hover,
+    types.TEXT_DOCUMENT_REFERENCES: reading.references,
+    types.TEXT_DOCUMENT_DOCUMENT_HIGHLIGHT: reading.highlights,
+    types.TEXT_DOCUMENT_FORMATTING: reading.formatting,
+    types.TEXT_DOCUMENT_RANGE_FORMATTING: reading.range_formatting,
+}
+_CONTENT_MODIFIED = int(types.LSPErrorCodes.ContentModified)
+
+
+class _Protocol(LanguageServerProtocol):
+    @lsp_method(types.INITIALIZE)
+    def lsp_initialize(self, params: types.InitializeParams) -> Generator[Any, Any, types.InitializeResult]:
+        """Positions are in units of UTF-16, which every editor must know, whatever else it offers."""
+        if params.capabilities.general is not None:
+            params.capabilities.general.position_encodings = None
+        return (yield from super().lsp_initialize(params))
+
+
+class Server(LanguageServer):
+    """A language server for one editor."""
+
+    def __init__(self, version: str, libraries: Sequence[str] = (), interfaces: Sequence[str] = ()) -> None:
+        """`version` is robosc's; `libraries` and `interfaces` are the folders that its call names."""
+        super().__init__("robosc", version, protocol_cls=_Protocol)
+        self.project = Project(libraries, interfaces)
+        self._worker = ThreadPoolExecutor(1, "analysis")
+        self._pause = _PAUSE
+        self._waiting: asyncio.Task[None] | None = None
+        self._published: dict[Path, tuple[int | None, list[types.Diagnostic]]] = {}
+        _register(self)
+
+    def shutdown(self) -> None:
+        """Ends the server."""
+        self._worker.shutdown(wait=False, cancel_futures=True)
+        super().shutdown()  # type: ignore[no-untyped-call]
+
+    def configure(self, params: types.InitializeParams) -> None:
+        """Takes the editor's folders and settings: `libraryPaths`, `interfacePaths`, `pause` in milliseconds."""
+        options = params.initialization_options
+        given: Mapping[str, Any] = options if isinstance(options, dict) else {}
+        libraries, interfaces = (_strings(given.get(name)) for name in ("libraryPaths", "interfacePaths"))
+        self.project = Project([*libraries, *self.project.libraries], [*interfaces, *self.project.interfaces])
+        self._pause = float(given["pause"]) / 1000 if isinstance(given.get("pause"), int | float) else _PAUSE
+        self.take_folders()
+
+    def take_folders(self) -> None:
+        """Takes the editor's folders."""
+        uris = list(self.workspace.folders)
+        if not uris and self.workspace.root_uri:
+            uris = [self.workspace.root_uri]
+        self.project.folders = tuple(self.project.path(uri) for uri in uris)
+
+    async def answer(self, uri: str, job: Callable[[Snapshot, Analysis], _Answer]) -> _Answer | None:
+        """What a job says of a text, when its turn comes; None where there is no such text."""
+        path = self.project.path(uri)
+
+        def with_text(snapshot: Snapshot) -> _Answer | None:
+            analysis = snapshot.analysis(path)
+            return None if analysis is None else job(snapshot, analysis)
+
+        return await self.answer_project(with_text)
+
+    async def answer_project(self, job: Callable[[Snapshot], _Answer]) -> _Answer:
+        """What a job says of the whole project."""
+        snapshot, project = self.project.snapshot(), self.project
+
+        def in_turn() -> _Answer:
+            if not project.is_current(snapshot):
+                raise JsonRpcException("the text has changed", _CONTENT_MODIFIED)
+            return job(snapshot)
+
+        return await asyncio.get_running_loop().run_in_executor(self._worker, in_turn)
+
+    def changed(self) -> None:
+        """Looks for findings after a pause, unless something changes before."""
+        if self._waiting is not None:
+            self._waiting.cancel()
+        self._waiting = asyncio.get_running_loop().create_task(self._find())
+
+    def tell_again(self, path: Path) -> None:
+        """Tells the findings of a text that has been opened, even if they are those of before."""
+        self._published.pop(path, None)
+
+    async def _find(self) -> None:
+        await asyncio.sleep(self._pause)
+        snapshot, project = self.project.snapshot(), self.project
+
+        def findings() -> dict[Path, list[types.Diagnostic]] | None:
+            analyses = []
+            for path in snapshot.documents:
+                if not project.is_current(snapshot):
+                    return None
+                analysis = snapshot.analysis(path)
+                if analysis is not None:
+                    analyses.append(analysis)
+            return published(snapshot, analyses)
+
+        try:
+            found = await asyncio.get_running_loop().run_in_executor(self._worker, findings)
+        except RuntimeError:
+            return  # The server ends.
+        if found is not None and self.project.is_current(snapshot):
+            self._publish(snapshot, found)
+
+    def _publish(self, snapshot: Snapshot, found: Mapping[Path, list[types.Diagnostic]]) -> None:
+        """Tells the editor what has changed: of files that it has not open only what is wrong with them."""
+        for path in [*found, *(path for path in self._published if path not in found)]:
+            document = snapshot.documents.get(path)
+            version, diagnostics = document.version if document else None, found.get(path, [])
+            if self._published.get(path, (None, [])) == (version, diagnostics) and path in self._published:
+                continue
+            if document is None and not diagnostics and not self._published.get(path, (None, []))[1]:
+                continue
+            self._published[path] = version, diagnostics
+            told = types.PublishDiagnosticsParams(snapshot.uri(str(path)), diagnostics, version)
+            self.text_document_publish_diagnostics(told)
+
+
+def _strings(value: Any) -> list[str]:
+    return [part for part in value if isinstance(part, str)] if isinstance(value, list) else []
+
+
+def _register(server: Server) -> None:
+    _register_texts(server)
+    _register_answers(server)
+
+
+def _register_texts(server: Server) -> None:
+    @server.feature(types.INITIALIZE)
+    def initialize(params: types.InitializeParams) -> None:
+        server.configure(params)
+
+    @server.feature(types.INITIALIZED)
+    async def initialized(_: types.InitializedParams) -> None:
+        await _watch_files(server)
+
+    @server.feature(types.TEXT_DOCUMENT_DID_OPEN)
+    def did_open(params: types.DidOpenTextDocumentParams) -> None:
+        opened = params.text_document
+        server.tell_again(server.project.open(opened.uri, opened.version, opened.text))
+        server.changed()
+
+    @server.feature(types.TEXT_DOCUMENT_DID_CHANGE)
+    def did_change(params: types.DidChangeTextDocumentParams) -> None:
+        changes = [(_place(change), change.text) for change in params.content_changes]
+        server.project.change(params.text_document.uri, params.text_document.version, changes)
+        server.changed()
+
+    @server.feature(types.TEXT_DOCUMENT_DID_CLOSE)
+    def did_close(params: types.DidCloseTextDocumentParams) -> None:
+        server.project.close(params.text_document.uri)
+        server.changed()
+
+    @server.feature(types.TEXT_DOCUMENT_DID_SAVE)
+    def did_save(_: types.DidSaveTextDocumentParams) -> None:
+        server.project.forget()
+        server.changed()
+
+    @server.feature(types.WORKSPACE_DID_CHANGE_WATCHED_FILES)
+    def did_change_files(_: types.DidChangeWatchedFilesParams) -> None:
+        server.project.forget()
+        server.changed()
+
+    @server.feature(types.WORKSPACE_DID_CHANGE_WORKSPACE_FOLDERS)
+    def did_change_folders(_: types.DidChangeWorkspaceFoldersParams) -> None:
+        server.take_folders()
+        server.changed()
+
+
+async def _watch_files(server: Server) -> None:
+    """Asks the editor to tell of changes to files that it has not open, where it can."""
+    workspace = server.client_capabilities.workspace
+    watched = workspace.did_change_watched_files if workspace else None
+    if watched is None or not watched.dynamic_registration:
+        return
+    patterns = ("**/*.rscd", "**/*.msg", "**/*.srv", "**/*.action")
+    options = types.DidChangeWatchedFilesRegistrationOptions([types.FileSystemWatcher(name) for name in patterns])
+    registration = types.Registration("robosc-files", types.WORKSPACE_DID_CHANGE_WATCHED_FILES, options)
+    await server.client_register_capability_async(types.RegistrationParams([registration]))
+
+
+def _place(change: types.TextDocumentContentChangeEvent) -> tuple[int, int, int, int] | None:
+    if not isinstance(change, types.TextDocumentContentChangePartial):
+        return None
+    start, end = change.range.start, change.range.end
+    return start.line, start.character, end.line, end.character
+
+
+def _register_answers(server: Server) -> None:
+    for method, job in _ANSWERS.items():
+        server.feature(method)(_handler(server, job))
+
+    @server.feature(types.TEXT_DOCUMENT_DEFINITION)
+    async def definition(params: types.DefinitionParams) -> list[types.LocationLink] | list[types.Location] | None:
+        links = await server.answer(params.text_document.uri, partial(reading.definition, params=params))
+        capabilities = server.client_capabilities.text_document
+        known = capabilities.definition if capabilities else None
+        if links is None or (known is not None and known.link_support):
+            return links
+        return [types.Location(link.target_uri, link.target_selection_range) for link in links]
+
+    @server.feature(types.WORKSPACE_SYMBOL)
+    async def workspace_symbols(params: types.WorkspaceSymbolParams) -> list[types.WorkspaceSymbol]:
+        return await server.answer_project(partial(reading.workspace_symbols, query=params.query))
+
+
+def _handler(server: Server, job: Callable[[Snapshot, Analysis, Any], Any]) -> Callable[[Any], Awaitable[Any]]:
+    async def handle(params: Any) -> Any:
+        return await server.answer(params.text_document.uri, lambda snapshot, analysis: job(snapshot, analysis, params))
+
+    return handle
+
+
+def serve(server: Server, port: int | None = None) -> None:
+    """Serves one editor over the standard input and output, or over a port of this computer, until it says `exit`."""
+    logging.basicConfig(stream=sys.stderr, level=logging.WARNING, format="%(message)s")
+    language()
+    # The grammar stays; the models of texts that have gone are collected.
+    gc.freeze()
+    gc.set_threshold(50_000, 10, 10)
+    if port is None:
+        server.start_io()
+    else:
+        logging.getLogger("pygls.server").setLevel(logging.INFO)
+        server.start_tcp("127.0.0.1", port)

@@ -1,0 +1,269 @@
+"""Says in Markdown what an element of a model is: its declaration, its type, what it means for the robot."""
+
+from __future__ import annotations
+
+from textwrap import dedent
+from typing import TYPE_CHECKING, Any
+
+from robosc.language.interface_types import is_made
+from robosc.language.outlining import span
+from robosc.metamodel import expression as ex
+from robosc.metamodel import robosc as rsc
+from robosc.ros_types import DefinitionError, Section
+from robosc.semantics.communication import carried, events, section_of
+from robosc.semantics.expansion import constant_value
+from robosc.semantics.naming import enumeration
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from robosc.language.reading import Reading
+    from robosc.language.scopes import File, Reference
+    from robosc.ros_types import RosTypes
+
+#: So many lines of a declaration, and fields of a ROS type, are shown.
+_LINES, _FIELDS = 12, 40
+
+
+def describe(reading: Reading, element: Any, ros_types: RosTypes) -> str | None:
+    """What there is to say of an element that a name of a reading stands for; None: nothing."""
+    if element is None:
+        return None
+    if isinstance(element, rsc.ObjectProperty) and is_made(element.eContainer()):
+        declared = element.type
+        return f"```robosc\n{element.name}: {type_text(declared)}\n```\nA field of the ROS type {_ros_name(element)}."
+    file = _file_of(reading, element)
+    if file is None:
+        return None
+    reference = element if isinstance(element, rsc.InterfaceTypeReference) else element.eContainer()
+    if isinstance(reference, rsc.InterfaceTypeReference):
+        return ros_definition(reference.package, reference.rosType, section_of(reference), ros_types)
+    parts = [f"```robosc\n{_declaration(file, element)}\n```"]
+    comment = file.text.comment_above(span(file, element)[0])
+    if comment:
+        parts.append(comment)
+    parts += _meaning(reading, file, element)
+    if isinstance(element, rsc.Interface):
+        parts += [
+            definition
+            for section in Section
+            for definition in [ros_definition(element.package, element.type, section, ros_types)]
+            if definition is not None
+        ]
+    if file is not reading.file and file.base is not None:
+        parts.append(f"From library `{file.base.name}`.")
+    return "\n\n".join(parts)
+
+
+def event_text(transition: rsc.Transition, file: File) -> str:
+    """What a transition waits for, such as `response from scan`."""
+    match transition:
+        case rsc.ResultTransition():
+            reference = transition.communicationType
+            named = _source(file, reference) if reference is not None else "…"
+            return f"{transition.resultType} {direction(transition.resultType)} {named}"
+        case rsc.TimedTransition():
+            without = ", ".join(_source(file, reference) for reference in transition.without)
+            time = f"after {_source(file, transition.duration)} {transition.unit}"
+            return f"{time} without {without}" if without else time
+    return "by itself"
+
+
+def direction(event: rsc.ResultType) -> str:
+    """The word between an event's name and its communication."""
+    return "to" if event in {rsc.ResultType.request, rsc.ResultType.cancel} else "from"
+
+
+def type_text(declared: rsc.DataType | None) -> str:
+    """A data type as a text declares it."""
+    match declared:
+        case rsc.Array():
+            return f"array({type_text(declared.type)})"
+        case rsc.InterfaceTypeReference():
+            return f"{declared.package}/{declared.rosType}"
+        case rsc.ComplexDataTypeReference():
+            return str(declared.type.name) if declared.type is not None else "…"
+        case rsc.IntegerDataType() if declared.minimum is not None and declared.maximum is not None:
+            return f"integer({declared.minimum}..{declared.maximum})"
+        case None:
+            return "…"
+    return str(type(declared).__name__).removesuffix("DataType").lower()
+
+
+def ros_definition(package: str, name: str, section: Section, ros_types: RosTypes) -> str | None:
+    """The fields of a section of a ROS type; None where it is not known."""
+    for distribution in ros_types.distributions:
+        try:
+            fields = distribution.fields(package, name, section)
+        except DefinitionError:
+            continue
+        if fields is not None:
+            lines = [f"{wire} {field}" for field, wire in fields.items()]
+            shown = "\n".join([*lines[:_FIELDS], *(["…"] if len(lines) > _FIELDS else [])])
+            part = "" if section is Section.MESSAGE else f", its {section.name.lower()}"
+            return f"`{package}/{name}`{part}, as {distribution.name} defines it:\n```\n{shown}\n```"
+    return None
+
+
+def _ros_name(element: rsc.ObjectProperty) -> str:
+    reference = element.eContainer().eContainer()
+    return f"`{reference.package}/{reference.rosType}`"
+
+
+def _file_of(reading: Reading, element: Any) -> File | None:
+    if getattr(element, "source", None) is None or element.source.file is None:
+        return None
+    return reading.files.get(element.source.file.path)
+
+
+def _source(file: File, element: Any) -> str:
+    """The text of an element, in one line."""
+    if element is None or element.source is None:
+        return "…"
+    start, end = span(file, element)
+    return " ".join(file.text.content[start:end].split())
+
+
+def _declaration(file: File, element: Any) -> str:
+    start, end = span(file, element)
+    content = file.text.content
+    line = content.rfind("\n", 0, start) + 1
+    lead = " " * (start - line)
+    lines = dedent(lead + content[start:end]).split("\n")
+    if isinstance(element, rsc.Base):
+        return f"{lines[0].rstrip()} … }}"
+    return "\n".join(lines if len(lines) <= _LINES else [*lines[:_LINES], "…"])
+
+
+def _uses(reading: Reading, element: Any) -> Iterator[tuple[File, Reference]]:
+    for file in reading.files.values():
+        yield from ((file, name) for name in file.names if name.target is element and not name.is_declaration)
+
+
+def _meaning(reading: Reading, file: File, element: Any) -> Iterator[str]:  # noqa: C901 - a case a class
+    match element:
+        case rsc.State():
+            yield from _state(reading, file, element)
+        case rsc.RequirementState():
+            yield _flags(element, "of the requirement")
+        case rsc.Variable():
+            assigned = [
+                f"line {use_file.text.span(name.start, name.end).line}"
+                for use_file, name in _uses(reading, element)
+                if isinstance(name.user.eContainer(), rsc.Assignment) and name.user.eContainer().item is name.user
+            ]
+            yield f"Variable of `{_component_name(element)}`, " + (
+                f"assigned in {enumeration(dict.fromkeys(assigned)).replace(' or ', ' and ')}."
+                if assigned
+                else "never assigned."
+            )
+        case rsc.CommunicationType():
+            yield from _communication(file, element)
+        case rsc.Constant():
+            value = constant_value(element.value)
+            yield "Constant" + ("." if value is None else f", `{_value_text(value)}`.")
+        case rsc.Parameter():
+            yield "Parameter: set on the robot, as a ROS parameter of its node; this is its default."
+        case rsc.Condition():
+            yield "Condition: stands for its expression wherever it is named."
+        case rsc.EnumDataType():
+            values = dict.fromkeys(f"`{rule.value.name}`" for rule in element.rules if rule.value)
+            if values:
+                yield f"Turns data of type `{type_text(element.type)}` into {enumeration(values)}."
+        case rsc.EnumValue():
+            rule = element.eContainer()
+            when = f"where `{_source(file, rule.condition)}`" if hasattr(rule, "condition") else "where no rule holds"
+            yield f"Value of enum `{rule.eContainer().name}`: {when}."
+        case rsc.Component() if element.parameters:
+            yield "Template: a component is made of it by `is` or `import`."
+        case rsc.Requirement() | rsc.Property():
+            yield _stated(file, element)
+
+
+def _state(reading: Reading, file: File, state: rsc.State) -> Iterator[str]:
+    yield _flags(state, f"of `{_component_name(state)}`")
+    leaving = [
+        f"{event_text(transition, file)} → `{transition.target.name}`"
+        for transition in state.transitions
+        if transition.target is not None
+    ]
+    if leaving:
+        yield "Left on:\n" + "\n".join(f"- {line}" for line in leaving)
+    reached = []
+    for use_file, name in _uses(reading, state):
+        if isinstance(name.user, rsc.Transition) and name.feature == "target":
+            around = name.user.eContainer()
+            source = f"`{around.name}`" if isinstance(around, rsc.State) else "any state"
+            reached.append(f"{event_text(name.user, use_file)}, from {source}")
+    if reached:
+        yield "Reached on:\n" + "\n".join(f"- {line}" for line in reached)
+
+
+def _flags(state: Any, owner: str) -> str:
+    words = [word for word, is_set in (("initial", state.initial), ("marked", state.marked)) if is_set]
+    told = f"{' and '.join(words).capitalize()} state" if words else "State"
+    marked = ": the supervisor makes sure that such a state can always be reached" if state.marked else ""
+    return f"{told} {owner}{marked}."
+
+
+def _communication(file: File, communication: rsc.CommunicationType) -> Iterator[str]:
+    if isinstance(communication, rsc.Message):
+        incoming = communication.direction == rsc.MessageDirection.incoming
+        yield (
+            "Message to the robot's nodes: the controller decides when it is sent; requirements can forbid it."
+            if incoming
+            else "Message from the robot's nodes: it comes when it comes; no requirement can keep it back."
+        )
+    else:
+        kind = "Service" if isinstance(communication, rsc.Service) else "Action"
+        names = enumeration(f"`{row.name}`" for row in events(communication) if row.name)
+        yield f"{kind} that the controller calls: requirements can forbid the request. Its events are {names}."
+    for row, declared in carried(communication):
+        if not isinstance(declared, rsc.NoneDataType):
+            yield f"- data of its {row.name}: `{type_text(declared)}`"
+    if communication.identifier:
+        yield f"ROS name: `{communication.identifier}`."
+    elif communication.computedIdentifier is not None:
+        yield f"ROS name: `{_source(file, communication.computedIdentifier)}`."
+
+
+def _stated(file: File, element: Any) -> str:
+    """What a requirement or a property demands, as a sentence."""
+    target = _source(file, getattr(element, "target", None)).strip("{} ")
+    condition = _source(file, getattr(element, "condition", None))
+    anchor = _source(file, getattr(element, "anchor", None))
+    match element:
+        case rsc.NeedsRequirement():
+            return f"The supervisor lets `{target}` start only while `{condition}` holds."
+        case rsc.DisablesRequirement():
+            return f"The supervisor does not let `{target}` start while `{condition}` holds."
+        case rsc.StateInvariant():
+            never = element.kind == rsc.InvariantKind.never
+            return f"The supervised robot is {'never' if never else 'always'} in a state in which `{condition}` holds."
+        case rsc.OrderRequirement():
+            fresh = "each time anew" if element.each else "at least once"
+            return f"`{target}` happens only after `{anchor}` has happened, {fresh}."
+        case rsc.CountRequirement():
+            bound = _source(file, element.bound)
+            return f"`{target}` happens at most {bound} times until `{anchor}` happens again."
+        case rsc.AutomatonRequirement():
+            return "Of the events that it names only what its present state has a transition for may happen."
+        case rsc.InvariantProperty():
+            never = element.kind == rsc.InvariantKind.never
+            return f"`verify` proves that `{condition}` {'never' if never else 'always'} holds, or refutes it."
+    premise = _source(file, element.premise) if element.premise is not None else None
+    start = "every state" if premise is None else f"every state with `{premise}`"
+    return f"`verify` proves that from {start} a state with `{condition}` can be reached, or refutes it."
+
+
+def _component_name(element: Any) -> str:
+    around = element
+    while around is not None and not isinstance(around, rsc.Component):
+        around = around.eContainer()
+    return "…" if around is None else str(around.name)
+
+
+def _value_text(value: Any) -> str:
+    if isinstance(value, bool):
+        return str(value).lower()
+    return str(getattr(value, "name", value)) if isinstance(value, ex.NamedElement) else repr(value).replace("'", '"')

@@ -1,0 +1,116 @@
+"""The outline of a text for those who look through it: what it defines, and what is in what."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from robosc.metamodel import robosc as rsc
+from robosc.metamodel.reflection import tree
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from robosc.language.scopes import File
+
+#: What has a place of its own in the outline, though it may have no name.
+_ITEMS = (rsc.Requirement, rsc.Property, rsc.ProvideStatement, rsc.ComponentBehaviour)
+#: Names inside of expressions and heads.
+_HIDDEN = (rsc.FormalParameter, rsc.ArrayElement)
+#: What opens and closes in lines of its own.
+_FOLDED = (
+    rsc.Base,
+    rsc.Component,
+    rsc.ComponentBehaviour,
+    rsc.State,
+    rsc.ComplexDataType,
+    rsc.AutomatonRequirement,
+    rsc.RequirementState,
+    rsc.ObjectValue,
+    rsc.CommunicationTypeSet,
+)
+
+
+@dataclass(frozen=True)
+class Item:
+    """A definition: what to call it, its range and that of its name (offsets), and the definitions in it."""
+
+    element: Any
+    name: str
+    start: int
+    end: int
+    name_start: int
+    name_end: int
+    items: list[Item] = field(default_factory=list)
+
+
+def outline(file: File) -> list[Item]:
+    """The definitions of a text, as far as it could be read, each in the one that it stands in."""
+    roots: list[Item] = []
+    found: dict[Any, Item] = {}
+    for element in _elements(file):
+        name = file.declared_names.get(element)
+        if isinstance(element, _HIDDEN) or (name is None and not isinstance(element, _ITEMS)):
+            continue
+        start, end = span(file, element)
+        if name is not None:
+            item = Item(element, name.text or "…", start, end, name.start, name.end)
+        else:
+            line_end = file.text.content.find("\n", start, end)
+            first_end = end if line_end < 0 else line_end
+            label = " ".join(file.text.content[start:first_end].removesuffix("{").split()) or "…"
+            item = Item(element, label, start, end, start, first_end)
+        around = element.eContainer()
+        while around is not None and around not in found:
+            around = around.eContainer()
+        found[element] = item
+        (roots if around is None else found[around].items).append(item)
+    return roots
+
+
+def folds(file: File) -> list[tuple[int, int]]:
+    """The ranges of a text that can be folded (offsets): definitions of several lines, each up to its last brace."""
+    return [span(file, element) for element in _elements(file) if isinstance(element, _FOLDED)]
+
+
+def around(file: File, offset: int) -> list[tuple[int, int]]:
+    """The ranges of all elements that an offset lies in or right behind, from the innermost to the whole text."""
+    found = {(0, len(file.text.content))}
+    name = file.name_at(offset)
+    if name is not None:
+        found.add((name.start, name.end))
+    for element in _elements(file):
+        start, end = span(file, element)
+        if start <= offset <= end:
+            found.add((start, end))
+    # What does not lie within the one before is no step outwards.
+    ranges: list[tuple[int, int]] = []
+    for start, end in sorted(found, key=lambda place: (place[1] - place[0], place)):
+        if not ranges or (start <= ranges[-1][0] and ranges[-1][1] <= end):
+            ranges.append((start, end))
+    return ranges
+
+
+def span(file: File, element: Any) -> tuple[int, int]:
+    """The range of an element in its text (offsets)."""
+    place = element.source.span
+    start = file.text.offset(place.line, place.column)
+    return start, max(start, file.text.offset(place.end_line, place.end_column))
+
+
+def _elements(file: File) -> Iterator[Any]:
+    """All elements that stand in the text itself, each before what it contains."""
+    for _, element in tree(file.base) if file.base is not None else ():
+        if element.source is not None and not _made(element):
+            yield element
+
+
+def _made(element: Any) -> bool:
+    """Whether an element was made of a definition of ROS, and so stands in no text."""
+    around: Any = element
+    while around is not None:
+        outer = around.eContainer()
+        if isinstance(outer, rsc.InterfaceTypeReference):
+            return True
+        around = None if isinstance(around, rsc.Definition) else outer
+    return False
