@@ -64,7 +64,7 @@ class Project:
         folder = self.folders[0] if self.folders else Path.cwd()
         return folder / quote(uri, safe="")
 
-    def open(self, uri: str, version: int | None, content: str) -> Path:
+    def put(self, uri: str, version: int | None, content: str) -> Path:
         """Puts a text in place of a file, or what it is now in place of what it was."""
         path = self.path(uri)
         if path not in self._documents:
@@ -80,7 +80,7 @@ class Project:
         content = document.content
         for place, text in changes:
             content = text if place is None else _replaced(content, place, text)
-        self.open(uri, version, content)
+        self.put(uri, version, content)
 
     def close(self, uri: str) -> None:
         """Lets the file count again."""

@@ -178,7 +178,7 @@ def _register_texts(server: Server) -> None:
     @server.feature(types.TEXT_DOCUMENT_DID_OPEN)
     def did_open(params: types.DidOpenTextDocumentParams) -> None:
         opened = params.text_document
-        server.tell_again(server.project.open(opened.uri, opened.version, opened.text))
+        server.tell_again(server.project.put(opened.uri, opened.version, opened.text))
         server.changed()
 
     @server.feature(types.TEXT_DOCUMENT_DID_CHANGE)

@@ -25,6 +25,7 @@ COMMANDS = [
     "run",
     "format",
     "rule",
+    "lsp",
     "diagram",
 ]
 

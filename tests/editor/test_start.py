@@ -11,7 +11,7 @@ from click.testing import CliRunner
 from lsprotocol import types
 
 from robosc.cli import main
-from tests.editor.server import COMMAND, ROBOT, ROOT, Editor, findings, initialize, open_text
+from tests.editor.server import COMMAND, LIBRARY, ROBOT, ROOT, Editor, findings, initialize, open_text
 
 
 @pytest.mark.asyncio
@@ -38,8 +38,6 @@ async def test_over_a_port(tmp_path: Path) -> None:
 
 @pytest.mark.asyncio
 async def test_libraries_of_the_call_and_of_the_editor(tmp_path: Path) -> None:
-    from tests.editor.server import LIBRARY
-
     for folder, name in (("first", "Wheels"), ("second", "Feet")):
         (tmp_path / folder).mkdir()
         (tmp_path / folder / "library.rscd").write_text(LIBRARY.replace("Wheels", name))
