@@ -253,7 +253,8 @@ def find(folder: Path) -> Path | None:
     for _ in range(SEARCH_DEPTH + 1):
         found = [folder / FILE_NAME for folder in level if (folder / FILE_NAME).is_file()]
         if len(found) > 1:
-            names = " and ".join(f"{file.relative_to(folder)}" for file in found)
+            names = " and ".join(f"{file.relative_to(folder)}" for file in found[:2])
+            names += f" and {len(found) - 2} more" if len(found) > 2 else ""
             message = f"the model's folder has several configurations: {names}"
             raise ModelError([_error(str(found[1]), message, hint="choose one with --config")])
         if found:

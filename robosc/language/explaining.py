@@ -6,7 +6,7 @@ from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from robosc.language.grammar import first, is_reserved
-from robosc.language.outline import RULES
+from robosc.language.outline import COMPONENT, DEFINITIONS, RULES
 from robosc.language.text import Repair
 from robosc.language.tokens import Kind, Token
 from robosc.semantics.naming import enumeration, written
@@ -79,6 +79,8 @@ BASIC_TYPES = {
     **dict.fromkeys(("str", "String", "text"), "string"),
     **dict.fromkeys(("void", "empty", "Empty"), "none"),
 }
+#: Where the items of a level stand.
+_PLACES = ((DEFINITIONS, "the robot", "a library"), (COMPONENT, "a component"))
 _RULES = {
     "Name": "a name",
     "UnreservedName": "a name",
@@ -214,6 +216,9 @@ def _word_hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) 
     for word in (token, tokens[index - 1]):  # Where a name can stand, a word that was meant otherwise is read as one.
         if word.text in _MEANT and word.kind is Kind.WORD:
             return _MEANT[word.text]
+    places = [place for level, *places in _PLACES if level.starter(token) == token.text for place in places]
+    if places and index == block.first and block.level not in (DEFINITIONS, COMPONENT):
+        return f"such a definition stands in {enumeration(places)}"
     if not token.text.removeprefix("^").isascii():
         return "a name is made of the letters a to z and A to Z, of digits and of `_`"
     if token.text == "if" and tokens[block.first].is_keyword("on"):

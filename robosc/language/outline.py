@@ -169,14 +169,15 @@ class Outline:
         """Whether an item of a level around the last one begins here. Where it may belong to either, its column says.
 
         That is so with braces that do not match: then a definition that stands no further in than the one around it
-        was meant to stand beside it.
+        was meant to stand beside it. With braces that match, one that stands further in can't stand where it does.
         """
         if not self._outer(levels):
             return False
-        if not self._starts(levels[-1]):
-            return True
         token = self._tokens[self._at]
-        return self._unmatched and token.is_first and token.column <= self._columns[-1]
+        further_in = token.is_first and token.column > self._columns[-1]
+        if not self._starts(levels[-1]):
+            return self._unmatched or not further_in
+        return self._unmatched and token.is_first and not further_in
 
     def _item(self, levels: tuple[Level, ...]) -> Block:
         level, first, mended = levels[-1], self._at, len(self.braces)

@@ -98,12 +98,13 @@ def _tokens(text: str) -> Iterator[Token]:
     for found in _TOKEN.finditer(text):
         if found.lastgroup is None:
             continue
-        kind, word = _KINDS[found.lastgroup], found.group()
-        is_name = kind is Kind.WORD and (word.startswith("^") or previous.is_keyword(*_BEFORE_NAMES))
-        line = text.rfind("\n", previous.end, found.start())
+        kind, (start, end) = _KINDS[found.lastgroup], found.span()
+        word = text[start:end]
+        is_name = kind is Kind.WORD and (word[0] == "^" or previous.is_keyword(*_BEFORE_NAMES))
+        line = text.rfind("\n", previous.end, start) if start > previous.end else -1
         if line >= 0:
             start_of_line = line + 1
-        previous = Token(kind, word, found.start(), found.end(), is_name, line >= 0, found.start() - start_of_line)
+        previous = Token(kind, word, start, end, is_name, line >= 0, start - start_of_line)
         yield previous
     # The end stands right after the last token, where a reader looks for what is missing.
     yield Token(Kind.END, "", previous.end, previous.end)

@@ -97,6 +97,8 @@ FAULTS = [
     ("initial marked state", "intial marked state", "intial", "did you mean `initial`?"),
     ("state driving {", "state driving", "transition", "expected `{`"),
     ("state driving {", "state driving { {", "{", "one too many"),
+    ("behaviour {", "behaviour {\n parameter pace: double = 1.0", "parameter", "the robot, a library or a component"),
+    ("behaviour {", "behaviour {\n constant pace: double = 1.0", "constant", "a definition stands in the robot"),
     ("goto driving\n      }", "goto driving\n", "state", "the `{` in line 22 is not closed"),
     ("goto waiting\n      }", "goto waiting\n      } }", "}", "one too many"),
     ("on response from scan", "on respons from scan", "respons", "did you mean `response`?"),
