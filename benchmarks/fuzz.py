@@ -40,8 +40,10 @@ from tests.fuzz.valid import checked, compared, compiled, valid_robot  # noqa: E
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-#: Seconds of the processor that one model may take, and bytes of memory beside what the program takes itself.
+#: Seconds of the processor that a mutant may take, and bytes of memory beside what the program takes itself.
 LIMIT, MEMORY = 10, 10**9
+#: Seconds of the processor for a valid robot: the second opinions of the tests take most of them.
+VALID_LIMIT = 60
 CHUNKS = {"mutants": 100, "valid": 25}
 CALLED_EACH, SAVED_EACH, SPECIAL_EACH, BROKEN_OFF_EACH = 100, 5, 50, 100
 #: What is tried of a number that stands for no text of a model.
@@ -57,14 +59,14 @@ class Result:
     largest: tuple[int, int] = (0, 0)
     failures: list[tuple[int, str]] = field(default_factory=list)
 
-    def try_one(self, seed: int, trial: Callable[..., Any], *arguments: object) -> Any:
+    def try_one(self, seed: int, trial: Callable[..., Any], *arguments: object, limit: int = LIMIT) -> Any:
         """What a trial of these arguments returns; None where it fails."""
         began = process_time()
         _forget_peak()
         # What no signal can stop ends with its process.
-        faulthandler.dump_traceback_later(20 * LIMIT, exit=True)
+        faulthandler.dump_traceback_later(20 * limit, exit=True)
         try:
-            with time_limit(LIMIT):
+            with time_limit(limit):
                 return trial(*arguments)
         except Exception as error:
             place = traceback.extract_tb(error.__traceback__)[-1]
@@ -132,14 +134,14 @@ def valid(seeds: range) -> Result:
     with tempfile.TemporaryDirectory() as name:
         folder, robots = Path(name), []
         for seed in seeds:
-            found = result.try_one(seed, checked, seed, folder / "robot.rscd")
+            found = result.try_one(seed, checked, seed, folder / "robot.rscd", limit=VALID_LIMIT)
             if found is not None:
                 outcome, robot = found
                 result.statuses[f"exit status {outcome.status}"] += 1
                 robots += [robot] if robot else []
-        built = result.try_one(seeds[0], compiled, robots, folder, ["-O0"]) if robots else None
+        built = result.try_one(seeds[0], compiled, robots, folder, ["-O0"], limit=VALID_LIMIT) if robots else None
         for robot in robots if built else ():
-            result.try_one(robot.seed, compared, robot, built)
+            result.try_one(robot.seed, compared, robot, built, limit=VALID_LIMIT)
         result.statuses["compiled and compared"] += len(robots) if built else 0
     return result
 

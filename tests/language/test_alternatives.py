@@ -103,6 +103,18 @@ def test_conditions_read_the_values_before_the_event() -> None:
     assert seen == [(1, False), (2, True), (1, False), (2, True)]
 
 
+@pytest.mark.parametrize(
+    "asked", ["false != (if Base.idle then near else false)", "!(if left > 1 then near else true)"]
+)
+def test_conditions_of_choices_beside_data(asked: str) -> None:
+    """Whatever holds, one transition is taken: the guards of these know that those before them cover the rest."""
+    free = f"on response from scan if ({asked}) or !value.ok do left := 1 on response from scan do near := true"
+    engine = running(_cart(free, blocked="transition if left = 5"))
+    for ok, state in ((True, (0, True)), (False, (1, True))):
+        engine.perform(_SCAN, {"i_response_ok": ok})
+        assert (engine.state["Lidar.left"], engine.state["Lidar.near"]) == state
+
+
 def test_guards_that_read_what_the_event_changes() -> None:
     """Conditions read the values before the event", also those of another component that the event moves."""
     text = """robot Pair {

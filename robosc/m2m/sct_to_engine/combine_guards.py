@@ -76,8 +76,7 @@ def _one_of(edges: Sequence[sct.Edge], lower: Lowering) -> Term:
         left = terms.junction(engine.And, [part for part in parts if part not in denied])
         found = left.operands if left.operator is engine.Or else (left,)
         alternatives |= dict.fromkeys(found)
-        opposites = terms.complements(term for part in found for term in part.below())
-        denied |= {opposites[part] for part in found}
+        denied |= {terms.opposite(part) for part in found}
     whole = terms.junction(engine.Or, alternatives)
     if any(isinstance(read, engine.Input) for read in whole.reads()):
         raise ValueError(

@@ -143,8 +143,8 @@ def _find(guards: Iterable[GuardTerms], terms: Terms, *, incremental: bool) -> t
     number = {term: position for position, term in enumerate(order)}
     opposites = {
         term: opposite
-        for term, opposite in terms.complements(order).items()
-        if term.operator in _JUNCTIONS and number.get(opposite, len(order)) < number[term]
+        for term in order
+        if term.operator in _JUNCTIONS and number.get(opposite := terms.opposite(term), len(order)) < number[term]
     }
     shared = []
     for term in reversed(order):

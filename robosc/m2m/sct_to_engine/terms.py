@@ -90,6 +90,7 @@ class Terms:
     def __init__(self) -> None:
         self._made: dict[Hashable, Term] = {}
         self._tables: dict[Term, int] = {}
+        self._opposites: dict[Term, Term] = {}
         self._positions: dict[sct.Location, int] = {}
         self.true = self.constant(None, 1)
         self.false = self.constant(None, 0)
@@ -174,7 +175,7 @@ class Terms:
             if side.constant is None:
                 continue
             if other.sort is None:
-                return other if (side is self.true) is (kind is ex.Equation) else self.negation(other)
+                return other if (side is self.true) is (kind is ex.Equation) else self.opposite(other)
             # Not above the least value, not below the greatest: to be it.
             smaller, greater = (ex.LessOrEqual, ex.GreaterOrEqual)[:: 1 if side is right else -1]
             if (kind is smaller and side.values.low == other.values.low) or (
@@ -198,7 +199,7 @@ class Terms:
         return self._make(kind, (left, right), None, None, _interval(kind, left, right))
 
     def negation(self, condition: Term) -> Term:
-        """The opposite of a condition: of a comparison the complementary one."""
+        """The opposite of a condition that is no junction and no choice: of a comparison the complementary one."""
         if condition.operator in COMPLEMENTS:
             return self._comparison(COMPLEMENTS[condition.operator], *condition.operands)
         if condition.operator is ex.Negation:
@@ -218,19 +219,29 @@ class Terms:
             return next(iter(parts), neutral)
         return self._make(kind, tuple(parts), None, None, BOOLEAN)
 
-    def complements(self, conditions: Iterable[Term]) -> dict[Term, Term]:
-        """The opposites of conditions, each after its operands; junctions and choices are turned inside out."""
-        opposite: dict[Term, Term] = {}
-        for condition in conditions:
-            if condition.operator in (engine.And, engine.Or):
-                kind = engine.Or if condition.operator is engine.And else engine.And
-                opposite[condition] = self.junction(kind, [opposite[operand] for operand in condition.operands])
-            elif condition.operator is ex.Conditional and condition.sort is None:
-                chosen, *branches = condition.operands
-                opposite[condition] = self.operation(ex.Conditional, chosen, *(opposite[branch] for branch in branches))
-            elif condition.sort is None:
-                opposite[condition] = self.negation(condition)
-        return opposite
+    def opposite(self, condition: Term) -> Term:
+        """The opposite of a condition, of any class: junctions and choices are turned inside out."""
+        opposites, pending = self._opposites, [condition]
+        while pending:
+            term = pending[-1]
+            parts: tuple[Term, ...] = ()
+            if term.operator in (engine.And, engine.Or):
+                parts = term.operands
+            elif term.operator is ex.Conditional:
+                parts = term.operands[1:]
+            missing = [part for part in parts if part not in opposites]
+            if missing:
+                pending += missing
+                continue
+            turned = [opposites[part] for part in parts]
+            if term.operator is ex.Conditional:
+                opposites[term] = self.operation(ex.Conditional, term.operands[0], *turned)
+            elif parts:
+                opposites[term] = self.junction(engine.Or if term.operator is engine.And else engine.And, turned)
+            else:
+                opposites[term] = self.negation(term)
+            pending.pop()
+        return opposites[condition]
 
     def _contradictory(self, kind: type[engine.And | engine.Or], parts: Iterable[Term]) -> bool:
         """Whether some of the parts, all on one variable or location, decide the junction whatever its value is."""

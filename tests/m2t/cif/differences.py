@@ -1,6 +1,6 @@
 """How a model read back from CIF differs from the one it was generated from."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from itertools import product, zip_longest
 from typing import Any
 
@@ -8,7 +8,7 @@ from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 from robosc.metamodel.reflection import contents, tree
 from robosc.semantics.edges import edges_from, edges_of
-from robosc.semantics.evaluation import evaluate, saturate
+from robosc.semantics.evaluation import Program, saturate
 
 #: Valuations that two expressions are compared under.
 _MOST = 400
@@ -113,8 +113,9 @@ class _Comparison:
             if _shape(mine) != _shape(yours):
                 yield f"{what} is {_shape(yours)}, not {_shape(mine)}"
         else:
+            programs = [_program(side) for side in (mine, yours)]
             for state in _states(mine, yours):
-                first, second = _value(mine, state, target), _value(yours, state, target)
+                first, second = (_fitted(program(state), target) for program in programs)
                 if first != second:
                     yield f"{what} is {second}, not {first}, where {state}"
                     return
@@ -123,7 +124,7 @@ class _Comparison:
 def _never(event: Any, plants: Any) -> bool:
     guards = [edge.guard for plant in plants for edge in edges_of(plant) if edge.event is event]
     return bool(guards) and not any(
-        guard is None or any(_value(guard, state, None) for state in _states(guard, guard)) for guard in guards
+        guard is None or any(map(_program(guard), _states(guard, guard))) for guard in guards
     )
 
 
@@ -172,18 +173,26 @@ def _states(mine: Any, yours: Any) -> list[dict[str, Any]]:
     return [dict(zip(cells, values, strict=True)) for values in [*all_states[::step], all_states[-1]]]
 
 
-def _value(expression: Any, state: dict[str, Any], target: Any) -> Any:
-    def read(reference: Any) -> Any:
+def _program(expression: Any) -> Program[Any]:
+    """The expression as a program over a state."""
+
+    def reader(reference: Any) -> Callable[[dict[str, Any]], Any]:
         match reference:
             case sct.VariableReference():
-                return state[_name(reference.variable)]
+                variable = _name(reference.variable)
+                return lambda state: state[variable]
             case sct.InputReference():
-                return state[_name(reference.input)]
+                given = _name(reference.input)
+                return lambda state: state[given]
             case sct.LocationReference():
-                return state[reference.location.eContainer().name] == _index(reference.location)
-        return reference.literal.name
+                plant, location = reference.location.eContainer().name, _index(reference.location)
+                return lambda state: state[plant] == location
+        return lambda _state: reference.literal.name
 
-    value = evaluate(expression, read)
+    return Program(expression, reader)
+
+
+def _fitted(value: Any, target: Any) -> Any:
     if isinstance(target, ex.IntegerType):
         assert isinstance(value, int)
         return saturate(value, target.minimum, target.maximum)
