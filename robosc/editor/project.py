@@ -8,7 +8,7 @@ from __future__ import annotations
 import gc
 import os
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -26,6 +26,8 @@ from robosc.ros_types import RosTypes
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
     from typing import Any
+
+    from lsprotocol import types
 
     from robosc.diagnostics import Diagnostic
     from robosc.language import File, Reading, Reference
@@ -105,6 +107,17 @@ class Project:
 
 #: The first line and unit, the last line and unit.
 Range = tuple[int, int, int, int]
+
+
+def edited(content: str, edits: Iterable[types.TextEdit]) -> str:
+    """A text after edits that do not overlap."""
+    places = [
+        ((edit.range.start.line, edit.range.start.character, edit.range.end.line, edit.range.end.character), edit)
+        for edit in edits
+    ]
+    for place, edit in sorted(places, key=lambda found: found[0], reverse=True):
+        content = _replaced(content, place, edit.new_text)
+    return content
 
 
 def _replaced(content: str, place: Range, text: str) -> str:
@@ -224,12 +237,9 @@ class Snapshot:
             for path, document in self.documents.items()
         }
 
-    def open_analyses(self) -> Iterator[Analysis]:
-        """The analyses of all open texts."""
-        for path in self.documents:
-            analysis = self.analysis(path)
-            if analysis is not None:
-                yield analysis
+    def with_documents(self, documents: Mapping[Path, Document]) -> Snapshot:
+        """The project as it would be with other texts."""
+        return replace(self, documents=documents, memory=_Memory())
 
     def models(self) -> list[Path]:
         """All texts that the editor has open or that are in its folders, without those in hidden folders."""

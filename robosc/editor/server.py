@@ -21,8 +21,10 @@ from pygls.lsp.server import LanguageServer
 from pygls.protocol import LanguageServerProtocol, lsp_method
 
 from robosc.editor import reading
+from robosc.editor.colours import LEGEND, semantic_tokens
 from robosc.editor.findings import published
 from robosc.editor.project import Project
+from robosc.editor.renaming import prepare_rename, rename
 from robosc.language.grammar import language
 
 if TYPE_CHECKING:
@@ -35,7 +37,7 @@ _Answer = TypeVar("_Answer")
 #: How long after the last key findings are looked for, in seconds, where the editor sets nothing else.
 _PAUSE = 0.15
 #: What is asked about one text, and what answers it: of the project, of the text, and of what was asked.
-_ANSWERS: Mapping[str, Callable[[Snapshot, Analysis, Any], Any]] = {
+ANSWERS: Mapping[str, Callable[[Snapshot, Analysis, Any], Any]] = {
     types.TEXT_DOCUMENT_DOCUMENT_SYMBOL: reading.symbols,
     types.TEXT_DOCUMENT_FOLDING_RANGE: reading.folding_ranges,
     types.TEXT_DOCUMENT_SELECTION_RANGE: reading.selection_ranges,
@@ -44,6 +46,13 @@ _ANSWERS: Mapping[str, Callable[[Snapshot, Analysis, Any], Any]] = {
     types.TEXT_DOCUMENT_DOCUMENT_HIGHLIGHT: reading.highlights,
     types.TEXT_DOCUMENT_FORMATTING: reading.formatting,
     types.TEXT_DOCUMENT_RANGE_FORMATTING: reading.range_formatting,
+    types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL: semantic_tokens,
+    types.TEXT_DOCUMENT_PREPARE_RENAME: prepare_rename,
+    types.TEXT_DOCUMENT_RENAME: rename,
+}
+_OPTIONS: Mapping[str, Any] = {
+    types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL: LEGEND,
+    types.TEXT_DOCUMENT_RENAME: types.RenameOptions(prepare_provider=True),
 }
 _CONTENT_MODIFIED = int(types.LSPErrorCodes.ContentModified)
 
@@ -228,8 +237,8 @@ def _place(change: types.TextDocumentContentChangeEvent) -> tuple[int, int, int,
 
 
 def _register_answers(server: Server) -> None:
-    for method, job in _ANSWERS.items():
-        server.feature(method)(_handler(server, job))
+    for method, job in ANSWERS.items():
+        server.feature(method, _OPTIONS.get(method))(_handler(server, job))
 
     @server.feature(types.TEXT_DOCUMENT_DEFINITION)
     async def definition(params: types.DefinitionParams) -> list[types.LocationLink] | list[types.Location] | None:

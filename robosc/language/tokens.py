@@ -110,6 +110,11 @@ def _tokens(text: str) -> Iterator[Token]:
     yield Token(Kind.END, "", previous.end, previous.end)
 
 
+def is_name(word: str) -> bool:
+    """Whether a word can be a name, if need be with a `^` before it."""
+    return re.fullmatch(pattern("Name"), word) is not None
+
+
 #: How deep brackets and signs may be nested, and how many operators one expression may have: what reads the model
 #: follows it by calls inside each other, which Python bounds.
 DEEPEST = 50

@@ -6,7 +6,9 @@ from pathlib import Path
 import pytest
 import pytest_lsp
 from lsprotocol import types
+from pygls.exceptions import JsonRpcException
 
+from robosc.editor.colours import LEGEND
 from robosc.language.formatting import format_text
 from robosc.language.text import Text
 from tests.editor.server import (
@@ -295,3 +297,58 @@ async def test_what_is_no_file_is_read_too(client: Editor) -> None:
 async def test_no_text_no_answer(client: Editor, folder: Path) -> None:
     uri = (folder / "nowhere.rscd").as_uri()
     assert await client.text_document_hover_async(types.HoverParams(**at(uri, types.Position(0, 0)))) is None
+
+
+async def test_semantic_tokens(client: Editor, folder: Path) -> None:
+    text = ROBOT.replace("// Where the cart may go.", "/* 🚪\n  two lines */")
+    uri, _ = await opened(client, folder / "tokens.rscd", text)
+    told = await client.text_document_semantic_tokens_full_async(_about(uri, types.SemanticTokensParams))
+    legend = LEGEND.token_types
+    words, line, unit = [], 0, 0
+    for index in range(0, len(told.data), 5):
+        down, right, length, kind, modifiers = told.data[index : index + 5]
+        line, unit = line + down, right + (0 if down else unit)
+        place = types.Range(types.Position(line, unit), types.Position(line, unit + length))
+        words.append((of(text, place), legend[kind], modifiers))
+    assert words[:8] == [
+        ("robot", "keyword", 0),
+        ("Cart", "namespace", 1),
+        ("component", "keyword", 0),
+        ("Base", "class", 1),
+        ("from", "keyword", 0),
+        ("Wheels", "namespace", 0),
+        ("import", "keyword", 0),
+        ("Motors", "class", 0),
+    ]
+    assert ("/* 🚪", "comment", 0) in words
+    assert ("two lines */", "comment", 0) in [(word.strip(), kind, modifiers) for word, kind, modifiers in words]
+    assert {word: kind for word, kind, _ in words if kind not in {"keyword", "comment"}} == {
+        "Cart": "namespace",
+        "Wheels": "namespace",
+        "Base": "class",
+        "Motors": "class",
+        "Door": "class",
+        "opened": "event",
+        "drive": "event",
+        "closed": "enumMember",
+        "open": "enumMember",
+        "R1": "property",
+        '"/door"': "string",
+        '"only through an open door"': "string",
+        "0.5": "number",
+        "boolean": "type",
+        "!": "operator",
+    }
+    close(client, uri)
+
+
+async def test_rename_over_the_protocol(client: Editor, folder: Path) -> None:
+    uri, _ = await opened(client, folder / "rename.rscd", ROBOT)
+    where = at(uri, position(ROBOT, "Door {"))
+    ready = await client.text_document_prepare_rename_async(types.PrepareRenameParams(**where))
+    assert ready.placeholder == "Door"
+    answer = await client.text_document_rename_async(types.RenameParams(**where, new_name="Gate"))
+    assert [edit.new_text for edit in answer.changes[uri]] == ["Gate", "Gate"]
+    with pytest.raises(JsonRpcException, match="would change what rename"):
+        await client.text_document_rename_async(types.RenameParams(**where, new_name="Base"))
+    close(client, uri)

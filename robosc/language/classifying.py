@@ -1,0 +1,102 @@
+"""What each word of a text is, for those who colour it."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from robosc.language.grammar import pattern, words_of
+from robosc.language.tokens import Kind, Tokens
+from robosc.metamodel import robosc as rsc
+from robosc.semantics.operators import FUNCTIONS
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from robosc.language.scopes import File, Reference
+
+#: What a name stands for, by the class of its element.
+_CLASSES: dict[type, str] = {
+    rsc.Base: "namespace",
+    rsc.Component: "class",
+    rsc.CommunicationType: "event",
+    rsc.State: "enumMember",
+    rsc.RequirementState: "enumMember",
+    rsc.EnumValue: "enumMember",
+    rsc.Variable: "variable",
+    rsc.ArrayElement: "variable",
+    rsc.Constant: "variable",
+    rsc.Condition: "variable",
+    rsc.Parameter: "parameter",
+    rsc.FormalParameter: "parameter",
+    rsc.Interface: "interface",
+    rsc.EnumDataType: "enum",
+    rsc.ObjectDataType: "struct",
+    rsc.ObjectProperty: "property",
+    rsc.Function: "function",
+    rsc.Requirement: "property",
+    rsc.Property: "property",
+}
+CLASSES = (*dict.fromkeys(_CLASSES.values()), "type", "keyword", "comment", "string", "number", "operator")
+_READONLY = (rsc.Constant, rsc.Condition, rsc.FormalParameter, rsc.EnumValue)
+_TYPES = {"boolean", "integer", "double", "string", "none", "array"}
+_KINDS = {Kind.NUMBER: "number", Kind.STRING: "string", Kind.OPEN_STRING: "string", Kind.OPEN_COMMENT: "comment"}
+_QUANTIFIERS = {"all", "any", "count"}
+_BRACKETS = set("{}()[],.:;")
+_STRING_OR_COMMENT = re.compile(rf"{pattern('String')}|(?P<comment>{pattern('Comment')})")
+
+
+class Word(NamedTuple):
+    """A word or comment: its range (offsets), one of `CLASSES`; whether it declares, or names what never changes."""
+
+    start: int
+    end: int
+    what: str
+    declares: bool = False
+    readonly: bool = False
+
+
+def classify(file: File) -> list[Word]:
+    """The words of a text whose meaning is known, in order."""
+    names = {name.start: name for name in file.names}
+    found = [*_comments(file.text.content), *_words(file.text.content, names)]
+    return sorted(found)
+
+
+def _comments(content: str) -> Iterator[Word]:
+    for match in _STRING_OR_COMMENT.finditer(content):
+        if match["comment"] is not None:
+            yield Word(match.start(), match.end(), "comment")
+
+
+def _words(content: str, names: dict[int, Reference]) -> Iterator[Word]:
+    end = 0
+    for token in Tokens(content):
+        if token.start < end:
+            continue
+        name = names.get(token.start)
+        if token.kind in _KINDS:
+            yield Word(token.start, token.end, _KINDS[token.kind])
+        elif token.kind is Kind.SYMBOL:
+            if token.text not in _BRACKETS:
+                yield Word(token.start, token.end, "operator")
+        elif name is not None and (what := _what(name.target)) is not None:
+            end = name.end
+            yield Word(name.start, name.end, what, name.is_declaration, isinstance(name.target, _READONLY))
+        elif not token.is_name and name is None and (what := _own(token.text)) is not None:
+            yield Word(token.start, token.end, what)
+
+
+def _own(word: str) -> str | None:
+    """What a word of the language is."""
+    if word in _TYPES:
+        return "type"
+    if word in FUNCTIONS:
+        return "function"
+    return "keyword" if word in words_of("Base") | _QUANTIFIERS else None
+
+
+def _what(target: Any) -> str | None:
+    if isinstance(target, rsc.InterfaceTypeReference):
+        return "struct"
+    return next((what for made, what in _CLASSES.items() if isinstance(target, made)), None)
