@@ -61,8 +61,8 @@ def parameters(method: str, text: Text, offset: int) -> object:
     return made(**{name: value for name, value in known.items() if name in names})
 
 
-def ask_everything(text: str, offset: int) -> None:
-    made = project(text)
+def ask_everything(made: Project, text: str, offset: int) -> None:
+    made.put(URI, 2, text)
     snapshot = made.snapshot()
     analysis = snapshot.analysis(made.path(URI))
     published(snapshot, [analysis])
@@ -74,20 +74,22 @@ def ask_everything(text: str, offset: int) -> None:
 
 
 def test_a_small_text_cut_off_anywhere() -> None:
+    made = project(TINY)
     for end in range(len(TINY) + 1):
-        ask_everything(TINY[:end], end)
+        ask_everything(made, TINY[:end], end)
 
 
 def test_a_text_of_many_constructs_cut_off() -> None:
-    for end in range(0, len(SMALL) + 1, 11):
-        ask_everything(SMALL[:end], end)
+    made = project(SMALL)
+    for end in range(0, len(SMALL) + 1, 17):
+        ask_everything(made, SMALL[:end], end)
 
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
 def test_examples_cut_off(path: Path) -> None:
     text = path.read_text()
     for end in (len(text) // 3, len(text) * 7 // 10):
-        ask_everything(text[:end], end)
+        ask_everything(project(text), text[:end], end)
 
 
 @st.composite
