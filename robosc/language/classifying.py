@@ -80,7 +80,7 @@ def _words(content: str, names: dict[int, Reference]) -> Iterator[Word]:
         elif token.kind is Kind.SYMBOL:
             if token.text not in _BRACKETS:
                 yield Word(token.start, token.end, "operator")
-        elif name is not None and (what := _what(name.target)) is not None:
+        elif name is not None and (what := what_of(name.target)) is not None:
             end = name.end
             yield Word(name.start, name.end, what, name.is_declaration, isinstance(name.target, _READONLY))
         elif not token.is_name and name is None and (what := _own(token.text)) is not None:
@@ -96,7 +96,8 @@ def _own(word: str) -> str | None:
     return "keyword" if word in words_of("Base") | _QUANTIFIERS else None
 
 
-def _what(target: Any) -> str | None:
+def what_of(target: Any) -> str | None:
+    """One of `CLASSES` for what a name stands for; None where it stands for nothing."""
     if isinstance(target, rsc.InterfaceTypeReference):
         return "struct"
     return next((what for made, what in _CLASSES.items() if isinstance(target, made)), None)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from textwrap import dedent
 from typing import TYPE_CHECKING, Any
 
@@ -53,6 +54,17 @@ def describe(reading: Reading, element: Any, ros_types: RosTypes) -> str | None:
     if file is not reading.file and file.base is not None:
         parts.append(f"From library `{file.base.name}`.")
     return "\n\n".join(parts)
+
+
+def summary(element: Any) -> str:
+    """What an element is, in a few words: its type, if it has one, else its kind."""
+    declared = getattr(element, "type", None)
+    if isinstance(declared, rsc.DataType) and not isinstance(element, rsc.EnumDataType):
+        return type_text(declared)
+    if isinstance(element, rsc.EnumValue):
+        return f"value of {element.eContainer().eContainer().name}"
+    words = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", type(element).__name__).lower()
+    return words.removesuffix(" data type").removeprefix("formal ")
 
 
 def event_text(transition: rsc.Transition, file: File) -> str:

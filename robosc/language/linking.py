@@ -52,18 +52,20 @@ def link(file: File, interfaces: RosTypes, resolved: Resolved) -> list[Diagnosti
     """
     if file.base is None:
         return []
-    linker = _Linker(file, interfaces)
+    linker = Linker(file, interfaces)
     linker.imports()
     linker.link(Scope(file, file.base, resolved))
     return linker.findings
 
 
-class _Linker:
+class Linker:
+    """Links one file, whose libraries are linked; knows which names can be used where in it, `scope` in its base."""
+
     def __init__(self, file: File, interfaces: RosTypes) -> None:
         self.findings: list[Diagnostic] = []
-        self._interfaces = interfaces
+        self.interfaces = interfaces
         self._file = file
-        self._scope: Scope
+        self.scope: Scope
         self._definitions: dict[ex.Located, ex.Located] = {}
         self._types: dict[rsc.Access, list[Type]] = {}
         self._properties: dict[rsc.ObjectDataType, Names] = {}
@@ -71,6 +73,11 @@ class _Linker:
         self._present = {type(element) for element in (*file.references, *file.declared_names)}
         self._nearests: dict[type, dict[ex.Located, Any]] = {}
         self._quantifiers: dict[ex.Located, rsc.ArrayQuantifier | None] = {}
+
+    def open_scope(self) -> None:
+        """Looks into a file that is linked already."""
+        assert self._file.base is not None
+        self.scope = Scope(self._file, self._file.base)
 
     def imports(self) -> None:
         """The components that are imported: all other names may look into them."""
@@ -82,7 +89,7 @@ class _Linker:
 
     def link(self, scope: Scope) -> None:
         """What declarations name, then what uses them, in the order of the text: each looks at what stands before."""
-        self._scope = scope
+        self.scope = scope
         for element, names in self._file.references.items():
             self._declaration(element, names)
         for component in self._file.declared[rsc.Component].values():
@@ -104,7 +111,7 @@ class _Linker:
                 name = names["interface"]
                 element.interface = self._definition(rsc.Interface, "interface", Declared.INTERFACE, name)
             case rsc.InterfaceTypeReference():
-                unknown = declare(element, self._interfaces)
+                unknown = declare(element, self.interfaces)
                 if unknown is not None:
                     self._report(names["type"], *unknown)
             case rsc.ComplexDataTypeReference():
@@ -173,23 +180,23 @@ class _Linker:
             self._report(name, f"`{made_of.name}` has no parameter `{name.text}`", repair or named, rule="argument")
 
     def _call(self, call: rsc.Call, name: Name) -> None:
-        own = self._around(call, rsc.Component)
-        functions = self._scope.functions(own) if own is not None else {}
+        own = self.around(call, rsc.Component)
+        functions = self.scope.functions(own) if own is not None else {}
         if name.text in functions:
             call.function = functions[name.text]
             return
-        found = self._scope.find(rsc.Function, name.text)
+        found = self.scope.find(rsc.Function, name.text)
         if len(found) > 1:
             self._ambiguous("function", name, [file for file, _ in found])
         elif found:
             call.function = found[0][1]
         elif not self._file.may_declare(name.text, Declared.NAMED):
-            self._missing(name, "there is no function", [*functions, *self._scope.usable(rsc.Function), *FUNCTIONS])
+            self._missing(name, "there is no function", [*functions, *self.scope.usable(rsc.Function), *FUNCTIONS])
 
     def _quantified_template(self, quantifier: rsc.InstanceQuantifier, name: Name) -> None:
         own = self._file.declared[rsc.Component]
         found = (
-            [own[name.text]] if name.text in own else [other for _, other in self._scope.find(rsc.Component, name.text)]
+            [own[name.text]] if name.text in own else [other for _, other in self.scope.find(rsc.Component, name.text)]
         )
         templates = [component for component in found if component.parameters or name.text not in own]
         if len(templates) == 1:
@@ -203,13 +210,13 @@ class _Linker:
             self._missing(name, "there is no template", [found.name for found in own.values() if found.parameters])
 
     def _definition(self, kind: type[_Element], what: str, declared: Declared, name: Name) -> _Element | None:
-        found = self._scope.find(kind, name.text)
+        found = self.scope.find(kind, name.text)
         if len(found) > 1:
             self._ambiguous(what, name, [file for file, _ in found])
         elif not found and not self._file.may_declare(name.text, declared):
             basic = BASIC_TYPES.get(name.text)
             hint = Repair(f"write `{basic}`", basic) if basic else None
-            self._missing(name, f"there is no {what}", self._scope.usable(kind), hint)
+            self._missing(name, f"there is no {what}", self.scope.usable(kind), hint)
         return found[0][1] if len(found) == 1 else None
 
     def _ambiguous(self, what: str, name: Name, files: Iterable[File]) -> None:
@@ -218,12 +225,12 @@ class _Linker:
         self._report(name, message, f"declare `{name.text}` in this file")
 
     def _remapping(self, remapping: rsc.TopicRemapping, name: Name) -> None:
-        component = self._around(remapping, rsc.Component)
+        component = self.around(remapping, rsc.Component)
         if component is not None:
             remapping.communicationType = self._communication_of(component, name)
 
     def _communication_of(self, component: rsc.Component, name: Name) -> Any:
-        communications = self._scope.communications(component)
+        communications = self.scope.communications(component)
         return None if communications is None else self._member(communications, name, component, Declared.COMMUNICATION)
 
     # Communication
@@ -243,19 +250,19 @@ class _Linker:
     def _bare_communication(
         self, reference: rsc.CommunicationReference, name: Name
     ) -> tuple[rsc.Component, rsc.CommunicationType] | None:
-        own = self._around(reference, rsc.Component)
+        own = self.around(reference, rsc.Component)
         if own is not None:
-            communications = self._scope.communications(own) or {}
+            communications = self.scope.communications(own) or {}
             if name.text in communications:
                 return own, communications[name.text]
             if self._is_library:
                 if not self._file.may_declare(name.text, Declared.COMMUNICATION, imported=False):
                     self._missing(name, f"component `{own.name}` has no communication", communications, OWN_MEMBERS)
                 return None
-        found = self._scope.communicating(name.text)
+        found = self.scope.communicating(name.text)
         if not found:
-            if not self._scope.incomplete and not self._file.may_declare(name.text, Declared.COMMUNICATION):
-                self._missing(name, "there is no communication", self._scope.all_communications())
+            if not self.scope.incomplete and not self._file.may_declare(name.text, Declared.COMMUNICATION):
+                self._missing(name, "there is no communication", self.scope.all_communications())
             return None
         if len({communication for _, communication in found}) < len(found):
             candidates = " or ".join(f"`{written(component.name)}.{written(name.text)}`" for component, _ in found)
@@ -264,23 +271,23 @@ class _Linker:
         return found[0]
 
     def _component(self, reference: rsc.CommunicationReference, name: Name) -> rsc.Component | None:
-        components = self._components(reference)
+        components = self.components(reference)
         component: rsc.Component | None = components.get(name.text)
         if component is None and not self._file.may_declare(name.text, Declared.COMPONENT, imported=False):
-            hint = OWN_MEMBERS if name.text in self._scope.components else None
+            hint = OWN_MEMBERS if name.text in self.scope.components else None
             self._missing(name, "there is no component", components, hint)
         return component
 
-    def _components(self, element: ex.Located) -> Names:
+    def components(self, element: ex.Located) -> Names:
         """The components that can be mentioned where an element stands: in a library each mentions itself only."""
-        own = self._around(element, rsc.Component)
-        return {own.name: own} if own is not None and self._is_library else self._scope.components
+        own = self.around(element, rsc.Component)
+        return {own.name: own} if own is not None and self._is_library else self.scope.components
 
     def _member(self, members: Names, name: Name, component: rsc.Component, declared: Declared) -> Any:
         found = members.get(name.text)
-        if found is None and not self._file.may_declare_within(self._scope.origin(component), name.text, declared):
+        if found is None and not self._file.may_declare_within(self.scope.origin(component), name.text, declared):
             what = "communication" if declared is Declared.COMMUNICATION else "variable or state"
-            values = [] if declared is Declared.COMMUNICATION else self._scope.values(name.text)
+            values = [] if declared is Declared.COMMUNICATION else self.scope.values(name.text)
             hint = self._value_of_enum(name, values[0]) if values else None
             self._missing(name, f"component `{component.name}` has no {what}", members, hint)
         return found
@@ -297,8 +304,8 @@ class _Linker:
             if transition.target is None:
                 self._missing(name, "the requirement has no state", own_states)
             return
-        own = self._around(transition, rsc.Component)
-        states = self._scope.states(own) if own is not None else {}
+        own = self.around(transition, rsc.Component)
+        states = self.scope.states(own) if own is not None else {}
         if name.text in states:
             transition.target = states[name.text]
         elif own is not None and not self._file.may_declare_within(own, name.text, Declared.MEMBER):
@@ -309,33 +316,33 @@ class _Linker:
     def _access(self, access: rsc.Access, names: Mapping[str, Name]) -> None:
         first = names.get("component", names["item"])
         qualifies = "component" in names
-        parameter = self._parameters(access).get(first.text)
-        templates = self._templates(access)
-        components = self._components(access)
-        bound = self._elements(access).get(first.text)
+        parameter = self.parameters(access).get(first.text)
+        templates = self.templates(access)
+        components = self.components(access)
+        bound = self.elements(access).get(first.text)
         if bound is not None or parameter is not None:
             access.item = bound or parameter
         elif qualifies and first.text in templates:
             self._qualified(access, templates[first.text], names["item"])
             return
-        elif qualifies and first.text in components and self._around(access, rsc.EnumDataType) is None:
+        elif qualifies and first.text in components and self.around(access, rsc.EnumDataType) is None:
             self._qualified(access, components[first.text], names["item"])
             return
-        elif qualifies and first.text in (automata := self._automata(access)):
+        elif qualifies and first.text in (automata := self.automata(access)):
             self._requirement_state(access, automata[first.text], names["item"])
             return
         elif qualifies and self._value_of(access, first, names["item"]):
             return
-        elif self._around(access, rsc.EnumDataType) is not None:
+        elif self.around(access, rsc.EnumDataType) is not None:
             self._in_enum(access, first)
         else:
             self._bare(access, first, qualifies=qualifies)
         if qualifies:
             self._read_as_property(access, names["item"])
 
-    def _automata(self, element: ex.Located) -> Names:
+    def automata(self, element: ex.Located) -> Names:
         """The requirement automata that an expression can read: those of its component, then those of the robot."""
-        own = self._around(element, rsc.Component)
+        own = self.around(element, rsc.Component)
         local = own.type.definitions if own is not None and isinstance(own.type, rsc.LocalComponent) else ()
         outer = self._file.base.definitions if self._file.base is not None else ()
         return by_name(found for found in (*local, *outer) if isinstance(found, rsc.AutomatonRequirement))
@@ -352,12 +359,12 @@ class _Linker:
             return
         if not self._file.may_declare(name.text, Declared.ENUM_VALUE, Declared.NAMED):
             hint = "an enum's rules see only `value`, literals, constants, functions, its parameters and enum values"
-            known = [*self._scope.usable(rsc.EnumValue), *self._scope.usable(rsc.NamedExpression)]
+            known = [*self.scope.usable(rsc.EnumValue), *self.scope.usable(rsc.NamedExpression)]
             self._missing(name, "there is no enum value", known, hint)
 
     def _value_of(self, access: rsc.Access, enum: Name, value: Name) -> bool:
         """Whether `a.b` is a value with its enum before it, which no component is called like."""
-        found = self._scope.find(rsc.ComplexDataType, enum.text)
+        found = self.scope.find(rsc.ComplexDataType, enum.text)
         if len(found) != 1 or not isinstance(found[0][1], rsc.EnumDataType):
             return False
         definition = found[0][1]
@@ -369,7 +376,7 @@ class _Linker:
             self._missing(value, f"enum `{definition.name}` has no value", values)
         return True
 
-    def _parameters(self, element: ex.Located) -> Names:
+    def parameters(self, element: ex.Located) -> Names:
         """The parameters that an expression can read: of its function, else of its enum or template."""
         function = self._nearest(element, rsc.Function)
         around = self._outermost(element)
@@ -378,7 +385,7 @@ class _Linker:
             found |= by_name(around.parameters)
         return found | by_name(function.parameters) if function is not None else found
 
-    def _elements(self, element: ex.Located) -> Names:
+    def elements(self, element: ex.Located) -> Names:
         """The elements of arrays that an expression can read, by the quantifiers in whose condition it stands."""
         found: dict[str, rsc.ArrayElement] = {}
         around: ex.Located | None = element if rsc.ArrayElement in self._present else None
@@ -405,7 +412,7 @@ class _Linker:
         self._quantifiers.update(dict.fromkeys(path, found))
         return found
 
-    def _templates(self, element: ex.Located) -> Names:
+    def templates(self, element: ex.Located) -> Names:
         """The templates that stand for their instances where an expression stands, by the quantifiers around it."""
         found: dict[str, rsc.Component] = {}
         quantifier = self._nearest(element, rsc.InstanceQuantifier)
@@ -417,15 +424,15 @@ class _Linker:
 
     def _qualified(self, access: rsc.Access, component: rsc.Component, name: Name) -> None:
         access.component = component
-        members = self._scope.members(component)
+        members = self.scope.members(component)
         if members is not None:
             access.item = self._member(members, name, component, Declared.MEMBER)
 
     def _bare(self, access: rsc.Access, name: Name, *, qualifies: bool) -> None:
         """A component, then a name of the own component, of the robot or library, an enum value."""
-        own = self._around(access, rsc.Component)
-        members = (self._scope.members(own) if own is not None else None) or {}
-        components = self._components(access)
+        own = self.around(access, rsc.Component)
+        members = (self.scope.members(own) if own is not None else None) or {}
+        components = self.components(access)
         if name.text in components:
             access.item = components[name.text]
             return
@@ -438,18 +445,18 @@ class _Linker:
         if self._file.may_declare(name.text, *own_text, imported=False):
             return
         if qualifies:
-            hint = OWN_MEMBERS if name.text in self._scope.components else None
+            hint = OWN_MEMBERS if name.text in self.scope.components else None
             self._missing(name, "there is no component or variable", [*components, *members], hint)
         elif not self._file.may_declare(name.text, Declared.ENUM_VALUE, Declared.NAMED):
-            named = self._scope.usable(rsc.NamedExpression)
-            known = [*components, *members, *named, *self._scope.usable(rsc.EnumValue)]
+            named = self.scope.usable(rsc.NamedExpression)
+            known = [*components, *members, *named, *self.scope.usable(rsc.EnumValue)]
             hint = OWN_MEMBERS if self._is_library and self._elsewhere(name) else self._elsewhere(name)
             hint = hint or CONSTRUCTS.get(name.text)
             self._missing(name, "there is no component, variable, state or enum value", known, hint, listed=False)
 
     def _named_value(self, access: rsc.Access, name: Name) -> bool:
         """Whether a name is that of a constant or condition of the robot or library, or of several, a finding."""
-        found = self._scope.find(rsc.NamedExpression, name.text)
+        found = self.scope.find(rsc.NamedExpression, name.text)
         if len(found) > 1:
             self._ambiguous("name", name, [file for file, _ in found])
         elif found:
@@ -460,14 +467,14 @@ class _Linker:
         """What to write for a bare name that some component has as a variable or a state."""
         having = [
             f"`{written(component.name)}.{written(name.text)}`"
-            for component in self._scope.components.values()
-            if name.text in (self._scope.members(component) or {})
+            for component in self.scope.components.values()
+            if name.text in (self.scope.members(component) or {})
         ]
         return f"write {' or '.join(having)}" if having else None
 
     def _enum_value(self, access: rsc.Access, name: Name) -> bool:
         """Whether a name is that of an enum value, or of several, which is a finding."""
-        values = self._scope.values(name.text)
+        values = self.scope.values(name.text)
         if len(values) == 1:
             access.item = values[0]
         elif values:
@@ -523,9 +530,9 @@ class _Linker:
             self._report(name, f"there is no property `{name.text}`: what stands before it is {what}", hint)
             return None
         if is_made(of.definition):
-            made = ros_property(of.definition, name.text, self._interfaces)
+            made = ros_property(of.definition, name.text, self.interfaces)
             if made is None:
-                known = ros_properties(of.definition, self._interfaces)
+                known = ros_properties(of.definition, self.interfaces)
                 self._missing(
                     name, f"the ROS type `{of.definition.name}` has no field that a model can use named", known
                 )
@@ -540,7 +547,7 @@ class _Linker:
             self._missing(name, f"object `{of.definition.name}` has no property", properties)
         return None
 
-    def _around(self, element: ex.Located, kind: type[_Element]) -> _Element | None:
+    def around(self, element: ex.Located, kind: type[_Element]) -> _Element | None:
         """The component or enum that contains the element, if it is of that kind."""
         definition = self._outermost(element)
         return definition if isinstance(definition, kind) else None

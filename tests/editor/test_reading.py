@@ -1,5 +1,6 @@
 """The server tells what is in a text, and what is wrong with it: over the protocol, in a process of its own."""
 
+import asyncio
 from itertools import pairwise
 from pathlib import Path
 
@@ -351,4 +352,30 @@ async def test_rename_over_the_protocol(client: Editor, folder: Path) -> None:
     assert [edit.new_text for edit in answer.changes[uri]] == ["Gate", "Gate"]
     with pytest.raises(JsonRpcException, match="would change what rename"):
         await client.text_document_rename_async(types.RenameParams(**where, new_name="Base"))
+    close(client, uri)
+
+
+async def test_completion_over_the_protocol(client: Editor, folder: Path) -> None:
+    text = ROBOT.replace("drive needs Door.open", "drive needs Door.")
+    uri, _ = await opened(client, folder / "completion.rscd", text)
+    found = await client.text_document_completion_async(types.CompletionParams(**at(uri, position(text, "Door.", 5))))
+    assert [item.label for item in found.items] == ["closed", "open"]
+    close(client, uri)
+
+
+async def test_a_request_that_is_overtaken_is_not_worked_on(client: Editor, folder: Path) -> None:
+    """The change comes before the turn of the question: the answer would be about another text."""
+    uri, _ = await opened(client, folder / "overtaken.rscd", ROBOT)
+    asked = [
+        asyncio.ensure_future(client.text_document_hover_async(types.HoverParams(**at(uri, position(ROBOT, "Door {")))))
+        for _ in range(3)
+    ]
+    await asyncio.sleep(0)
+    replace(client, uri, 2, ROBOT.replace("Door", "Gate"))
+    answers = await asyncio.gather(*asked, return_exceptions=True)
+    for answer in answers:
+        said = answer.code if isinstance(answer, JsonRpcException) else answer.contents.value
+        assert said == types.LSPErrorCodes.ContentModified or "component Door" in said
+    later = await client.text_document_hover_async(types.HoverParams(**at(uri, position(ROBOT, "Door {"))))
+    assert "component Gate" in later.contents.value
     close(client, uri)

@@ -24,9 +24,8 @@ SMALL = """robot R { // 🤖
   requirement Q "t": drive needs I.v = near and (all T: T.s) => !false provide drive with { x: [1.0], y: abs(a) }
 }
 """
-TINY = """robot R { component D from Wheels import M component C {
-  outgoing message m with type: double
-  behaviour { initial marked state s { on response from m if value > 1.0 goto s } } } requirement go needs C.s }
+TINY = """robot R { component C { outgoing message m with type: double behaviour {
+  initial state s { on response from m if value > 1.0 goto s } } } requirement go needs C.s }
 """
 WHEELS = """library Wheels { component Motors { incoming message drive with type: double } }"""
 EXAMPLES = sorted((ROOT / "examples").rglob("*.rscd"))
@@ -69,7 +68,8 @@ def ask_everything(made: Project, text: str, offset: int) -> None:
     for method, job in ANSWERS.items():
         if method == types.TEXT_DOCUMENT_RENAME:
             continue  # It refuses by an error; tests/editor/test_renaming.py asks.
-        for where in {offset, max(0, offset - 1)}:
+        # Right behind the last letter, and now and then before it.
+        for where in {offset, max(0, offset - (offset % 7 == 0))}:
             job(snapshot, analysis, parameters(method, analysis.text, where))
 
 
@@ -81,7 +81,7 @@ def test_a_small_text_cut_off_anywhere() -> None:
 
 def test_a_text_of_many_constructs_cut_off() -> None:
     made = project(SMALL)
-    for end in range(0, len(SMALL) + 1, 17):
+    for end in range(0, len(SMALL) + 1, 19):
         ask_everything(made, SMALL[:end], end)
 
 

@@ -1,0 +1,140 @@
+"""Completion and signature help."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from lsprotocol import types
+
+from robosc.editor.places import to_offset, to_range
+from robosc.language import read
+from robosc.language.classifying import what_of
+from robosc.language.completing import proposals
+from robosc.language.describing import summary
+from robosc.language.libraries import LibraryPath
+from robosc.language.signatures import signature
+
+if TYPE_CHECKING:
+    from robosc.editor.project import Analysis, Snapshot
+    from robosc.language import Reading
+    from robosc.language.completing import Proposal
+
+OPTIONS = types.CompletionOptions(trigger_characters=[".", "/"])
+SIGNATURE_OPTIONS = types.SignatureHelpOptions(trigger_characters=["(", ","])
+_KINDS = {
+    "namespace": types.CompletionItemKind.Module,
+    "class": types.CompletionItemKind.Class,
+    "event": types.CompletionItemKind.Event,
+    "enumMember": types.CompletionItemKind.EnumMember,
+    "variable": types.CompletionItemKind.Variable,
+    "parameter": types.CompletionItemKind.Variable,
+    "interface": types.CompletionItemKind.Interface,
+    "enum": types.CompletionItemKind.Enum,
+    "struct": types.CompletionItemKind.Struct,
+    "property": types.CompletionItemKind.Field,
+    "function": types.CompletionItemKind.Function,
+}
+#: Definitions in whole, by the word that they begin with: what each is called, and its text with places to fill in.
+SNIPPETS = {
+    "robot": [("robot …", "robot ${1:Name} {\n  $0\n}")],
+    "library": [("library …", "library ${1:Name} {\n  $0\n}")],
+    "component": [
+        (
+            "component with states",
+            (
+                "component ${1:Name} {\n"
+                '  outgoing message ${2:told} with identifier: "/${2:told}", type: ${3:boolean}\n\n'
+                "  behaviour {\n"
+                "    initial marked state ${4:off} {\n      on response from ${2:told} goto ${5:on}\n    }\n\n"
+                "    state ${5:on} {\n      on response from ${2:told} goto ${4:off}\n    }\n  }\n}$0"
+            ),
+        ),
+        ("component from a library", "component ${1:Name} from ${2:Library} import ${3:Component}$0"),
+    ],
+    "requirement": [
+        ("requirement … needs", "requirement ${1:communication} needs ${2:condition}$0"),
+        ("requirement … disables", "requirement ${1:condition} disables ${2:communication}$0"),
+        ("requirement never", "requirement never ${1:condition}$0"),
+        (
+            "requirement: automaton",
+            (
+                "requirement ${1:Name}: automaton {\n"
+                "  initial state ${2:first} {\n    on request to ${3:left} goto ${4:second}\n  }\n\n"
+                "  state ${4:second} {\n    on request to ${5:right} goto ${2:first}\n  }\n}$0"
+            ),
+        ),
+    ],
+    "behaviour": [("behaviour with a state", "behaviour {\n  initial marked state ${1:name} {\n    $0\n  }\n}")],
+    "state": [("state …", "state ${1:name} {\n  $0\n}")],
+    "datatype": [
+        (
+            "datatype enum",
+            "datatype enum ${1:Name} from ${2:double} to {\n  ${3:value > 0.0} -> ${4:a}\n  default -> ${5:b}\n}$0",
+        ),
+        ("datatype object", "datatype object ${1:Name} {\n  ${2:field}: ${3:double}\n}$0"),
+    ],
+    "provide": [("provide …", "provide ${1:communication} with ${2:data}$0")],
+    "on": [("on response from …", "on response from ${1:communication} goto ${2:state}$0")],
+}
+
+
+def completion(snapshot: Snapshot, analysis: Analysis, params: types.CompletionParams) -> types.CompletionList:
+    """What can stand at a position."""
+    text = analysis.text
+    offset = to_offset(text, params.position)
+
+    def reread(content: str) -> Reading:
+        document = snapshot.documents.get(analysis.path)
+        documents = {**snapshot.documents}
+        if document is not None:
+            documents[analysis.path] = replace(document, content=content)
+        with_text = snapshot.with_documents(documents)
+        return read(analysis.path, snapshot.libraries, snapshot.ros_types, with_text.texts)
+
+    def libraries() -> list[str]:
+        return LibraryPath(snapshot.libraries, snapshot.texts).known(analysis.path)
+
+    start, end, found = proposals(text.content, offset, reread, snapshot.ros_types, libraries)
+    place = to_range(text, start, end)
+    items = [item for proposal in found for item in _items(proposal, place)]
+    return types.CompletionList(is_incomplete=False, items=items)
+
+
+def _items(proposal: Proposal, place: types.Range) -> list[types.CompletionItem]:
+    kind = types.CompletionItemKind.Keyword
+    if proposal.element is not None:
+        kind = _KINDS.get(what_of(proposal.element) or "", types.CompletionItemKind.Text)
+    elif proposal.is_ros:
+        kind = types.CompletionItemKind.Struct
+    edit = types.TextEdit(place, proposal.text)
+    # Names before words of the language, those before whole definitions.
+    order = "0" if kind is not types.CompletionItemKind.Keyword else "1"
+    detail = summary(proposal.element) if proposal.element is not None else None
+    found = [
+        types.CompletionItem(proposal.text, kind=kind, detail=detail, text_edit=edit, sort_text=order + proposal.text)
+    ]
+    if proposal.starts:
+        found += (
+            types.CompletionItem(
+                label,
+                kind=types.CompletionItemKind.Snippet,
+                filter_text=proposal.text,
+                sort_text=f"2{label}",
+                insert_text_format=types.InsertTextFormat.Snippet,
+                insert_text_mode=types.InsertTextMode.AdjustIndentation,
+                text_edit=types.TextEdit(place, body),
+            )
+            for label, body in SNIPPETS.get(proposal.text, ())
+        )
+    return found
+
+
+def signature_help(_: Snapshot, analysis: Analysis, params: types.SignatureHelpParams) -> types.SignatureHelp | None:
+    """The parameters of what is called at a position."""
+    found = signature(analysis.reading, to_offset(analysis.text, params.position))
+    if found is None:
+        return None
+    parameters = [types.ParameterInformation(parameter) for parameter in found.parameters]
+    shown = types.SignatureInformation(found.label, parameters=parameters, active_parameter=found.active)
+    return types.SignatureHelp([shown], active_signature=0, active_parameter=found.active)

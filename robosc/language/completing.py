@@ -1,0 +1,376 @@
+"""What can stand at a place of a text: words of the language, and names by what they would stand for.
+
+The grammar tells which words it wants there. To tell which names, the text is read with a name there that nothing has,
+and with what is still missing of the definition around it: what this name would be a reference to, can stand there.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from robosc.language.grammar import Failure, parse, pattern
+from robosc.language.interface_types import is_made, ros_properties
+from robosc.language.linking import Linker
+from robosc.language.outline import Outline
+from robosc.language.scopes import by_name
+from robosc.language.tokens import Kind, Tokens, too_complex
+from robosc.metamodel import robosc as rsc
+from robosc.semantics.communication import event_names, sent_type
+from robosc.semantics.naming import written
+from robosc.semantics.operators import FUNCTIONS
+from robosc.semantics.typing import ObjectType, access_types, declared_type, provided_data_type, value_type
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator, Mapping
+
+    from robosc.language.outline import Block
+    from robosc.language.reading import Reading
+    from robosc.language.scopes import File
+    from robosc.ros_types import RosTypes
+
+_NAME = "robosc_completes_here"
+_WORD = re.compile(r"\^?\w*\Z")
+_STRING_OR_COMMENT = re.compile(rf"{pattern('Comment')}|{pattern('String')}|/\*[\s\S]*|[\"'][^\n]*")
+_QUANTIFIERS = ("all", "any", "count")
+#: What to go on with where a definition is not at its end, the best first, and what is written for it.
+_GOING_ON = {
+    **{word: word for word in ("needs", "disables", "with", "from", "import", "use", "to", "then", "else", "in", "->")},
+    **{symbol: symbol for symbol in (")", "]", "}", ":", ":=", "=", "..")},
+    "=(?!>)": "=",
+    **{word: word for word in ("boolean", "true", "s", "never", "type", "request", "response", "feedback", "state")},
+    "UnreservedName": "x",
+    "Name": "x",
+    "LoneString": '""',
+    "String": '""',
+    "Integer": "1",
+    **{word: word for word in ("object", "message", "since", "most", "default", "identifier", "after", "(", "{")},
+}
+
+
+@dataclass(frozen=True)
+class Proposal:
+    """Something that can stand there: its text, and what it is: an element, or a word of the language.
+
+    `starts` says of a word that a definition begins with it.
+    """
+
+    text: str
+    element: Any = None
+    starts: bool = False
+    is_ros: bool = False
+
+
+def proposals(
+    content: str,
+    offset: int,
+    read: Callable[[str], Reading],
+    ros_types: RosTypes,
+    libraries: Callable[[], Iterable[str]],
+) -> tuple[int, int, list[Proposal]]:
+    """What can stand in place of the word that an offset lies in or right behind; the range of this word (offsets).
+
+    `read` reads the file with another text, `libraries` gives the names of those that it could import from.
+    """
+    start = offset - len(_WORD.search(content[:offset])[0])  # type: ignore[index]
+    end = offset + len(re.match(r"\w*", content[offset:])[0])  # type: ignore[index]
+    if any(found.start() < start < _end(found) for found in _STRING_OR_COMMENT.finditer(content)):
+        return start, end, []
+    block, wanted = _wanted(content[:start])
+    found = dict.fromkeys(_words(block, wanted))
+    if {"Name", "UnreservedName"} & wanted:
+        for text in dict.fromkeys(_with_name(content, start, end)):
+            found |= dict.fromkeys(_named(read(text), start, ros_types, libraries))
+    found |= dict.fromkeys(_ros_names(content, start, ros_types))
+    return start, end, list(found)
+
+
+def _end(found: re.Match[str]) -> int:
+    """Behind the last place that lies within a string or comment: one that goes up to the end of its line is open."""
+    is_open = found[0].startswith("//") or not found[0].endswith(("*/", '"', "'")) or len(found[0]) == 1
+    return found.end() + is_open
+
+
+# Words
+
+
+def _wanted(before: str) -> tuple[Block | None, set[str]]:
+    """The item that a text ends in, and what the grammar wants there."""
+    tokens = Tokens(before)
+    if too_complex(tokens) is not None:
+        return None, set()
+    block = _block(tokens, len(tokens))
+    items = block.items
+    text = list(before[block.start :])
+    for item in items:
+        text[item.start - block.start : item.end - block.start] = " " * (item.end - item.start)
+    own = "".join(text)
+    found = parse(f"{own} \0", block.level.rule if block.level else "Base")
+    at_end = isinstance(found, Failure) and found.position >= len(own.rstrip())
+    return block, set(found.expected) if at_end else set()
+
+
+def _block(tokens: Tokens, index: int) -> Block:
+    """The innermost item that reaches up to a token."""
+    block = Outline(tokens).file()
+    while True:
+        inner = next((item for item in block.items if item.first < index <= item.after), None)
+        if inner is None:
+            return block
+        block = inner
+
+
+def _words(block: Block | None, wanted: Iterable[str]) -> Iterator[Proposal]:
+    for word in sorted(wanted):
+        if word.isalpha() and word.islower() and word != "end":
+            yield Proposal(word, starts=bool(block and any(word in level.starters for level in _levels(block))))
+        elif word == "Quantifier":
+            yield from map(Proposal, _QUANTIFIERS)
+        elif word == "BuiltIn":
+            yield from map(Proposal, FUNCTIONS)
+    if "end" in wanted and block is not None and block.level is not None:
+        yield from (Proposal(word, starts=True) for word in sorted(block.level.starters))
+
+
+def _levels(block: Block) -> list[Any]:
+    inner = [] if block.level is None else list(block.level.bodies.values())
+    return [*block.levels, *inner, *([block.level] if block.level else [])]
+
+
+# Names
+
+
+def _with_name(content: str, start: int, end: int) -> Iterator[str]:
+    """The text with a name at a place, and with what is missing behind it; in each way that it can go on."""
+    before, after = content[:start] + _NAME, content[end:]
+    tokens = Tokens(before + after)
+    if too_complex(tokens) is not None:
+        return
+    block = _block(tokens, tokens.index_at(start) + 1)
+    rule = block.level.rule if block.level else "Base"
+    whole = _own_text(before + after, block)
+    if not isinstance(parse(whole, rule), Failure):
+        yield before + after
+        return
+    own = before[block.start :]
+    for preferred in ("needs", "disables"):
+        going_on = _going_on(_own_text(before, block, len(before)), rule, preferred)
+        if going_on is not None:
+            yield before + going_on + (content[end:] if block.level is None else _rest(before + after, block, own))
+
+
+def _own_text(content: str, block: Block, end: int | None = None) -> str:
+    text = list(content[block.start : block.end if end is None else end])
+    for item in block.items:
+        if item.end <= block.start + len(text):
+            text[item.start - block.start : item.end - block.start] = " " * (item.end - item.start)
+    return "".join(text)
+
+
+def _rest(content: str, block: Block, own: str) -> str:
+    """What stands behind an item of which a part is left out."""
+    return " " + content[max(block.end, block.start + len(own)) :]
+
+
+def _going_on(text: str, rule: str, preferred: str) -> str | None:
+    """What is missing of an item by a rule; None where that can't be told."""
+    added = ""
+    for _ in range(20):
+        found = parse(text + added, rule)
+        if not isinstance(found, Failure):
+            return added
+        if found.position < len((text + added).rstrip()):
+            return None
+        wanted = set(found.expected)
+        words = {preferred: preferred, **_GOING_ON}
+        following = next((said for word, said in words.items() if word in wanted), None)
+        if following is None:
+            return None
+        added += f" {following}"
+    return None
+
+
+def _named(
+    reading: Reading, start: int, ros_types: RosTypes, libraries: Callable[[], Iterable[str]]
+) -> Iterator[Proposal]:
+    """What the name at a place can stand for."""
+    file = reading.file
+    if file.base is None:
+        return
+    linker = Linker(file, ros_types)
+    linker.open_scope()
+    for element, names in list(file.references.items()):
+        for feature, name in names.items():
+            if _NAME in name.text and name.start <= start < name.end:
+                if isinstance(element, rsc.ImportedComponent) and feature == "library":
+                    yield from map(Proposal, libraries())
+                for key, found in _candidates(linker, file, element, feature, names):
+                    yield Proposal(".".join(map(written, key.split("."))), found)
+
+
+def _candidates(
+    linker: Linker, file: File, element: Any, feature: str, names: Mapping[str, Any]
+) -> Iterator[tuple[str, Any]]:
+    match element:
+        case rsc.CommunicationReference():
+            yield from _communications(linker, element, feature, names)
+        case rsc.Access():
+            yield from _accessible(linker, element, feature, names)
+        case rsc.PropertySegment():
+            access = element.eContainer()
+            before = access_types(access, value_type(access))[list(access.segments).index(element)]
+            yield from _properties(linker, before)
+        case rsc.ObjectPropertyValue():
+            yield from _properties(linker, _object_type(element))
+        case rsc.Transition():
+            own = linker.around(element, rsc.Component)
+            yield from (linker.scope.states(own) if own is not None else {}).items()
+        case rsc.RequirementTransition():
+            yield from by_name(element.eContainer().eContainer().states).items()
+        case rsc.Argument():
+            yield from _parameters(element).items()
+        case _:
+            yield from _definitions(linker, file, element, feature)
+
+
+def _parameters(argument: rsc.Argument) -> dict[str, Any]:
+    """The parameters that an argument may be for."""
+    user: Any = argument.eContainer()
+    made_of: Any = user.type if isinstance(user, rsc.ComplexDataTypeReference) else user.definition
+    return {} if made_of is None else by_name(made_of.parameters)
+
+
+def _definitions(linker: Linker, file: File, element: Any, feature: str) -> Iterator[tuple[str, Any]]:
+    components = file.declared[rsc.Component]
+    match element:
+        case rsc.ComplexDataTypeReference():
+            yield from _usable(linker, rsc.ComplexDataType)
+        case rsc.CommunicationType():
+            yield from _usable(linker, rsc.Interface)
+        case rsc.Call():
+            yield from _usable(linker, rsc.Function)
+        case rsc.ImportedComponent() if feature == "definition":
+            yield from by_name(_components_of(element.library)).items()
+        case rsc.InstantiatedComponent():
+            yield from ((name, found) for name, found in components.items() if found.parameters)
+        case rsc.InstanceQuantifier():
+            yield from ((name, found) for name, found in components.items() if found.parameters)
+        case rsc.TopicRemapping():
+            own = linker.around(element, rsc.Component)
+            yield from ((linker.scope.communications(own) if own is not None else None) or {}).items()
+
+
+def _components_of(library: Any) -> list[Any]:
+    return [] if library is None else [found for found in library.definitions if isinstance(found, rsc.Component)]
+
+
+def _usable(linker: Linker, kind: type[Any]) -> Iterator[tuple[str, Any]]:
+    for name in dict.fromkeys(linker.scope.usable(kind)):
+        yield name, linker.scope.find(kind, name)[0][1]
+
+
+def _communications(
+    linker: Linker, reference: rsc.CommunicationReference, feature: str, names: Mapping[str, Any]
+) -> Iterator[tuple[str, Any]]:
+    if feature == "communicationType" and "component" in names:
+        component = reference.component
+        found = (linker.scope.communications(component) if component is not None else None) or {}
+        yield from ((name, other) for name, other in found.items() if _fits(reference, other))
+        return
+    own = linker.around(reference, rsc.Component)
+    inner = (linker.scope.communications(own) if own is not None else None) or {}
+    known: dict[str, list[tuple[Any, Any]]] = {name: [(own, other)] for name, other in inner.items()}
+    for name in linker.scope.all_communications():
+        known.setdefault(name, list(linker.scope.communicating(name)))
+    for name, ports in known.items():
+        for component, other in ports:
+            if _fits(reference, other):
+                yield name if len(ports) == 1 else f"{component.name}.{name}", other
+
+
+def _fits(reference: rsc.CommunicationReference, communication: Any) -> bool:
+    """Whether a communication has the event that is wanted of it."""
+    user = reference.eContainer()
+    if isinstance(user, rsc.CommunicationTypeSet):
+        user = user.eContainer()
+    match user:
+        case rsc.ResultTransition() | rsc.NamedEvent():
+            return str(user.resultType) in event_names(communication)
+        case rsc.ProvideStatement():
+            return sent_type(communication) is not None
+        case rsc.CommunicationRequirement():
+            return "request" in event_names(communication)
+        case rsc.TimedTransition():
+            return isinstance(communication, rsc.Message) and event_names(communication) == ["response"]
+    return True
+
+
+def _accessible(
+    linker: Linker, access: rsc.Access, feature: str, names: Mapping[str, Any]
+) -> Iterator[tuple[str, Any]]:
+    first = names.get("component")
+    if feature == "item" and first is not None:
+        known = {**linker.components(access), **linker.templates(access)}
+        if first.text in known:
+            yield from (linker.scope.members(known[first.text]) or {}).items()
+        elif access.enumeration is not None:
+            yield from by_name(rule.value for rule in access.enumeration.rules if rule.value).items()
+        elif first.text in (automata := linker.automata(access)):
+            yield from by_name(automata[first.text].states).items()
+        return
+    found: dict[str, Any] = {**linker.elements(access), **linker.parameters(access)}
+    user = access.eContainer()
+    if isinstance(user, rsc.Argument):
+        found |= _parameters(user)
+    elif linker.around(access, rsc.EnumDataType) is None:
+        own = linker.around(access, rsc.Component)
+        members = (linker.scope.members(own) if own is not None else None) or {}
+        found |= {**linker.templates(access), **members, **linker.components(access), **linker.automata(access)}
+    for kind in (rsc.NamedExpression, rsc.EnumValue, rsc.Function):
+        for name, element in _usable(linker, kind):
+            found.setdefault(name, element)
+    yield from found.items()
+
+
+def _object_type(element: rsc.ObjectPropertyValue) -> Any:
+    around = element.eContainer().eContainer()
+    if isinstance(around, rsc.ProvideStatement):
+        reference = around.communicationType
+        return provided_data_type(reference.communicationType if reference else None)
+    return declared_type(around.property.type) if getattr(around, "property", None) else None
+
+
+def _properties(linker: Linker, of: Any) -> Iterator[tuple[str, Any]]:
+    if isinstance(of, ObjectType):
+        if is_made(of.definition):
+            yield from ((name, None) for name in ros_properties(of.definition, linker.interfaces))
+        else:
+            yield from by_name(of.definition.properties).items()
+
+
+# Names of ROS
+
+
+def _ros_names(content: str, start: int, ros_types: RosTypes) -> Iterator[Proposal]:
+    """Packages and types where only ROS knows the name: in an interface, and behind the `/` of a type."""
+    tokens = Tokens(content)
+    index = tokens.index_at(start)
+    before, earlier = (tokens[max(index - step, 0)] for step in (1, 2))
+    if index < 2:
+        return
+    kinds = ("message", "service", "action")
+    if before.is_keyword("/") and earlier.kind is Kind.WORD:
+        yield from _types(ros_types, earlier.text, kinds)
+    elif before.is_keyword("use"):
+        package = next((tokens[at + 1].text for at in range(index, index + 3) if tokens[at].is_keyword("from")), None)
+        if package is not None:
+            yield from _types(ros_types, package, kinds)
+    elif before.is_keyword("from") and any(tokens[max(index - step, 0)].is_keyword("use") for step in (2, 3)):
+        for package in sorted({name for known in ros_types.distributions for name in known.packages()}):
+            yield Proposal(package, is_ros=True)
+
+
+def _types(ros_types: RosTypes, package: str, kinds: Iterable[str]) -> Iterator[Proposal]:
+    names = {name for known in ros_types.distributions for kind in kinds for name in known.names(package, kind)}
+    yield from (Proposal(name, is_ros=True) for name in sorted(names))

@@ -1,0 +1,74 @@
+"""The parameters of what is called at a place of a text: a function, a template, an enum."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from robosc.language.describing import type_text
+from robosc.language.tokens import Kind, Tokens
+from robosc.metamodel import robosc as rsc
+from robosc.semantics.operators import FUNCTIONS
+
+if TYPE_CHECKING:
+    from robosc.language.reading import Reading
+
+_CALLED = (rsc.Function, rsc.Component, rsc.EnumDataType)
+
+
+@dataclass(frozen=True)
+class Signature:
+    """What is called, such as `gain(d: double): double`, its parameters as they stand in there, and which is meant."""
+
+    label: str
+    parameters: list[str]
+    active: int | None
+
+
+def signature(reading: Reading, offset: int) -> Signature | None:
+    """What the innermost parentheses around an offset give arguments to; None where there are none."""
+    found = _call(reading.file.text.content[:offset])
+    if found is None:
+        return None
+    name, position, named = found
+    if name in FUNCTIONS:
+        count = FUNCTIONS[name].parameters
+        parameters = ["a", "b"][:count] if count else ["a"]
+        return Signature(f"{name}({', '.join(parameters)})", parameters, _active(position, parameters))
+    for file in reading.files.values():
+        for definition in file.declared_names:
+            if isinstance(definition, _CALLED) and definition.name == name and definition.parameters:
+                shown = [f"{parameter.name}: {type_text(parameter.type)}" for parameter in definition.parameters]
+                names = [parameter.name for parameter in definition.parameters]
+                active = names.index(named) if named in names else _active(position, names)
+                result = f": {type_text(definition.type)}" if isinstance(definition, rsc.Function) else ""
+                return Signature(f"{name}({', '.join(shown)}){result}", shown, active)
+    return None
+
+
+def _active(position: int, parameters: list[str]) -> int | None:
+    return position if position < len(parameters) else None
+
+
+def _call(before: str) -> tuple[str, int, str | None] | None:
+    """Of the innermost open parenthesis the name before it, how many commas follow, and the last argument's name."""
+    tokens = Tokens(before)
+    depth = commas = 0
+    named: str | None = None
+    for index in range(len(tokens) - 1, 0, -1):
+        token = tokens[index]
+        if token.is_keyword("{", "}"):
+            return None
+        if token.is_keyword(")", "]"):
+            depth += 1
+        elif token.is_keyword("(", "["):
+            if depth == 0:
+                name = tokens[index - 1]
+                is_call = token.text == "(" and name.kind is Kind.WORD
+                return (name.text.removeprefix("^"), commas, named) if is_call else None
+            depth -= 1
+        elif depth == 0 and token.is_keyword(","):
+            commas += 1
+        elif depth == 0 and token.is_keyword(":") and commas == 0 and named is None:
+            named = tokens[index - 1].text.removeprefix("^")
+    return None
