@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from robosc.analysis.blocking_in_words import counterexample_in_words, way_out
 from robosc.analysis.observations import Forbidden
-from robosc.analysis.wording import condition, counterexample_in_words, forbid, in_words, listed, name, way_out, words
+from robosc.analysis.wording import condition, forbid, in_words, listed, name, words
 from robosc.diagnostics import Diagnostic, Severity, in_order
 from robosc.metamodel import sct
 from robosc.metamodel.places import place

@@ -6,10 +6,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from robosc.analysis.blocking import Reason, reason_of_emptiness
+from robosc.analysis.blocking_in_words import blocking, counterexample_in_words
 from robosc.analysis.findings import findings_of
 from robosc.analysis.observations import Observations, Observer, Weight
 from robosc.analysis.system import SynthesizedSystem
-from robosc.analysis.wording import blocking, counterexample_in_words, forbid, in_words
+from robosc.analysis.wording import forbid, in_words
 from robosc.diagnostics import Diagnostic, ModelError, Severity, has_errors
 from robosc.metamodel.places import place
 from robosc.synthesis import MEMORY, Phase, Solution, Statistics, Synthesis, solve

@@ -14,13 +14,12 @@ from robosc.synthesis.decoding import text
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from robosc.analysis.blocking import BlockingCounterexample, Reason
     from robosc.analysis.paths import TraceStep
     from robosc.synthesis.decoding import Value
     from robosc.synthesis.encoding import Element
 
 #: How many components a sentence names.
-_NAMED = 4
+NAMED = 4
 _EVENTS = {
     sct.EventKind.trigger: "request to {}",
     sct.EventKind.response: "response from {}",
@@ -94,9 +93,9 @@ def change(event: sct.Event) -> str:
 def called(requirements: Sequence[sct.StatedRequirement]) -> str:
     """Requirements, each in its own words and with its line: "`requirement move needs Lidar.free` (line 12)"."""
     told = list(dict.fromkeys(map(_called, requirements)))
-    named = told[:_NAMED]
-    if len(told) > _NAMED:
-        named.append(f"{len(told) - _NAMED} more")
+    named = told[:NAMED]
+    if len(told) > NAMED:
+        named.append(f"{len(told) - NAMED} more")
     return listed(named)
 
 
@@ -125,36 +124,6 @@ def _forbid(requirements: Sequence[sct.StatedRequirement]) -> str:
     return "forbids" if len(set(map(_called, requirements))) == 1 else "forbid"
 
 
-def blocking(reason: Reason) -> str:
-    """Why there is no supervisor, in a sentence without its trace."""
-    if reason.violated:
-        problem = violates(called(reason.violated), reason.violated)
-        if reason.event is None:
-            return f"{problem} from the start"
-        if reason.event.controllable:
-            return f"the shortest way to a marked state needs {words(reason.event)}, after which {problem}"
-        return f"{words(reason.event)} can't be prevented, and after it {problem}"
-    problem = "no marked state can be reached"
-    if reason.event is None:
-        problem += " at all"
-    elif reason.event.controllable:
-        problem += f": the shortest way to one needs {words(reason.event)} where {forbid(reason.requirements, 'it')}"
-    else:
-        problem = f"{words(reason.event)} can't be prevented, and after it {problem}"
-    named = [_stuck(plant, reason) for plant in reason.unmarked[:_NAMED]]
-    if len(reason.unmarked) > _NAMED:
-        named.append(f"{len(reason.unmarked) - _NAMED} more")
-    who = (
-        f"never in a marked state: {listed(named)}" if named else "each component can be marked, but never all at once"
-    )
-    return f"{problem}; {who}"
-
-
-def _stuck(plant: sct.Plant, reason: Reason) -> str:
-    state = reason.state.get(plant.name)
-    return f"`{name(plant)}`" + (f" in `{state}`" if state is not None else "")
-
-
 def in_words(steps: Sequence[TraceStep], model: sct.SupervisoryControlModel) -> str:
     """The events of a trace with the data that matters; what happens several times in a row is said once."""
     events = {event_name(event): event for plant in model.plants for event in plant.events}
@@ -165,33 +134,6 @@ def in_words(steps: Sequence[TraceStep], model: sct.SupervisoryControlModel) -> 
         said.append(f"{words(event)} ({data})" if data else words(event))
     runs = [(phrase, len(list(run))) for phrase, run in groupby(said)]
     return ", then ".join(phrase if times == 1 else f"{times:,} times {phrase}" for phrase, times in runs)
-
-
-def counterexample_in_words(counterexample: BlockingCounterexample, model: sct.SupervisoryControlModel) -> str:
-    """What would happen if synthesis did not hold an event back, in a sentence without its full stop."""
-    steps = in_words(counterexample.trace, model)
-    problem = "the marked states of all components can't be reached together any more"
-    if counterexample.unmarked:
-        problem = (
-            f"{listed([f'`{name(plant)}`' for plant in counterexample.unmarked])} can't get back to a marked state"
-        )
-    if counterexample.violated:
-        # Without lines: the sentence stands in generated code, which changes where the robot does.
-        named = listed([f"`{one.text}`" if one.text else "a requirement" for one in counterexample.violated])
-        problem = violates(named, counterexample.violated)
-    if not counterexample.onwards:
-        return f"after {steps}, {problem}"
-    *onwards, last = counterexample.onwards
-    further = f", and further {in_words(onwards, model)}" if onwards else ""
-    return f"after {steps}{further}, {in_words([last], model)} can't be prevented, and then {problem}"
-
-
-def way_out(counterexample: BlockingCounterexample) -> str:
-    """What would make synthesis allow the event."""
-    if counterexample.violated:
-        return f"loosen the {'requirement' if len(counterexample.violated) == 1 else 'requirements'}"
-    stuck = [f"`{name(plant)}`" for plant in counterexample.unmarked if plant.kind == sct.PlantKind.behaviour]
-    return f"give {listed(stuck) or 'the components'} a way from there to a marked state"
 
 
 def _data(input_name: str, event: sct.Event) -> str:

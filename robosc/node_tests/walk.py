@@ -14,8 +14,9 @@ from robosc.node_tests.samples import Incoming, Values, find_samples, incoming, 
 from robosc.node_tests.trace_player import START, between, just_after
 from robosc.ros_types import Section
 from robosc.runtime.core.controller import Controller
-from robosc.runtime.core.event_log import EventLog, ReceivedData, json_text, nested
+from robosc.runtime.core.event_log import EventLog, ReceivedData, nested
 from robosc.runtime.core.event_loop import EventLoop
+from robosc.runtime.core.json_text import json_text
 from robosc.runtime.core.node_data import NodeData
 from robosc.runtime.core.port import Outcome
 from robosc.runtime.core.settings import Settings

@@ -7,9 +7,9 @@ import pytest
 from hypothesis import assume, given
 
 from robosc.analysis.blocking import Reason
+from robosc.analysis.blocking_in_words import blocking
 from robosc.analysis.paths import TraceStep
 from robosc.analysis.supervise import diagnose
-from robosc.analysis.wording import blocking
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 from robosc.semantics.roles import event_name

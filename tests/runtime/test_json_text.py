@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robosc.runtime.core.event_log import json_text
+from robosc.runtime.core.json_text import json_text
 
 _VALUES = st.recursive(
     st.none()

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, TypeAlias
 
+from robosc.analysis.blocking_in_words import blocking
 from robosc.analysis.explain.answers import Emptiness, Explanation, Possibility
 from robosc.analysis.paths import trace_data
-from robosc.analysis.wording import blocking, name
+from robosc.analysis.wording import name
 from robosc.semantics.roles import event_name
 
 if TYPE_CHECKING:

@@ -4,17 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, TypeAlias
 
+from robosc.analysis.blocking_in_words import blocking, counterexample_in_words, way_out
 from robosc.analysis.explain.answers import Emptiness, Explanation, Possibility, Reach
-from robosc.analysis.wording import (
-    blocking,
-    counterexample_in_words,
-    in_words,
-    listed,
-    name,
-    way_out,
-    what_is,
-    words,
-)
+from robosc.analysis.wording import in_words, listed, name, what_is, words
 from robosc.engine import Blocked
 from robosc.metamodel import sct
 from robosc.semantics.roles import Roles, event_name

@@ -28,8 +28,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from robosc.metamodel import sct
-    from robosc.runtime.core.event_log import Json
     from robosc.runtime.core.event_loop import EventLoop, Timer
+    from robosc.runtime.core.json_text import Json
     from robosc.runtime.core.port import Client, ControllerPort, Message
     from robosc.runtime.core.settings import Settings
 

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 
     from robosc.engine import Settings as LoopSettings
     from robosc.metamodel import rosgraph, sct
-    from robosc.runtime.core.event_log import Json
     from robosc.runtime.core.event_loop import EventLoop
+    from robosc.runtime.core.json_text import Json
     from robosc.runtime.core.port import Client, Message, Port
     from robosc.runtime.core.settings import Settings
     from robosc.semantics.parameters import Value

@@ -2,65 +2,30 @@
 
 from __future__ import annotations
 
-import math
 import os
-import re
 import time
-from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from threading import Condition, Thread
-from typing import IO, TYPE_CHECKING, Any, TypeAlias
+from typing import IO, TYPE_CHECKING, Any
 
-from robosc.diagnostics.visible import HIDDEN_PATTERN, code
 from robosc.files.writing import open_log
 from robosc.metamodel import expression as ex
+from robosc.runtime.core.json_text import json_text
 from robosc.semantics.messages import Read
 from robosc.semantics.messages import shown as all_shown
 from robosc.semantics.operators import UnreadableError
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from robosc.runtime.core.json_text import Json
     from robosc.runtime.core.node_data import NodeData
     from robosc.runtime.core.port import Message
     from robosc.semantics.evaluation import Value
     from robosc.semantics.messages import Shown
 
 _Path = tuple[str, ...]
-#: What can be written as JSON.
-Json: TypeAlias = bool | int | float | str | Mapping[str, "Json"] | Sequence["Json"] | None
-
-#: Nothing that a reader could take for the end of a line, and nothing that a terminal obeys, goes out as it is.
-_ESCAPED = re.compile(r'["\\]|' + HIDDEN_PATTERN)
-
-
-def json_text(value: Json) -> str:
-    """The JSON text of a value, without blanks; no number stands for what is not finite: null."""
-    match value:
-        case None:
-            return "null"
-        case bool():
-            return "true" if value else "false"
-        case int():
-            return str(value)
-        case float():
-            return _number(value)
-        case str():
-            return f'"{_ESCAPED.sub(_escape, value)}"'
-        case Mapping():
-            return "{" + ",".join(f"{json_text(name)}:{json_text(member)}" for name, member in value.items()) + "}"
-    return "[" + ",".join(map(json_text, value)) + "]"
-
-
-def _number(value: float) -> str:
-    """The shortest text of 15 to 17 digits that reads back as the same number."""
-    if not math.isfinite(value):
-        return "null"
-    texts = (f"{value:.{digits}g}" for digits in (15, 16, 17))
-    return next(text for text in texts if float(text) == value)
-
-
-def _escape(found: re.Match[str]) -> str:
-    return f"\\{found[0]}" if found[0] in '"\\' else code(found[0])
 
 
 def default_log(node: str, package: str) -> str:

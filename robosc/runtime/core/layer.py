@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from robosc.engine import Settings as LoopSettings
 from robosc.metamodel import engine
 from robosc.runtime.core.event_handler import EventHandler
-from robosc.runtime.core.event_log import Json, json_text
+from robosc.runtime.core.json_text import Json, json_text
 from robosc.runtime.core.times import RESOLUTION_MS
 from robosc.semantics.edges import edges_from, edges_of
 from robosc.semantics.roles import event_name, plant_of

@@ -19,7 +19,7 @@ from robosc.semantics.operators import UnreadableError
 
 if TYPE_CHECKING:
     from robosc.engine import Engine
-    from robosc.runtime.core.event_log import Json
+    from robosc.runtime.core.json_text import Json
     from robosc.runtime.core.port import ControllerPort, Message
 
 #: What whole numbers of a node are kept in.

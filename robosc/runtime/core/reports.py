@@ -6,7 +6,8 @@ from collections import deque
 from typing import TYPE_CHECKING
 
 from robosc.metamodel import rosgraph, sct
-from robosc.runtime.core.event_log import Json, json_text, shown
+from robosc.runtime.core.event_log import shown
+from robosc.runtime.core.json_text import Json, json_text
 from robosc.semantics.definition import TRANSITIONS_KEPT, definition_text, reported
 
 if TYPE_CHECKING:

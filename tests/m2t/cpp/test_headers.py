@@ -15,7 +15,7 @@ import pytest
 
 import robosc
 from robosc.diagnostics.visible import HIDDEN
-from robosc.runtime.core.event_log import json_text
+from robosc.runtime.core.json_text import json_text
 
 if TYPE_CHECKING:
     from robosc.configuration import Configuration

@@ -1,0 +1,68 @@
+"""What blocks, and what would, in the words of the robot model."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robosc.analysis.wording import NAMED, called, forbid, in_words, listed, name, violates, words
+from robosc.metamodel import sct
+
+if TYPE_CHECKING:
+    from robosc.analysis.blocking import BlockingCounterexample, Reason
+
+
+def blocking(reason: Reason) -> str:
+    """Why there is no supervisor, in a sentence without its trace."""
+    if reason.violated:
+        problem = violates(called(reason.violated), reason.violated)
+        if reason.event is None:
+            return f"{problem} from the start"
+        if reason.event.controllable:
+            return f"the shortest way to a marked state needs {words(reason.event)}, after which {problem}"
+        return f"{words(reason.event)} can't be prevented, and after it {problem}"
+    problem = "no marked state can be reached"
+    if reason.event is None:
+        problem += " at all"
+    elif reason.event.controllable:
+        problem += f": the shortest way to one needs {words(reason.event)} where {forbid(reason.requirements, 'it')}"
+    else:
+        problem = f"{words(reason.event)} can't be prevented, and after it {problem}"
+    named = [_stuck(plant, reason) for plant in reason.unmarked[:NAMED]]
+    if len(reason.unmarked) > NAMED:
+        named.append(f"{len(reason.unmarked) - NAMED} more")
+    who = (
+        f"never in a marked state: {listed(named)}" if named else "each component can be marked, but never all at once"
+    )
+    return f"{problem}; {who}"
+
+
+def _stuck(plant: sct.Plant, reason: Reason) -> str:
+    state = reason.state.get(plant.name)
+    return f"`{name(plant)}`" + (f" in `{state}`" if state is not None else "")
+
+
+def counterexample_in_words(counterexample: BlockingCounterexample, model: sct.SupervisoryControlModel) -> str:
+    """What would happen if synthesis did not hold an event back, in a sentence without its full stop."""
+    steps = in_words(counterexample.trace, model)
+    problem = "the marked states of all components can't be reached together any more"
+    if counterexample.unmarked:
+        problem = (
+            f"{listed([f'`{name(plant)}`' for plant in counterexample.unmarked])} can't get back to a marked state"
+        )
+    if counterexample.violated:
+        # Without lines: the sentence stands in generated code, which changes where the robot does.
+        named = listed([f"`{one.text}`" if one.text else "a requirement" for one in counterexample.violated])
+        problem = violates(named, counterexample.violated)
+    if not counterexample.onwards:
+        return f"after {steps}, {problem}"
+    *onwards, last = counterexample.onwards
+    further = f", and further {in_words(onwards, model)}" if onwards else ""
+    return f"after {steps}{further}, {in_words([last], model)} can't be prevented, and then {problem}"
+
+
+def way_out(counterexample: BlockingCounterexample) -> str:
+    """What would make synthesis allow the event."""
+    if counterexample.violated:
+        return f"loosen the {'requirement' if len(counterexample.violated) == 1 else 'requirements'}"
+    stuck = [f"`{name(plant)}`" for plant in counterexample.unmarked if plant.kind == sct.PlantKind.behaviour]
+    return f"give {listed(stuck) or 'the components'} a way from there to a marked state"
