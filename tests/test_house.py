@@ -26,6 +26,7 @@ ROOMS = {
     "engine",
     "runtime",
     "simulation",
+    "debugger",
     "diagrams",
     "editor",
     "m2t",
@@ -36,7 +37,7 @@ ROOMS = {
 }
 #: Rooms that see more than the ground, and what: the root is the public API, the command line is on top.
 ALLOWED = {
-    "": ROOMS - {"cli", "editor", "__main__"},
+    "": ROOMS - {"cli", "debugger", "editor", "__main__"},
     "__main__": {"cli"},
     "analysis": {"synthesis", "engine", "m2t"},
     "cif": {"language"},
@@ -44,6 +45,7 @@ ALLOWED = {
     "runtime": {"engine"},
     "node_tests": {"engine", "runtime", "m2t"},
     "simulation": {"engine", "runtime"},
+    "debugger": {"language", "m2t", "analysis", "engine", "simulation"},
     "cli": ROOMS - {"__main__"},
 }
 #: What executes a model, or generates what does, and so begins with making an engine model.

@@ -36,6 +36,7 @@ _COMMANDS = {
     "explain": "Say why something can't happen.",
     "verify": "Prove what the supervised robot promises.",
     "simulate": "Try the supervised robot.",
+    "dap": "Debug a robot in an editor.",
     "run": "Be a robot's controller on ROS, without a build.",
     "format": "Lay out models in the one canonical way.",
     "rule": "Say what a rule means.",

@@ -86,7 +86,7 @@ class Engine:
             requirement
             for requirement in self.model.requirements
             if event_name(requirement.event) == event
-            and bool(evaluate(requirement.condition, self._read)) == (requirement.kind == sct.RequirementKind.disables)
+            and bool(evaluate(requirement.condition, self.read)) == (requirement.kind == sct.RequirementKind.disables)
         ]
 
     def enabled(self, event: str) -> bool:
@@ -165,7 +165,7 @@ class Engine:
 
         return choose
 
-    def _read(self, reference: ex.Expression) -> object:
+    def read(self, reference: ex.Expression) -> object:
         """What a reference of the sct model stands for in this state."""
         match reference:
             case sct.LocationReference(location=location):

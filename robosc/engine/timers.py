@@ -5,6 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from robosc.engine.interpreter import Engine
     from robosc.metamodel import sct
 
@@ -73,6 +75,15 @@ class Timers:
                     self._up = {number: up for number, up in self._up.items() if self._plant[number] is not left}
                 for number in starts:
                     self._start(number)
+
+    @property
+    def saved(self) -> tuple[int, Mapping[int, int]]:
+        """What is the time, and what runs until when: `restore` goes back there."""
+        return self.now, dict(self._up)
+
+    def restore(self, saved: tuple[int, Mapping[int, int]]) -> None:
+        """Goes back to what `saved` was."""
+        self.now, self._up = saved[0], dict(saved[1])
 
     def expire(self) -> str | None:
         """The event of what is up, that which was up first, and which runs no longer; None where nothing is."""

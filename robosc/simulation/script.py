@@ -19,15 +19,21 @@ RULE = "script"
 WAIT = "wait"
 #: 100 days: what is longer is a mistake.
 _LONGEST_WAIT = 8_640_000
+#: A clock that tells more seconds is broken.
+_LATEST = 1e12
 
 
 @dataclass(frozen=True)
 class Step:
-    """A line of a script: an event, or `tick`, `begin` or `end` for a control loop."""
+    """A line of a script: an event, or `tick`, `begin` or `end` for a control loop.
+
+    `time` is the seconds that a line of an event log tells.
+    """
 
     line: int
     event: str
     data: Mapping[str, Any]
+    time: float | None = None
 
 
 def read_script(
@@ -63,6 +69,10 @@ def unfit_data(file: str, steps: Iterable[Step], data: EventData) -> Iterator[Di
             yield Diagnostic(file, span, Severity.ERROR, RULE, f"{step.event}: {error}")
 
 
+def _seconds(time: Any) -> float | None:
+    return float(time) if isinstance(time, int | float) and 0 <= time < _LATEST else None
+
+
 class _Line:
     """One line that is not empty."""
 
@@ -84,7 +94,7 @@ class _Line:
             return (
                 self._wait(str(data.get("seconds", "")))
                 if known and name == WAIT
-                else Step(self._number, name, data)
+                else Step(self._number, name, data, _seconds(logged.get("time")))
                 if known
                 else None
             )

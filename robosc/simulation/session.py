@@ -7,11 +7,8 @@ from difflib import get_close_matches
 from random import Random
 from typing import TYPE_CHECKING
 
-from robosc.engine import Blocked
 from robosc.files import reading as files
 from robosc.files.writing import write_file
-from robosc.semantics.printing import SctPrinter
-from robosc.semantics.roles import event_name
 from robosc.simulation.data import DataError
 from robosc.simulation.script import read_script
 from robosc.simulation.simulation import whole_state
@@ -21,6 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from robosc.diagnostics import Diagnostic
+    from robosc.engine import Blocked
     from robosc.simulation.simulation import Happened, Simulation
 
 HELP = """\
@@ -111,19 +109,8 @@ class Session:
         return "\n".join(self._reason(event, by) for event, by in blocked if by is not None) or "everything can happen"
 
     def _reason(self, event: str, by: Blocked | Unreadable) -> str:
-        if isinstance(by, Unreadable):
-            return f"{event}: {by.why}, so it counts as {by.error or 'not received'}"
-        model, named = self._simulation.engine.model, self._named[event]
-        if by is Blocked.PLANT:
-            return f"{named}: the robot is not ready for it"
-        if by is Blocked.REQUIREMENT:
-            texts = [failing.text for failing in self._simulation.engine.failing(event) if failing.text]
-            return f"{named}: forbidden by {' and '.join(texts) or 'a requirement'}"
-        assert model.supervisor is not None
-        guard = next(guard for guard in model.supervisor.guards if event_name(guard.event) == event)
-        needed = SctPrinter()(guard.synthesis) if guard.synthesis is not None else "false"
-        otherwise = f"; otherwise, {guard.explanation}" if guard.explanation else ""
-        return f"{named}: forbidden by synthesis, which asks for {needed}{otherwise}"
+        named = event if isinstance(by, Unreadable) else self._named[event]
+        return f"{named}: {self._simulation.reason(event, by)}"
 
     def _undo(self) -> str:
         undone = self._simulation.undo()

@@ -5,11 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from robosc.engine import ControlLoop, Engine, Hooks, Settings
+from robosc.engine import Blocked, ControlLoop, Engine, Hooks, Settings
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 from robosc.metamodel.engine import Role
 from robosc.semantics.definition import named_state
+from robosc.semantics.printing import SctPrinter
 from robosc.semantics.roles import event_name
 from robosc.simulation.data import EventData
 from robosc.simulation.script import WAIT
@@ -19,7 +20,6 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from random import Random
 
-    from robosc.engine import Blocked
     from robosc.engine.state import State, Value
     from robosc.metamodel import rosgraph
 
@@ -97,14 +97,35 @@ class Simulation:
         self.engine.state = self._before.pop()
         return self.trace.pop()
 
-    def random_step(self, random: Random) -> Happened | None:
-        """Lets one of the enabled events happen, with random data; None where none is enabled."""
+    def random_event(self, random: Random) -> tuple[str, dict[str, Any]] | None:
+        """One of the enabled events, with random data; None where none is enabled."""
         enabled = self.enabled
         if not enabled:
             return None
         event = random.choice(enabled)
         values = {given.name: _any(given.type, random) for given in self._inputs[event]}
-        return self.perform(event, self.data.shaped(event, values))
+        return event, self.data.shaped(event, values)
+
+    def random_step(self, random: Random) -> Happened | None:
+        """Lets one of the enabled events happen, with random data; None where none is enabled."""
+        chosen = self.random_event(random)
+        return None if chosen is None else self.perform(*chosen)
+
+    def reason(self, event: str, by: Blocked | Unreadable) -> str:
+        """Why an event can't happen in the present state, in words; `by` is what keeps it from happening."""
+        if isinstance(by, Unreadable):
+            return f"{by.why}, so it counts as {by.error or 'not received'}"
+        if by is Blocked.PLANT:
+            return "the robot is not ready for it"
+        if by is Blocked.REQUIREMENT:
+            texts = [failing.text for failing in self.engine.failing(event) if failing.text]
+            return f"forbidden by {' and '.join(texts) or 'a requirement'}"
+        supervisor = self.engine.model.supervisor
+        assert supervisor is not None
+        guard = next(guard for guard in supervisor.guards if event_name(guard.event) == event)
+        needed = SctPrinter()(guard.synthesis) if guard.synthesis is not None else "false"
+        otherwise = f"; otherwise, {guard.explanation}" if guard.explanation else ""
+        return f"forbidden by synthesis, which asks for {needed}{otherwise}"
 
 
 def _any(kind: ex.Type, random: Random) -> Value:

@@ -22,6 +22,7 @@ COMMANDS = [
     "explain",
     "verify",
     "simulate",
+    "dap",
     "run",
     "format",
     "rule",

@@ -1,0 +1,142 @@
+"""What a client launches: a model, and what is played with it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from difflib import get_close_matches
+from typing import TYPE_CHECKING, Any
+
+from robosc.analysis.verify import Outcome, verify_system
+from robosc.files import reading as files
+from robosc.language.text import decode
+from robosc.simulation import LoopSimulation, Step, read_script, unfit_data
+from robosc.simulation.script import WAIT
+
+if TYPE_CHECKING:
+    from robosc.analysis.paths import TraceStep
+    from robosc.diagnostics import Diagnostic
+    from robosc.m2t.models import Models
+    from robosc.simulation import Simulation
+
+#: So many events happen at random before a run that nothing stops is stopped, if nothing else is said.
+_MOST_AT_RANDOM = 10_000
+#: What a configuration for `launch` may say; editors add keys of their own.
+_KEYS: Mapping[str, tuple[Any, str]] = {
+    "program": (str, "the path of a model"),
+    "script": (str, "the path of a script or event log"),
+    "counterexample": (str | bool, "a property of `robosc verify`, or true"),
+    "seed": (int, "a whole number"),
+    "most": (int, "a whole number"),
+    "libraries": (list, "a list of folders"),
+    "interfaces": (list, "a list of folders"),
+    "parameters": (dict, "an object from name to value"),
+    "stopOnEntry": (bool, "true or false"),
+}
+
+
+class RequestError(Exception):
+    """A request that can't be answered: the message says why, and how to ask."""
+
+
+class LaunchError(Exception):
+    """A model that can't be run: with what was found wrong with it, and the texts of its files."""
+
+    def __init__(
+        self, message: str, findings: Sequence[Diagnostic] = (), texts: Mapping[str, str] | None = None
+    ) -> None:
+        super().__init__(message)
+        self.findings = findings
+        self.texts = texts or {}
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """The model that is to be launched, where its libraries and ROS definitions are, values of its parameters."""
+
+    program: str
+    libraries: tuple[str, ...] = ()
+    interfaces: tuple[str, ...] = ()
+    parameters: Mapping[str, Any] = field(default_factory=dict)
+
+
+#: Gives a model with its supervisor, and with the findings about it, such as warnings. Raises LaunchError.
+Loader = Callable[[Wanted], tuple["Models", "Sequence[Diagnostic]", Mapping[str, str]]]
+
+
+@dataclass(frozen=True)
+class Launch:
+    """What a client says about a run: `most` are the events that happen at random before it stops."""
+
+    wanted: Wanted
+    script: str | None
+    counterexample: str | bool | None
+    seed: int
+    most: int
+    stop_on_entry: bool
+
+    @classmethod
+    def of(cls, arguments: Mapping[str, Any]) -> Launch:
+        """What the arguments of the request say. Raises RequestError."""
+        for name, (kind, told) in _KEYS.items():
+            given = arguments.get(name)
+            if given is not None and (not isinstance(given, kind) or (isinstance(given, bool) and kind is int)):
+                raise RequestError(f"launch: `{name}` is {json.dumps(given)}, expected {told}")
+        if not arguments.get("program"):
+            raise RequestError("launch: `program` names the model")
+        script, counterexample = arguments.get("script") or None, arguments.get("counterexample") or None
+        if script and counterexample:
+            raise RequestError("launch: `script` and `counterexample` exclude each other")
+        libraries, interfaces = (tuple(map(str, arguments.get(name) or ())) for name in ("libraries", "interfaces"))
+        return cls(
+            Wanted(arguments["program"], libraries, interfaces, arguments.get("parameters") or {}),
+            script,
+            counterexample,
+            arguments.get("seed") or 0,
+            max(arguments.get("most") or _MOST_AT_RANDOM, 1),
+            arguments.get("stopOnEntry") is not False,
+        )
+
+    def steps(self, simulation: Simulation) -> tuple[list[Step] | None, str]:
+        """What is played, None for whatever can happen; and what is to be said about it.
+
+        Raises LaunchError, RequestError, and OSError where the script can't be read.
+        """
+        if self.script is not None:
+            return _script(simulation, self.script), ""
+        if self.counterexample is not None:
+            return _counterexample(simulation, self.counterexample)
+        return None, ""
+
+
+def _script(simulation: Simulation, path: str) -> list[Step]:
+    text, faults = decode(path, files.read(path))
+    events = [*simulation.engine.events, WAIT]
+    others = [word for word in LoopSimulation.OWN if word != WAIT]
+    steps, findings = read_script(path, text.content, events, others)
+    findings += [*faults, *unfit_data(path, (step for step in steps if step.event != WAIT), simulation.data)]
+    if findings:
+        raise LaunchError(f"{path}: {findings[0].message}", findings, {path: text.content})
+    return steps
+
+
+def _counterexample(simulation: Simulation, wanted: str | bool) -> tuple[list[Step], str]:
+    verdicts = verify_system(simulation.engine.model)
+    properties = [verdict.property for verdict in verdicts]
+    if wanted is not True and wanted not in properties:
+        close = get_close_matches(str(wanted), properties, n=1)
+        raise RequestError(f"there is no property `{wanted}`{f'; did you mean `{close[0]}`?' if close else ''}")
+    refuted = next((one for one in verdicts if one.outcome is Outcome.REFUTED and wanted in (True, one.property)), None)
+    if refuted is None:
+        raise RequestError("nothing is refuted: there is no counterexample")
+    return _steps(simulation, [*refuted.trace, *refuted.onwards]), f"{refuted.property}: {refuted.explanation}\n"
+
+
+def _steps(simulation: Simulation, trace: Sequence[TraceStep]) -> list[Step]:
+    """The steps of a trace; data that does not matter in it is as ROS leaves it."""
+    inputs = {event: simulation.data.inputs(event, {}) for event in {step.event for step in trace}}
+    return [
+        Step(number, step.event, simulation.data.shaped(step.event, {**inputs[step.event], **step.inputs}))
+        for number, step in enumerate(trace, 1)
+    ]

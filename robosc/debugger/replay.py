@@ -1,0 +1,215 @@
+"""The run of a robot that is debugged: by a script, an event log or a trace, or at random; forwards and backwards."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from random import Random
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from robosc.engine.timers import Timers
+from robosc.metamodel import expression as ex
+from robosc.metamodel import sct
+from robosc.semantics.edges import edges_from
+from robosc.semantics.evaluation import evaluate
+from robosc.semantics.roles import event_name
+from robosc.simulation.script import WAIT
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from robosc.engine import Blocked
+    from robosc.engine.state import State, Value
+    from robosc.simulation import Simulation, Step
+    from robosc.simulation.unreadable import Unreadable
+
+
+class _Position(NamedTuple):
+    """Which step of the script is next, until when time goes by in it, and the timers."""
+
+    next: int
+    until: int | None
+    timers: tuple[int, Mapping[int, int]]
+
+
+_START = _Position(0, None, (0, {}))
+
+
+@dataclass(frozen=True)
+class Moment:
+    """A step of the run: an event that happened, or was kept from that `by` something; or time that went by.
+
+    `line` is that of the script; `edges` are the transitions that components took.
+    """
+
+    event: str
+    data: Mapping[str, Any]
+    before: State
+    after: State
+    line: int | None = None
+    by: Blocked | Unreadable | None = None
+    edges: tuple[sct.Edge, ...] = ()
+    start: _Position = _START
+    end: _Position = _START
+
+    @property
+    def happened(self) -> bool:
+        """Whether an event happened."""
+        return self.by is None and self.event != WAIT
+
+
+class Replay:
+    """Plays `steps` of a script; None: whatever can happen, at random, the same for the same seed.
+
+    What was taken back is played again first, unless something else was asked for meanwhile.
+    """
+
+    def __init__(self, simulation: Simulation, steps: Sequence[Step] | None = None, seed: int = 0) -> None:
+        self.simulation = simulation
+        self.engine = self.simulation.engine
+        self.timers = Timers(self.engine, 0)
+        self.steps = steps
+        self.past: list[Moment] = []
+        self._future: list[Moment] = []
+        self._random = Random(seed)  # noqa: S311
+        self._next = 0
+        #: Until when time goes by, of a step that waits.
+        self._until: int | None = None
+        self._events = {event_name(event): event for event in self.engine.roles.events}
+        self._started = next((step.time for step in steps or () if step.time is not None), 0.0)
+
+    @property
+    def is_over(self) -> bool:
+        """Whether all of the script has been played."""
+        return self.steps is not None and self._next == len(self.steps) and not self._future
+
+    @property
+    def next_line(self) -> int | None:
+        """The line of the script that comes next; None where there is none."""
+        if self._future:
+            return self._future[-1].line
+        return self.steps[self._next].line if self.steps is not None and self._next < len(self.steps) else None
+
+    def forward(self) -> Moment | None:
+        """The next step; None where nothing is left to play, or nothing can happen."""
+        if self._future:
+            again = self._future.pop()
+            if again.happened:
+                self._perform(again.event, again.data)
+            self._go_to(again.end)
+            self.past.append(again)
+            return again
+        if self.steps is not None:
+            return self._scripted(self.steps)
+        chosen = self.simulation.random_event(self._random)
+        return None if chosen is None else self._keep(self._here, self._perform(*chosen))
+
+    def back(self) -> Moment | None:
+        """Takes the last step back; None where there is none."""
+        if not self.past:
+            return None
+        moment = self.past.pop()
+        if moment.happened:
+            self.simulation.undo()
+        self._go_to(moment.start)
+        self._future.append(moment)
+        return moment
+
+    def inject(self, event: str, data: Mapping[str, Any]) -> Moment:
+        """Lets an event happen that the script does not name, if it can; else nothing changes. Raises DataError."""
+        here = self._here
+        moment = self._perform(event, data)
+        if not moment.happened:
+            return moment
+        self._future.clear()
+        return self._keep(here, moment)
+
+    def let_go_by(self, seconds: float) -> list[Moment]:
+        """Lets time go by; what is up on the way happens at its time."""
+        self._future.clear()
+        here = self._here
+        self._until = self.timers.now + _milliseconds(seconds)
+        moments = [self._keep(here, self._wait(self._until))]
+        while self._until is not None:
+            moments.append(self._keep(self._here, self._wait(self._until)))
+        return moments
+
+    def _scripted(self, steps: Sequence[Step]) -> Moment | None:
+        if self._next == len(steps):
+            return None
+        step, here = steps[self._next], self._here
+        if step.event == WAIT:
+            if self._until is None:
+                self._until = self.timers.now + _milliseconds(step.data["seconds"])
+            moment = self._wait(self._until, step.line)
+            self._next += self._until is None
+            return self._keep(here, moment)
+        if step.time is not None:
+            self.timers.at(max(self.timers.now, _milliseconds(step.time - self._started)))
+        self._next += 1
+        return self._keep(here, self._perform(step.event, step.data, step.line))
+
+    def _wait(self, until: int, line: int | None = None) -> Moment:
+        """Lets time go by to the next time that is up, else until then; only then nothing is waited for any more."""
+        wait = self.timers.wait
+        if wait is not None and self.timers.now + wait <= until:
+            self.timers.at(self.timers.now + wait)
+            event = self.timers.expire()
+            assert event is not None
+            return self._perform(event, {}, line)
+        self.timers.at(until)
+        self._until = None
+        return Moment(WAIT, {}, self.engine.state, self.engine.state, line)
+
+    def _perform(self, event: str, data: Mapping[str, Any], line: int | None = None) -> Moment:
+        before = self.engine.state
+        inputs = self.simulation.data.inputs(event, data)
+        by = self.engine.blocked_by(event) or self.simulation.data.unreadable(event, data)
+        edges: tuple[sct.Edge, ...] = ()
+        if by is None:
+            edges = self._taken(event, inputs)
+            self.engine.set_inputs(event, inputs)
+            self.timers.before(event)
+            self.simulation.perform(event, data)
+        return Moment(event, dict(data), before, self.engine.state, line, by, edges)
+
+    def _keep(self, start: _Position, moment: Moment) -> Moment:
+        self.past.append(replace(moment, start=start, end=self._here))
+        return self.past[-1]
+
+    @property
+    def _here(self) -> _Position:
+        return _Position(self._next, self._until, self.timers.saved)
+
+    def _go_to(self, position: _Position) -> None:
+        self._next, self._until = position.next, position.until
+        self.timers.restore(position.timers)
+
+    # Transitions
+
+    def _taken(self, event: str, inputs: Mapping[str, Value]) -> tuple[sct.Edge, ...]:
+        """The transitions of components that an enabled event takes in the present state."""
+        found = []
+        for plant in self.engine.model.plants:
+            possible = edges_from(plant.locations[self.engine.location(plant)], self._events[event])
+            edge = next((one for one in possible if one.guard is None or self._holds(one.guard, inputs)), None)
+            if edge is not None and edge.source is not None:
+                found.append(edge)
+        return tuple(found)
+
+    def _holds(self, guard: ex.Expression, inputs: Mapping[str, Value]) -> bool:
+        def read(reference: ex.Expression) -> object:
+            if isinstance(reference, sct.InputReference):
+                return _object(reference.input.type, inputs[reference.input.name])
+            return self.engine.read(reference)
+
+        return bool(evaluate(guard, read))
+
+
+def _milliseconds(seconds: float) -> int:
+    return round(seconds * 1000)
+
+
+def _object(kind: ex.Type, value: Value) -> object:
+    if isinstance(kind, ex.EnumerationType):
+        return next(literal for literal in kind.enumeration.literals if literal.name == value)
+    return value
