@@ -3,6 +3,7 @@
 import asyncio
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -16,7 +17,9 @@ from hypothesis import strategies as st
 
 import robosc
 from robosc.debugger import Adapter, Connection
+from robosc.debugger.launching import _KEYS
 from robosc.debugger.protocol import FramingError
+from robosc.debugger.stops import FILTERS
 from robosc.m2t.models import Models
 
 from ..cli.conftest import DOOR, not_longer_than
@@ -306,3 +309,14 @@ def test_no_request_is_a_fault_of_the_adapter(asked: list[tuple[str, Any]]) -> N
     answers = [message for message in heard.sent if message["type"] == "response"]
     assert [answer["request_seq"] for answer in answers] == list(range(1, len(asked) + 3))
     assert [answer["message"] for answer in answers if "a fault of robosc itself" in answer.get("message", "")] == []
+
+
+def test_the_page_tells_of_all_there_is() -> None:
+    page = (ROOT / "docs" / "debugging.md").read_text()
+    told = page.partition("## What can be done")[0]
+    assert set(re.findall(r"`(\w+)`(?=[^\n]*? \| )", told)) >= set(_KEYS)
+    answered = page.partition("What is answered:")[2].partition(". `initialized`")[0]
+    assert set(re.findall(r"`(\w+)`", answered)) == set(Adapter._answers)
+    assert {one["filter"] for one in FILTERS} == set(re.findall(r"\(`(\w+)`\) \|", page))
+    for code in re.findall(r"```json\n(.*?)```", page, re.DOTALL):
+        json.loads(code)
