@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from robosc.analysis.blocking_in_words import counterexample_in_words
 from robosc.analysis.explain import explain, explored, state_given
-from robosc.analysis.wording import counterexample_in_words, in_words, name, words
+from robosc.analysis.wording import in_words, name, words
 from robosc.files import reading as files
 from robosc.metamodel import sct
 from robosc.metamodel.places import place
