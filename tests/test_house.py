@@ -70,6 +70,7 @@ LIBRARIES = {
     "oxidd": {"synthesis"},
     "pydantic": {"configuration"},
     "pyecore": {"metamodel"},
+    "pygments": {"highlighting"},
     "pygls": {"editor"},
     "rcl_interfaces": {"runtime"},
     "rclpy": {"runtime"},

@@ -1,0 +1,144 @@
+"""What regular expressions tell of a text: comments, strings, numbers, keywords where they are such, names."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+
+class Kind(StrEnum):
+    """What a piece of text is, by its scope in TextMate grammars."""
+
+    COMMENT = "comment.line.double-slash"
+    STRING = "string.quoted"
+    FLOAT = "constant.numeric.float"
+    INTEGER = "constant.numeric.integer"
+    DECLARATION = "keyword.declaration"
+    MODIFIER = "storage.modifier"
+    CONTROL = "keyword.control"
+    TYPE = "support.type"
+    CONSTANT = "constant.language"
+    DATA = "variable.language"
+    WORD_OPERATOR = "keyword.operator.logical"
+    FUNCTION = "support.function"
+    UNIT = "keyword.other.unit"
+    DECLARED = "entity.name.type"
+    NAME = "variable.other"
+    OPERATOR = "keyword.operator"
+    PUNCTUATION = "punctuation"
+    BLANK = "text"
+
+
+#: The kinds of what the grammar has as a word of its own.
+WORDS = (
+    *(Kind.DECLARATION, Kind.MODIFIER, Kind.CONTROL, Kind.TYPE, Kind.CONSTANT, Kind.DATA, Kind.WORD_OPERATOR),
+    *(Kind.FUNCTION, Kind.UNIT),
+)
+#: The words that names can't be where an expression stands.
+RESERVED: Mapping[Kind, tuple[str, ...]] = {
+    Kind.DECLARATION: (
+        *(
+            "action",
+            "behaviour",
+            "component",
+            "datatype",
+            "enum",
+            "import",
+            "interface",
+            "library",
+            "message",
+            "object",
+        ),
+        *("provide", "requirement", "robot", "service", "state", "transition", "use", "variable"),
+    ),
+    Kind.MODIFIER: ("incoming", "initial", "marked", "outgoing"),
+    Kind.CONTROL: (
+        *("cancel", "default", "disables", "do", "error", "feedback", "from", "goto", "identifier", "if", "links"),
+        *("needs", "on", "request", "response", "to", "type", "with"),
+    ),
+    Kind.TYPE: ("array", "boolean", "double", "integer", "none", "string"),
+    Kind.CONSTANT: ("false", "true"),
+    Kind.DATA: ("value",),
+    Kind.WORD_OPERATOR: ("and", "or"),
+}
+#: The words that are names unless they begin a construct.
+IN_CONTEXT: Mapping[Kind, tuple[str, ...]] = {
+    Kind.DECLARATION: ("automaton", "condition", "constant", "function", "is", "parameter", "property"),
+    Kind.CONTROL: (*("after", "always", "each", "else", "in", "never", "reachable", "since", "then", "without"),),
+}
+SEND = ("send", "change")
+AT_MOST = ("at", "most")
+UNITS = ("ms", "s", "min")
+QUANTIFIERS = ("all", "any", "count")
+FUNCTIONS = (*("abs", "atan2", "ceil", "cos", "double", "floor", "max", "min", "mod", "round", "sin", "size", "sqrt"),)
+
+_NAME = r"\^?[A-Za-z_][A-Za-z0-9_]*"
+#: Reserved words before a colon that are no names of fields.
+_KEYS = ("identifier", "type", "request", "response", "feedback")
+#: Words that stand behind a name, and never where a construct has its first operand.
+_BEHIND_NAMES = ("and", "disables", "do", "goto", "in", "needs", "or", "to")
+#: What begins with a block of its own; it may go on over several lines.
+BLOCK_COMMENT = (r"/\*", r"\*/")
+
+
+@dataclass(frozen=True)
+class Rule:
+    """A regular expression, and the kind of all that it matches, or of each of its groups, which are all of it."""
+
+    pattern: str
+    kinds: tuple[Kind, ...]
+
+
+def rules() -> Iterator[Rule]:
+    """All rules: where several match at a place, the first one counts. Block comments go before them."""
+    blank, number = r"(\s+)", r"[0-9]+(?:\.[0-9]+)?"
+    unit, name = _any(UNITS), f"({_NAME})"
+    yield Rule(r"//[^\n]*", (Kind.COMMENT,))
+    yield Rule(r'"(?:[^"\\\n]|\\.)*"', (Kind.STRING,))
+    yield Rule(r"'(?:[^'\\\n]|\\.)*'", (Kind.STRING,))
+    # Times
+    yield Rule(rf"({number}){blank}{unit}\b", (Kind.FLOAT, Kind.BLANK, Kind.UNIT))
+    yield Rule(rf"(\)){blank}{unit}\b", (Kind.PUNCTUATION, Kind.BLANK, Kind.UNIT))
+    after = (Kind.CONTROL, Kind.BLANK, Kind.NAME, Kind.BLANK, Kind.UNIT)
+    yield Rule(rf"(?<![\w^])(after){blank}({_NAME}(?:\.{_NAME})?){blank}{unit}\b", after)
+    # A number before the dots of a range is no double.
+    yield Rule(r"[0-9]+\.[0-9]+\b", (Kind.FLOAT,))
+    yield Rule(r"[0-9]+\b", (Kind.INTEGER,))
+    # Where only a name can stand, words are names, too.
+    yield Rule(r"\.\.", (Kind.OPERATOR,))
+    yield Rule(rf"(\.)(\s*){name}", (Kind.PUNCTUATION, Kind.BLANK, Kind.NAME))
+    yield Rule(rf"\^{_NAME[3:]}", (Kind.NAME,))
+    declaring = ("robot", "library", "component", "state", "message", "service", "action", "variable", "interface")
+    declared = (Kind.DECLARATION, Kind.BLANK, Kind.DECLARED)
+    yield Rule(rf"{_any((*declaring, 'enum', 'object'))}{blank}{name}", declared)
+    yield Rule(rf"{_any(('constant', 'parameter', 'condition', 'function'))}{blank}{name}(?=\s*[:=(])", declared)
+    yield Rule(rf"{_any(('requirement', 'property'))}{blank}{name}(?=\s*[:\"'])", declared)
+    yield Rule(rf"(?<![\w^])(goto){blank}{name}", (Kind.CONTROL, Kind.BLANK, Kind.NAME))
+    yield Rule(rf"(->)(\s*){name}", (Kind.OPERATOR, Kind.BLANK, Kind.NAME))
+    yield Rule(rf"(?<![\w^])(in){blank}(value)\b", (Kind.CONTROL, Kind.BLANK, Kind.DATA))
+    yield Rule(r"(send)(\s*:\s*)(change)\b", (Kind.CONTROL, Kind.PUNCTUATION, Kind.CONTROL))
+    yield Rule(rf"(?<![\w^])(at){blank}(most)\b", (Kind.CONTROL, Kind.BLANK, Kind.CONTROL))
+    reserved = [word for words in RESERVED.values() for word in words]
+    yield Rule(rf"{_any([word for word in reserved if word not in _KEYS])}(?=\s*:(?!=))", (Kind.NAME,))
+    # Words that need more behind them
+    yield Rule(rf"{_any(QUANTIFIERS)}\b(?=\s+{_NAME}(?:\s*:|\s+in\b))", (Kind.WORD_OPERATOR,))
+    yield Rule(rf"{_any(FUNCTIONS)}\b(?=\s*\()", (Kind.FUNCTION,))
+    no_operand = rf"(?!{_any(_BEHIND_NAMES)}\b)"
+    for kind, words in IN_CONTEXT.items():
+        yield Rule(rf"{_any(words)}\b(?=\s*$|\s+{no_operand}[\w^({{!\-\"'\[]|\()", (kind,))
+    for kind, words in RESERVED.items():
+        yield Rule(rf"{_any(words)}\b", (kind,))
+    yield Rule(_NAME, (Kind.NAME,))
+    yield Rule(r":=|->|=>|!=|<=|>=|[-+*/=<>!]", (Kind.OPERATOR,))
+    yield Rule(r"[{}()\[\],:.]", (Kind.PUNCTUATION,))
+    yield Rule(r"\s+", (Kind.BLANK,))
+
+
+def _any(words: list[str] | tuple[str, ...]) -> str:
+    """A group of any of the words, as whole ones at its start."""
+    return rf"(?<![\w^])({'|'.join(map(re.escape, words))})"
