@@ -50,6 +50,5 @@ def _findings(base: rsc.Base, unread: Sequence[Diagnostic], interfaces: RosTypes
         for finding in rule.check(base, interfaces):
             if not finding.can_be_false(unread):
                 span = place(finding.element)[1]
-                yield Diagnostic(
-                    file, span, rule.severity, rule.id, finding.message, finding.hint, (), finding.places()
-                )
+                hint, edits = finding.said()
+                yield Diagnostic(file, span, rule.severity, rule.id, finding.message, hint, edits, finding.places())

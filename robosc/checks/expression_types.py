@@ -35,6 +35,8 @@ from robosc.semantics.walks import fold, operands
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
+    from robosc.diagnostics import Repair
+
 
 class Restriction(Enum):
     """Which names an expression may read."""
@@ -164,7 +166,7 @@ class ExpressionCheck:
             return UNKNOWN
         return then if then != UNKNOWN else otherwise
 
-    def report(self, element: ex.Located, message: str, hint: str) -> None:
+    def report(self, element: ex.Located, message: str, hint: Repair | str) -> None:
         """Notes a finding."""
         self.findings.append(Finding(element, message, hint))
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
-from robosc.diagnostics import Related, Severity
+from robosc.diagnostics import Edit, Related, Repair, Severity, Span
 from robosc.metamodel import expression as ex
 from robosc.metamodel.places import place
 from robosc.metamodel.reflection import tree
@@ -13,14 +13,23 @@ from robosc.metamodel.reflection import tree
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
-    from robosc.diagnostics import Diagnostic, Span
+    from robosc.diagnostics import Diagnostic
     from robosc.metamodel import robosc as rsc
     from robosc.ros_types import RosTypes
 
 
+class Insertion(NamedTuple):
+    """A hint, and the text that does what it says, to be written before an element, or `behind` it."""
+
+    hint: str
+    text: str
+    element: ex.Located
+    behind: bool = False
+
+
 @dataclass(frozen=True)
 class Finding:
-    """What a rule found at an element of the model.
+    """What a rule found at an element of the model; the text of a `Repair` takes the element's place.
 
     `relies_on` is an element that must be free of syntax errors for the finding to be true: what is concluded from
     something being absent. `relies_on_names` are the classes whose own names must be resolved within it, too.
@@ -29,10 +38,25 @@ class Finding:
 
     element: ex.Located
     message: str
-    hint: str
+    hint: str | Repair | Insertion
     relies_on: ex.Located | None = None
     relies_on_names: tuple[type[ex.Located], ...] = ()
     related: ex.Located | None = None
+
+    def said(self) -> tuple[str, tuple[Edit, ...]]:
+        """The hint, and the edits that do what it says in the file of the element."""
+        match self.hint:
+            case Repair(said, None) | str(said):
+                return said, ()
+            case Repair(said, text):
+                return said, (Edit(place(self.element)[1], str(text)),)
+            case Insertion(said, text, element, behind):
+                file, span = place(element)
+                if file != place(self.element)[0]:
+                    return said, ()
+                at = (span.end_line, span.end_column) if behind else (span.line, span.column)
+                return said, (Edit(Span(*at, *at), text),)
+        raise TypeError(self.hint)
 
     def places(self) -> tuple[Related, ...]:
         """Where the other element that it speaks of stands."""

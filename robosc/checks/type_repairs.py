@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.checks.definitions import component_of
+from robosc.diagnostics import Repair
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
 from robosc.semantics.naming import written
@@ -36,7 +37,7 @@ _LITERALS: Mapping[Type, str] = {
 _LITERAL = (ex.IntegerLiteral, ex.DoubleLiteral, ex.StringLiteral)
 
 
-def repair(expression: ex.Expression, found: Type, wanted: Type) -> str:
+def repair(expression: ex.Expression, found: Type, wanted: Type) -> Repair | str:
     """How an expression of one type becomes one of the wanted type.
 
     An object value is found as UNKNOWN; where UNKNOWN is wanted, any type will do that can be compared.
@@ -62,7 +63,7 @@ def repair(expression: ex.Expression, found: Type, wanted: Type) -> str:
     return _conversion(expression, found, wanted)
 
 
-def literal_repair(expression: ex.Expression, found: Type, wanted: Type) -> str | None:
+def literal_repair(expression: ex.Expression, found: Type, wanted: Type) -> Repair | None:
     """The literal of the wanted type that means the same, as a repair; None where there is none."""
     inner = expression.operand if isinstance(expression, ex.UnaryMinus) else expression
     sign = "" if inner is expression else "-"
@@ -82,10 +83,12 @@ def literal_repair(expression: ex.Expression, found: Type, wanted: Type) -> str 
             text = inner.value
         case ex.StringLiteral(), EnumType() if inner.value in _values(wanted):
             text = written(inner.value)
-    return f"write `{text}`" if text is not None and found != wanted else None
+    return Repair(f"write `{text}`", text) if text is not None and found != wanted else None
 
 
-def equality_repair(operator: ex.Equation | ex.Inequation, left: Type, right: Type) -> tuple[ex.Expression, str]:
+def equality_repair(
+    operator: ex.Equation | ex.Inequation, left: Type, right: Type
+) -> tuple[ex.Expression, Repair | str]:
     """Where and how to mend a comparison of two types: at a literal that can be rewritten, else as a whole."""
     sides = ((operator.right, right, left), (operator.left, left, right))
     for expression, found, wanted in sides:

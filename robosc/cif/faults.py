@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from robosc.diagnostics import Diagnostic
-    from robosc.language.text import Repair, Text
+    from robosc.diagnostics import Diagnostic, Repair
+    from robosc.language.text import Text
     from robosc.metamodel.places import Place
 
 

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 import arpeggio
 import textx
 
+from robosc.diagnostics import Repair
 from robosc.files.resources import locate
 from robosc.language.explaining import did_you_mean
-from robosc.language.text import Repair
 from robosc.semantics.naming import enumeration
 
 if TYPE_CHECKING:

@@ -12,8 +12,8 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from robosc.cif.faults import CifFaultError, construct, located
+from robosc.diagnostics import Repair
 from robosc.language.explaining import did_you_mean
-from robosc.language.text import Repair
 from robosc.metamodel import sct
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -45,6 +45,13 @@ class Edit:
 
     span: Span
     text: str
+
+
+class Repair(NamedTuple):
+    """How to mend a fault: in words, and the text to write in its place (None: that takes more than another text)."""
+
+    hint: str
+    text: str | None = None
 
 
 @dataclass(frozen=True, order=True)
@@ -93,3 +100,12 @@ def in_order(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
 def has_errors(findings: Iterable[Diagnostic]) -> bool:
     """Whether one of the findings keeps the model from being used."""
     return any(finding.severity is Severity.ERROR for finding in findings)
+
+
+def without_overlaps(edits: Iterable[Edit]) -> list[Edit]:
+    """Edits of one file in order, without those that touch an earlier one: all of these can be done at once."""
+    done: list[Edit] = []
+    for edit in sorted(set(edits)):
+        if not done or (done[-1].span.end_line, done[-1].span.end_column) < (edit.span.line, edit.span.column):
+            done.append(edit)
+    return done

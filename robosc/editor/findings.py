@@ -7,17 +7,19 @@ from typing import TYPE_CHECKING
 
 from lsprotocol import types
 
-from robosc.diagnostics import Severity, in_order
+from robosc.diagnostics import Severity, in_order, without_overlaps
 from robosc.diagnostics.rules import address
 from robosc.editor.places import span_range
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from robosc.diagnostics import Diagnostic
+    from robosc.diagnostics import Diagnostic, Edit
     from robosc.editor.project import Analysis, Snapshot
     from robosc.language import Text
 
+_MEND_ALL = "source.fixAll.robosc"
+CODE_ACTION_OPTIONS = types.CodeActionOptions([types.CodeActionKind.QuickFix, _MEND_ALL])
 _SEVERITIES = {
     Severity.ERROR: types.DiagnosticSeverity.Error,
     Severity.WARNING: types.DiagnosticSeverity.Warning,
@@ -55,3 +57,34 @@ def diagnostic(snapshot: Snapshot, finding: Diagnostic, texts: Mapping[str, Text
         source="robosc",
         related_information=related or None,
     )
+
+
+def code_actions(snapshot: Snapshot, analysis: Analysis, params: types.CodeActionParams) -> list[types.CodeAction]:
+    """What does what a hint says, for each finding in a range; and all that hints say at once, where that is asked."""
+    only = params.context.only
+    text, uri = analysis.text, params.text_document.uri
+    own = [finding for finding in analysis.findings if finding.file == text.file and finding.edits]
+    found = []
+    if only is None or types.CodeActionKind.QuickFix in only:
+        for finding in own:
+            place = span_range(text, finding.span)
+            if place.start <= params.range.end and params.range.start <= place.end:
+                found.append(
+                    types.CodeAction(
+                        finding.hint or finding.message,
+                        kind=types.CodeActionKind.QuickFix,
+                        diagnostics=[diagnostic(snapshot, finding, {text.file: text})],
+                        edit=types.WorkspaceEdit({uri: _edits(text, finding.edits)}),
+                        is_preferred=True,
+                    )
+                )
+    if only is not None and any(kind == _MEND_ALL or _MEND_ALL.startswith(f"{kind}.") for kind in only):
+        edits = without_overlaps(edit for finding in own for edit in finding.edits)
+        if edits:
+            whole = types.WorkspaceEdit({uri: _edits(text, edits)})
+            found.append(types.CodeAction("Do what all hints say", kind=_MEND_ALL, edit=whole))
+    return found
+
+
+def _edits(text: Text, edits: Iterable[Edit]) -> list[types.TextEdit]:
+    return [types.TextEdit(span_range(text, edit.span), edit.text) for edit in edits]

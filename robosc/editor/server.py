@@ -23,7 +23,7 @@ from pygls.protocol import LanguageServerProtocol, lsp_method
 from robosc.editor import reading
 from robosc.editor.colours import LEGEND, semantic_tokens
 from robosc.editor.completion import OPTIONS, SIGNATURE_OPTIONS, completion, signature_help
-from robosc.editor.findings import published
+from robosc.editor.findings import CODE_ACTION_OPTIONS, code_actions, published
 from robosc.editor.project import Project
 from robosc.editor.renaming import prepare_rename, rename
 from robosc.language.grammar import language
@@ -50,6 +50,7 @@ ANSWERS: Mapping[str, Callable[[Snapshot, Analysis, Any], Any]] = {
     types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL: semantic_tokens,
     types.TEXT_DOCUMENT_COMPLETION: completion,
     types.TEXT_DOCUMENT_SIGNATURE_HELP: signature_help,
+    types.TEXT_DOCUMENT_CODE_ACTION: code_actions,
     types.TEXT_DOCUMENT_PREPARE_RENAME: prepare_rename,
     types.TEXT_DOCUMENT_RENAME: rename,
 }
@@ -57,6 +58,7 @@ _OPTIONS: Mapping[str, Any] = {
     types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL: LEGEND,
     types.TEXT_DOCUMENT_COMPLETION: OPTIONS,
     types.TEXT_DOCUMENT_SIGNATURE_HELP: SIGNATURE_OPTIONS,
+    types.TEXT_DOCUMENT_CODE_ACTION: CODE_ACTION_OPTIONS,
     types.TEXT_DOCUMENT_RENAME: types.RenameOptions(prepare_provider=True),
 }
 _CONTENT_MODIFIED = int(types.LSPErrorCodes.ContentModified)

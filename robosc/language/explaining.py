@@ -5,9 +5,9 @@ from __future__ import annotations
 from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
+from robosc.diagnostics import Repair
 from robosc.language.grammar import first, is_reserved
 from robosc.language.outline import COMPONENT, DEFINITIONS, RULES
-from robosc.language.text import Repair
 from robosc.language.tokens import Kind, Token
 from robosc.semantics.naming import enumeration, written
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from robosc.diagnostics import Repair
 from robosc.language.explaining import BASIC_TYPES, CONSTRUCTS, did_you_mean
 from robosc.language.interface_types import declare, is_made, link_interface, ros_properties, ros_property
 from robosc.language.scopes import Declared, File, Names, Scope, by_name
-from robosc.language.text import Repair
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
 from robosc.semantics.expansion import constant_value
@@ -450,9 +450,9 @@ class Linker:
         elif not self._file.may_declare(name.text, Declared.ENUM_VALUE, Declared.NAMED):
             named = self.scope.usable(rsc.NamedExpression)
             known = [*components, *members, *named, *self.scope.usable(rsc.EnumValue)]
-            hint = OWN_MEMBERS if self._is_library and self._elsewhere(name) else self._elsewhere(name)
-            hint = hint or CONSTRUCTS.get(name.text)
-            self._missing(name, "there is no component, variable, state or enum value", known, hint, listed=False)
+            elsewhere = self._elsewhere(name)
+            instead = OWN_MEMBERS if self._is_library and elsewhere else elsewhere or CONSTRUCTS.get(name.text)
+            self._missing(name, "there is no component, variable, state or enum value", known, instead, listed=False)
 
     def _named_value(self, access: rsc.Access, name: Name) -> bool:
         """Whether a name is that of a constant or condition of the robot or library, or of several, a finding."""
@@ -463,13 +463,15 @@ class Linker:
             access.item = found[0][1]
         return bool(found)
 
-    def _elsewhere(self, name: Name) -> str | None:
+    def _elsewhere(self, name: Name) -> Repair | str | None:
         """What to write for a bare name that some component has as a variable or a state."""
         having = [
             f"`{written(component.name)}.{written(name.text)}`"
             for component in self.scope.components.values()
             if name.text in (self.scope.members(component) or {})
         ]
+        if len(having) == 1:
+            return Repair(f"write {having[0]}", having[0].strip("`"))
         return f"write {' or '.join(having)}" if having else None
 
     def _enum_value(self, access: rsc.Access, name: Name) -> bool:

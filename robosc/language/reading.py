@@ -6,13 +6,13 @@ from dataclasses import dataclass
 from pathlib import Path, PurePath
 from typing import TYPE_CHECKING
 
-from robosc.diagnostics import in_order
+from robosc.diagnostics import Repair, in_order
 from robosc.files.resources import locate
 from robosc.language.explaining import did_you_mean
 from robosc.language.libraries import LibraryPath
 from robosc.language.linking import RULE, link
 from robosc.language.recovery import parse_file
-from robosc.language.text import Documents, Repair, decode
+from robosc.language.text import Documents, decode
 from robosc.metamodel import robosc as rsc
 from robosc.ros_types import RosTypes
 

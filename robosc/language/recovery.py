@@ -9,12 +9,12 @@ from __future__ import annotations
 from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
+from robosc.diagnostics import Repair
 from robosc.language.building import Builder
 from robosc.language.explaining import expected, found, hint
 from robosc.language.grammar import Failure, first_words, is_reserved, parse
 from robosc.language.outline import DECLARED, DEFINITIONS, PROPERTIES, RULES, Block, Brace, Outline
 from robosc.language.scopes import Declared, File, SkippedRegions
-from robosc.language.text import Repair
 from robosc.language.tokens import Kind, Token, Tokens, too_complex
 
 if TYPE_CHECKING:

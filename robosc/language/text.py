@@ -9,9 +9,9 @@ from bisect import bisect_right
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
-from robosc.diagnostics import Diagnostic, Edit, Severity, Span
+from robosc.diagnostics import Diagnostic, Edit, Repair, Severity, Span
 from robosc.files import reading as files
 from robosc.metamodel.places import Place, SourceFile
 
@@ -20,13 +20,6 @@ if TYPE_CHECKING:
 
 #: A line that is a comment and nothing else.
 _COMMENT = re.compile(r"[ \t]*(?://(?P<words>[^\n]*))")
-
-
-class Repair(NamedTuple):
-    """How to mend a fault: in words, and the text to write in its place (None: that takes more than another text)."""
-
-    hint: str
-    text: str | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from robosc.checks.definitions import communications, of_kind, unit_of
 from robosc.checks.libraries import imports, instances, reachable
-from robosc.checks.rule import Finding, interface_rule, rule
+from robosc.checks.rule import Finding, Insertion, interface_rule, rule
 from robosc.checks.wire_data import Carried, UsedData, Uses, carried_data, carries
 from robosc.checks.wire_faults import Fault, Unknown, faults, misfits, wire_type
 from robosc.diagnostics import Severity
@@ -52,7 +52,7 @@ def _reason(communication: rsc.CommunicationType, types: list[Type]) -> str | No
     return None
 
 
-def _missing_link(communication: rsc.CommunicationType, base: rsc.Base, types: list[Type]) -> str:
+def _missing_link(communication: rsc.CommunicationType, base: rsc.Base, types: list[Type]) -> Insertion | str:
     """An interface that exists where there is one that fits by name, or is at least the only one."""
     units = dict.fromkeys([base, *(library for _, library in imports(base))])
     known = [interface for unit in units for interface in of_kind(rsc.Interface, unit.definitions)]
@@ -61,7 +61,8 @@ def _missing_link(communication: rsc.CommunicationType, base: rsc.Base, types: l
         interface for interface in known if any(name.startswith(interface.type or interface.name) for name in objects)
     ]
     if fitting:
-        return f"add `links {written(fitting[0].name)}` after its types"
+        link = f"links {written(fitting[0].name)}"
+        return Insertion(f"add `{link}` after its types", f" {link}", communication, behind=True)
     name = communication.name
     return (
         f"declare `interface {name} use … from …` with the ROS type and its package, and add `links {written(name)}`"

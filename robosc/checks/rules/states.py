@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.checks.definitions import behaviours, common_transitions, states
-from robosc.checks.rule import Finding, rule
+from robosc.checks.rule import Finding, Insertion, rule
 from robosc.checks.rules.requirement_events import initial_states
 from robosc.metamodel import robosc as rsc
 
@@ -38,7 +38,11 @@ def initial_state(base: rsc.Base) -> Iterator[Finding]:
             yield Finding(
                 behaviour,
                 f"no state of `{component.name}` is initial, expected one",
-                f"write `initial` before the state it starts in, such as `initial state {every[0].name}`",
+                Insertion(
+                    f"write `initial` before the state it starts in, such as `initial state {every[0].name}`",
+                    "initial ",
+                    every[0],
+                ),
                 relies_on=behaviour,
             )
 
@@ -68,10 +72,14 @@ def marked_state(base: rsc.Base) -> Iterator[Finding]:
                     state,
                     f"no marked state can be reached from `{component.name}.{state.name}`, expected that every"
                     " reachable state leads to one",
-                    f"write `marked` before `state {state.name}`, or add a transition to "
-                    + " or ".join(f"`{other.name}`" for other in marked[:3])
-                    if marked
-                    else f"write `marked` before a state of `{component.name}` where it may rest",
+                    Insertion(
+                        f"write `marked` before `state {state.name}`, or add a transition to "
+                        + " or ".join(f"`{other.name}`" for other in marked[:3])
+                        if marked
+                        else f"write `marked` before a state of `{component.name}` where it may rest",
+                        "marked ",
+                        state,
+                    ),
                     relies_on=behaviour,
                     relies_on_names=(rsc.Transition,),
                 )

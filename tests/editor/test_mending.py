@@ -1,0 +1,80 @@
+"""A hint that says what to write is an edit, and after it the finding is gone."""
+
+import pytest
+from lsprotocol import types
+
+from robosc.editor.findings import code_actions
+from robosc.editor.project import Project, Snapshot, edited
+
+URI = "file:///nowhere/model.rscd"
+ROBOT = """robot R {
+  interface flag use Bool from std_msgs
+  datatype object Bool { data: boolean }
+  component C {
+    incoming message go with type: Bool links flag
+    outgoing message told with type: double
+    behaviour {
+      variable x: double = 1.0
+      initial marked state idle { on response from told if value > 0.0 do x := value goto busy }
+      state busy { on response from told goto idle }
+    }
+  }
+  requirement go needs C.idle
+  provide go with { data: C.x > 0.0 }
+}
+"""
+CASES = [
+    ("goto busy", "goto buzy", "unresolved-reference"),
+    ("C.idle", "idle", "unresolved-reference"),
+    ("= 1.0", "= 1", "type"),
+    (" links flag", "", "interface-link"),
+    ("initial marked state", "initial state", "marked-state"),
+    ("initial marked state", "marked state", "initial-state"),
+    ("type: double", "type: float", "unresolved-reference"),
+    ("value > 0.0", "value == 0.0", "syntax"),
+    ("needs", "nees", "syntax"),
+    ("R {", "R { ;", "syntax"),
+]
+
+
+def ask(text: str, place: types.Range, *only: str) -> tuple[Snapshot, list[types.CodeAction]]:
+    project = Project()
+    path = project.put(URI, 1, text)
+    snapshot = project.snapshot()
+    context = types.CodeActionContext([], only=list(only) or None)
+    asked = types.CodeActionParams(types.TextDocumentIdentifier(URI), place, context)
+    return snapshot, code_actions(snapshot, snapshot.analysis(path), asked)
+
+
+WHOLE = types.Range(types.Position(0, 0), types.Position(100, 0))
+
+
+def errors(text: str) -> list[str]:
+    project = Project()
+    path = project.put(URI, 1, text)
+    return [finding.rule for finding in project.snapshot().analysis(path).findings]
+
+
+def test_nothing_to_mend() -> None:
+    assert errors(ROBOT) == []
+    assert ask(ROBOT, WHOLE)[1] == []
+
+
+@pytest.mark.parametrize(("right", "wrong", "rule"), CASES)
+def test_a_hint_mends(right: str, wrong: str, rule: str) -> None:
+    text = ROBOT.replace(right, wrong, 1)
+    assert text != ROBOT
+    _, actions = ask(text, WHOLE)
+    action = next(action for action in actions if action.diagnostics[0].code == rule)
+    assert action.title in action.diagnostics[0].message
+    after = edited(text, action.edit.changes[URI])
+    assert rule not in errors(after), after
+    nowhere = types.Range(types.Position(0, 0), types.Position(0, 0))
+    assert action.title not in {other.title for other in ask(text, nowhere)[1]} or "R { ;" in text
+
+
+def test_all_at_once() -> None:
+    text = ROBOT.replace("goto busy", "goto buzy").replace("= 1.0", "= 1").replace("double links", "float links")
+    _, (action,) = ask(text, WHOLE, "source.fixAll")
+    assert edited(text, action.edit.changes[URI]) == ROBOT
+    assert ask(text, WHOLE, "refactor")[1] == []
