@@ -21,6 +21,7 @@ from pygls.lsp.server import LanguageServer
 from pygls.protocol import LanguageServerProtocol, lsp_method
 
 from robosc.editor import reading
+from robosc.editor.changes import incoming_calls, inlay_hints, outgoing_calls, prepare_call_hierarchy
 from robosc.editor.colours import LEGEND, semantic_tokens
 from robosc.editor.completion import OPTIONS, SIGNATURE_OPTIONS, completion, signature_help
 from robosc.editor.findings import CODE_ACTION_OPTIONS, code_actions, published
@@ -51,6 +52,10 @@ ANSWERS: Mapping[str, Callable[[Snapshot, Analysis, Any], Any]] = {
     types.TEXT_DOCUMENT_COMPLETION: completion,
     types.TEXT_DOCUMENT_SIGNATURE_HELP: signature_help,
     types.TEXT_DOCUMENT_CODE_ACTION: code_actions,
+    types.TEXT_DOCUMENT_INLAY_HINT: inlay_hints,
+    types.TEXT_DOCUMENT_PREPARE_CALL_HIERARCHY: prepare_call_hierarchy,
+    types.CALL_HIERARCHY_INCOMING_CALLS: incoming_calls,
+    types.CALL_HIERARCHY_OUTGOING_CALLS: outgoing_calls,
     types.TEXT_DOCUMENT_PREPARE_RENAME: prepare_rename,
     types.TEXT_DOCUMENT_RENAME: rename,
 }
@@ -263,7 +268,8 @@ def _register_answers(server: Server) -> None:
 
 def _handler(server: Server, job: Callable[[Snapshot, Analysis, Any], Any]) -> Callable[[Any], Awaitable[Any]]:
     async def handle(params: Any) -> Any:
-        return await server.answer(params.text_document.uri, lambda snapshot, analysis: job(snapshot, analysis, params))
+        uri = params.item.uri if hasattr(params, "item") else params.text_document.uri
+        return await server.answer(uri, lambda snapshot, analysis: job(snapshot, analysis, params))
 
     return handle
 

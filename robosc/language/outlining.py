@@ -48,7 +48,7 @@ def outline(file: File) -> list[Item]:
     """The definitions of a text, as far as it could be read, each in the one that it stands in."""
     roots: list[Item] = []
     found: dict[Any, Item] = {}
-    for element in _elements(file):
+    for element in own_elements(file):
         name = file.declared_names.get(element)
         if isinstance(element, _HIDDEN) or (name is None and not isinstance(element, _ITEMS)):
             continue
@@ -70,7 +70,7 @@ def outline(file: File) -> list[Item]:
 
 def folds(file: File) -> list[tuple[int, int]]:
     """The ranges of a text that can be folded (offsets): definitions of several lines, each up to its last brace."""
-    return [span(file, element) for element in _elements(file) if isinstance(element, _FOLDED)]
+    return [span(file, element) for element in own_elements(file) if isinstance(element, _FOLDED)]
 
 
 def around(file: File, offset: int) -> list[tuple[int, int]]:
@@ -79,7 +79,7 @@ def around(file: File, offset: int) -> list[tuple[int, int]]:
     name = file.name_at(offset)
     if name is not None:
         found.add((name.start, name.end))
-    for element in _elements(file):
+    for element in own_elements(file):
         start, end = span(file, element)
         if start <= offset <= end:
             found.add((start, end))
@@ -98,7 +98,7 @@ def span(file: File, element: Any) -> tuple[int, int]:
     return start, max(start, file.text.offset(place.end_line, place.end_column))
 
 
-def _elements(file: File) -> Iterator[Any]:
+def own_elements(file: File) -> Iterator[Any]:
     """All elements that stand in the text itself, each before what it contains."""
     for _, element in tree(file.base) if file.base is not None else ():
         if element.source is not None and not _made(element):

@@ -379,3 +379,58 @@ async def test_a_request_that_is_overtaken_is_not_worked_on(client: Editor, fold
     later = await client.text_document_hover_async(types.HoverParams(**at(uri, position(ROBOT, "Door {"))))
     assert "component Gate" in later.contents.value
     close(client, uri)
+
+
+async def test_inlay_hints(client: Editor, folder: Path) -> None:
+    text = ROBOT.replace(
+        "  requirement R1",
+        """  function gain(d: double): double = d * 2.0
+  component Lamp(ns: string) { incoming message lit with identifier: ns + "/lit", type: boolean }
+  component Red is Lamp("/red")
+  component Green is Lamp(ns: "/green")
+  requirement R1""",
+    ).replace("with 0.5", "with gain(0.5)")
+    uri, found = await opened(client, folder / "hints.rscd", text)
+    assert found == []
+    whole = types.Range(types.Position(0, 0), types.Position(text.count("\n"), 0))
+    hints = await client.text_document_inlay_hint_async(_about(uri, types.InlayHintParams, range=whole))
+    assert [(hint.label, hint.position) for hint in hints] == [
+        (": boolean", position(text, "value goto", 5)),
+        (": boolean", position(text, "!value", 6)),
+        ("ns:", position(text, '"/red"')),
+        ("d:", position(text, "0.5")),
+    ]
+    close(client, uri)
+
+
+async def test_who_can_make_this_state_change(client: Editor, folder: Path) -> None:
+    text = ROBOT.replace("behaviour {", "behaviour {\n after 3.0 s without opened goto closed", 1)
+    uri, _ = await opened(client, folder / "calls.rscd", text)
+    (item,) = await client.text_document_prepare_call_hierarchy_async(
+        types.CallHierarchyPrepareParams(**at(uri, position(text, "goto closed", 6)))
+    )
+    assert (item.name, of(text, item.selection_range)) == ("Door.closed", "closed")
+    calls = await client.call_hierarchy_incoming_calls_async(types.CallHierarchyIncomingCallsParams(item))
+    assert [(call.from_.name, call.from_.detail, of(text, call.from_ranges[0])) for call in calls] == [
+        ("Door", "after 3.0 s without opened", "after 3.0 s without opened goto closed"),
+        ("Door.open", "response from opened", "on response from opened if !value goto closed"),
+    ]
+    calls = await client.call_hierarchy_outgoing_calls_async(types.CallHierarchyOutgoingCallsParams(item))
+    assert [(call.to.name, call.to.detail) for call in calls] == [("Door.open", "response from opened")]
+    calls = await client.call_hierarchy_incoming_calls_async(types.CallHierarchyIncomingCallsParams(calls[0].to))
+    assert [call.from_.name for call in calls] == ["Door.closed"]
+    close(client, uri)
+
+
+async def test_quick_fix_over_the_protocol(client: Editor, folder: Path) -> None:
+    text = ROBOT.replace("Door.open", "Door.opem")
+    uri, (finding,) = await opened(client, folder / "fix.rscd", text)
+    context = types.CodeActionContext([finding])
+    (action,) = await client.text_document_code_action_async(
+        _about(uri, types.CodeActionParams, range=finding.range, context=context)
+    )
+    assert (action.title, action.kind) == ("did you mean `open`?", types.CodeActionKind.QuickFix)
+    (edit,) = action.edit.changes[uri]
+    replace(client, uri, 2, (edit.range, edit.new_text))
+    assert await findings(client, uri, 2) == []
+    close(client, uri)

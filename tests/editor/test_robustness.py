@@ -54,6 +54,8 @@ def parameters(method: str, text: Text, offset: int) -> object:
     }
     if method == types.TEXT_DOCUMENT_REFERENCES:
         known["context"] = types.ReferenceContext(include_declaration=True)
+    elif method in {types.CALL_HIERARCHY_INCOMING_CALLS, types.CALL_HIERARCHY_OUTGOING_CALLS}:
+        known["item"] = types.CallHierarchyItem("s", types.SymbolKind.EnumMember, URI, place, place)
     elif method == types.TEXT_DOCUMENT_CODE_ACTION:
         known["context"] = types.CodeActionContext([])
     names = {attribute.name for attribute in made.__attrs_attrs__}

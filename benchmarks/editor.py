@@ -1,0 +1,104 @@
+"""How soon the language server tells findings after a key, and what memory it takes over many edits.
+
+    python benchmarks/editor.py [--lines 1000 10000] [--keys 20] [--edits 2000]
+
+Prints the table of docs/editor.md: a server in a process of its own, over its standard input and output, without the
+pause that it makes while somebody types. A key is a letter within a name, typed and taken back, so that findings come
+and go. Needs `pip install 'robosc[test]'`.
+"""
+
+from __future__ import annotations
+
+import argparse
+import asyncio
+import statistics
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+from lsprotocol import types
+
+ROOT = Path(__file__).parent.parent
+sys.path.insert(0, str(ROOT))
+
+from tests.editor.server import COMMAND, Editor, findings, initialize, open_text, position, replace  # noqa: E402
+
+#: Twelve lines; the requirements of each component name the next one.
+COMPONENT = """  component Door{number} {{
+    outgoing message opened{number} with identifier: "/door_{number}", type: double
+    incoming message turn{number} with identifier: "/turn_{number}", type: none
+    behaviour {{
+      variable seen: boolean
+      initial marked state closed {{ on response from opened{number} if value > 0.5 do seen := true goto open }}
+      state open {{
+        on response from opened{number} if value <= 0.5 goto closed
+      }}
+    }}
+  }}
+  requirement turn{number} needs Door{number}.open and Door{following}.closed
+"""
+
+
+def model(lines: int) -> str:
+    """A robot of about so many lines."""
+    count = lines // COMPONENT.count("\n")
+    parts = (COMPONENT.format(number=number, following=(number + 1) % count) for number in range(count))
+    return f"robot Doors {{\n{''.join(parts)}}}\n"
+
+
+async def measure(lines: int, keys: int, edits: int) -> str:
+    """A row of the table."""
+    text = model(lines)
+    with tempfile.TemporaryDirectory() as folder:
+        client = Editor()
+        await client.start_io(*COMMAND)
+        await initialize(client, Path(folder))
+        uri = open_text(client, Path(folder) / "doors.rscd", text)
+        await findings(client, uri, 1)
+        where = position(text, "seen := true", nth=lines // 24)
+        inserted = types.Range(where, where)
+        taken = types.Range(where, types.Position(where.line, where.character + 1))
+        version, times = 1, []
+        for key in range(keys):
+            version += 1
+            began = time.perf_counter()
+            replace(client, uri, version, (inserted, "x") if key % 2 == 0 else (taken, ""))
+            told = await findings(client, uri, version)
+            times.append(time.perf_counter() - began)
+            assert bool(told) == (key % 2 == 0)
+        at_first = _megabytes(client)
+        for edit in range(edits):
+            version += 1
+            replace(client, uri, version, (inserted, "x") if edit % 2 == 0 else (taken, ""))
+            if edit % 10 == 9:  # as fast as somebody types, findings come now and then
+                await findings(client, uri, version)
+        at_last = _megabytes(client)
+        await client.shutdown_session()
+        await client.stop()
+    count = text.count("\n")
+    return (
+        f"| {count:,} | {statistics.median(times) * 1000:,.0f} ms | {at_first:,.0f} MB |"
+        f" {at_last:,.0f} MB after {edits:,} edits |"
+    )
+
+
+def _megabytes(client: Editor) -> float:
+    """What the server has in memory."""
+    pages = int((Path("/proc") / str(client._server.pid) / "statm").read_text().split()[1])  # noqa: SLF001
+    return pages * 4096 / 2**20
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n", 1)[0])
+    parser.add_argument("--lines", type=int, nargs="+", default=[1000, 10000])
+    parser.add_argument("--keys", type=int, default=20)
+    parser.add_argument("--edits", type=int, default=2000)
+    options = parser.parse_args()
+    print("| lines | from a key to its findings (median) | memory | memory later |\n|---|---|---|---|")
+    for lines in options.lines:
+        print(asyncio.run(measure(lines, options.keys, options.edits)), flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,55 @@
+"""What a reader of a text would like to see beside its words: the types of `value`, the parameters of arguments."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from robosc.language.outlining import own_elements, span
+from robosc.metamodel import robosc as rsc
+from robosc.semantics.typing import UNKNOWN, ArrayType, ObjectType, Type, value_type
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from robosc.language.scopes import File
+
+
+class Note(NamedTuple):
+    """Text to be shown at an offset; of a type behind a word, else of what comes before one."""
+
+    offset: int
+    text: str
+    is_type: bool
+
+
+def notes(file: File) -> list[Note]:
+    """The notes to a text, in order."""
+    return sorted(note for element in own_elements(file) for note in _notes(file, element))
+
+
+def _notes(file: File, element: Any) -> Iterator[Note]:
+    match element:
+        case rsc.Access() if element.value:
+            found = value_type(element)
+            if found is not None and found != UNKNOWN:
+                yield Note(span(file, element)[0] + len("value"), f": {_written(found)}", is_type=True)
+        case rsc.InstantiatedComponent() | rsc.ImportedComponent() if element.definition is not None:
+            yield from _of_arguments(file, element.arguments, element.definition.parameters)
+        case rsc.ComplexDataTypeReference() if isinstance(element.type, rsc.EnumDataType):
+            yield from _of_arguments(file, element.arguments, element.type.parameters)
+        case rsc.Call() if element.function is not None:
+            for argument, parameter in zip(element.arguments, element.function.parameters, strict=False):
+                yield Note(span(file, argument)[0], f"{parameter.name}:", is_type=False)
+
+
+def _of_arguments(file: File, arguments: Sequence[rsc.Argument], parameters: Sequence[Any]) -> Iterator[Note]:
+    for argument, parameter in zip(arguments, parameters, strict=False):
+        if "parameter" in file.references.get(argument, ()):
+            return  # The others have their names in the text.
+        yield Note(span(file, argument)[0], f"{parameter.name}:", is_type=False)
+
+
+def _written(found: Type) -> str:
+    if isinstance(found, ArrayType):
+        return f"array({_written(found.element)})"
+    return found.written if isinstance(found, ObjectType) else str(found).removeprefix("enum ")
