@@ -41,7 +41,7 @@ ALLOWED = {
     "__main__": {"cli"},
     "analysis": {"synthesis", "engine", "m2t"},
     "cif": {"language"},
-    "editor": {"language", "checks"},
+    "editor": {"", "language", "checks", "analysis"},
     "runtime": {"engine"},
     "node_tests": {"engine", "runtime", "m2t"},
     "simulation": {"engine", "runtime"},

@@ -21,12 +21,15 @@ from pygls.lsp.server import LanguageServer
 from pygls.protocol import LanguageServerProtocol, lsp_method
 
 from robosc.editor import reading
+from robosc.editor.answers import Verdict
 from robosc.editor.changes import incoming_calls, inlay_hints, outgoing_calls, prepare_call_hierarchy
 from robosc.editor.colours import LEGEND, semantic_tokens
 from robosc.editor.completion import OPTIONS, SIGNATURE_OPTIONS, completion, signature_help
 from robosc.editor.findings import CODE_ACTION_OPTIONS, code_actions, published
+from robosc.editor.places import to_offset
 from robosc.editor.project import Project
 from robosc.editor.renaming import prepare_rename, rename
+from robosc.editor.synthesis import COMMAND, Verdicts, communication_at, lenses, question
 from robosc.language.grammar import language
 
 if TYPE_CHECKING:
@@ -34,6 +37,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from robosc.editor.project import Analysis, Snapshot
+    from robosc.editor.synthesis import Question
 
 _Answer = TypeVar("_Answer")
 #: How long after the last key findings are looked for, in seconds, where the editor sets nothing else.
@@ -43,7 +47,6 @@ ANSWERS: Mapping[str, Callable[[Snapshot, Analysis, Any], Any]] = {
     types.TEXT_DOCUMENT_DOCUMENT_SYMBOL: reading.symbols,
     types.TEXT_DOCUMENT_FOLDING_RANGE: reading.folding_ranges,
     types.TEXT_DOCUMENT_SELECTION_RANGE: reading.selection_ranges,
-    types.TEXT_DOCUMENT_HOVER: reading.hover,
     types.TEXT_DOCUMENT_REFERENCES: reading.references,
     types.TEXT_DOCUMENT_DOCUMENT_HIGHLIGHT: reading.highlights,
     types.TEXT_DOCUMENT_FORMATTING: reading.formatting,
@@ -89,10 +92,12 @@ class Server(LanguageServer):
         self._pause = _PAUSE
         self._waiting: asyncio.Task[None] | None = None
         self._published: dict[Path, tuple[int | None, list[types.Diagnostic]]] = {}
+        self.verdicts = Verdicts(COMMAND, self._refresh_lenses)
         _register(self)
 
     def shutdown(self) -> None:
         """Ends the server."""
+        self.verdicts.cancel()
         self._worker.shutdown(wait=False, cancel_futures=True)
         super().shutdown()  # type: ignore[no-untyped-call]
 
@@ -135,9 +140,20 @@ class Server(LanguageServer):
 
     def changed(self) -> None:
         """Looks for findings after a pause, unless something changes before."""
+        self.verdicts.cancel()
         if self._waiting is not None:
             self._waiting.cancel()
         self._waiting = asyncio.get_running_loop().create_task(self._find())
+
+    def verdict(self, asked: Question) -> Verdict | str | None:
+        """What synthesis says, as soon as it says it."""
+        project = self.project
+        return self.verdicts.ask(asked, list(map(str, project.libraries)), list(map(str, project.interfaces)))
+
+    def _refresh_lenses(self) -> None:
+        workspace = self.client_capabilities.workspace
+        if workspace is not None and workspace.code_lens is not None and workspace.code_lens.refresh_support:
+            self.workspace_code_lens_refresh(None)
 
     def tell_again(self, path: Path) -> None:
         """Tells the findings of a text that has been opened, even if they are those of before."""
@@ -260,6 +276,28 @@ def _register_answers(server: Server) -> None:
         if links is None or (known is not None and known.link_support):
             return links
         return [types.Location(link.target_uri, link.target_selection_range) for link in links]
+
+    @server.feature(types.TEXT_DOCUMENT_CODE_LENS)
+    async def code_lens(params: types.CodeLensParams) -> list[types.CodeLens]:
+        asked = await server.answer(params.text_document.uri, question)
+        return [] if asked is None else lenses(asked, server.verdict(asked))
+
+    @server.feature(types.TEXT_DOCUMENT_HOVER)
+    async def hover(params: types.HoverParams) -> types.Hover | None:
+        def job(
+            snapshot: Snapshot, analysis: Analysis
+        ) -> tuple[types.Hover | None, str | None, Path, Mapping[str, str]]:
+            named = communication_at(analysis, to_offset(analysis.text, params.position))
+            return reading.hover(snapshot, analysis, params), named, analysis.path, analysis.reading.texts
+
+        answer = await server.answer(params.text_document.uri, job)
+        found, named, path, texts = answer or (None, None, None, {})
+        known = server.verdicts.known(path, texts) if path is not None else None
+        if found is not None and named is not None and isinstance(known, Verdict) and named in known.guards:
+            assert isinstance(found.contents, types.MarkupContent)
+            guards = "\n".join(f"- {guard}" for guard in known.guards[named])
+            found.contents.value += f"\n\nThe supervisor allows its\n{guards}"
+        return found
 
     @server.feature(types.WORKSPACE_SYMBOL)
     async def workspace_symbols(params: types.WorkspaceSymbolParams) -> list[types.WorkspaceSymbol]:

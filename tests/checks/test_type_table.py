@@ -152,7 +152,7 @@ def test_types_of_one_name_are_told_apart() -> None:
 def test_repair_of_a_literal(literal: ex.Expression, wanted: Type, repair: str) -> None:
     check = ExpressionCheck(Place(None))
     check.expect(literal, wanted, "it")
-    assert [finding.said()[0] for finding in check.findings] == [repair]
+    assert [getattr(finding.hint, "hint", finding.hint) for finding in check.findings] == [repair]
 
 
 @pytest.mark.parametrize(

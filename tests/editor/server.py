@@ -26,11 +26,16 @@ class Editor(LanguageClient):
         super().__init__(converter_factory=default_converter)
         self.told: list[types.PublishDiagnosticsParams] = []
         self.news = asyncio.Event()
+        self.refreshed = asyncio.Event()
         self.watched: list[types.Registration] = []
 
         @self.feature(types.CLIENT_REGISTER_CAPABILITY)
         def register(params: types.RegistrationParams) -> None:
             self.watched += params.registrations
+
+        @self.feature(types.WORKSPACE_CODE_LENS_REFRESH)
+        def refresh(_: None) -> None:
+            self.refreshed.set()
 
         @self.feature(types.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS)
         def publish(params: types.PublishDiagnosticsParams) -> None:

@@ -10,7 +10,9 @@ from lsprotocol import types
 
 from robosc.editor.findings import published
 from robosc.editor.project import Project
+from robosc.editor.reading import hover
 from robosc.editor.server import ANSWERS
+from robosc.editor.synthesis import communication_at, question
 from robosc.language import Text
 from tests.editor.server import ROOT
 
@@ -67,6 +69,9 @@ def ask_everything(made: Project, text: str, offset: int) -> None:
     snapshot = made.snapshot()
     analysis = snapshot.analysis(made.path(URI))
     published(snapshot, [analysis])
+    hover(snapshot, analysis, parameters(types.TEXT_DOCUMENT_HOVER, analysis.text, offset))
+    question(snapshot, analysis)
+    communication_at(analysis, offset)
     for method, job in ANSWERS.items():
         if method == types.TEXT_DOCUMENT_RENAME:
             continue  # It refuses by an error; tests/editor/test_renaming.py asks.
