@@ -11,6 +11,7 @@ import json
 import os
 import sys
 from dataclasses import asdict
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import robosc
@@ -33,7 +34,8 @@ _MEMORY = 1 << 30
 
 def verdict(request: Request) -> Verdict:
     """Synthesizes the supervisor of a robot without errors."""
-    model = robosc.to_sct(robosc.load(request.path, request.libraries, request.interfaces, documents={**request.texts}))
+    texts: dict[str | os.PathLike[str], str] = {Path(path): text for path, text in request.texts.items()}
+    model = robosc.to_sct(robosc.load(request.path, request.libraries, request.interfaces, documents=texts))
     try:
         supervision = supervise(model, memory=_MEMORY, weigh=True)
     except ModelError as error:
