@@ -7,35 +7,50 @@ from typing import TYPE_CHECKING
 
 import click
 
-from robosc.cli import say
+from robosc.checks import check as rules_of
+from robosc.cli import CallError, interruption, say
 from robosc.cli.options import FILE, Paths, findings_format, paths
 from robosc.cli.reading import read
 from robosc.cli.report import Report
 from robosc.cli.watching import whenever_files_change
-from robosc.diagnostics import ModelError
+from robosc.diagnostics import ModelError, certain_edits
 from robosc.diagnostics.visible import visible
+from robosc.files import reading as files
+from robosc.files.reading import noting
+from robosc.files.writing import write_file
+from robosc.language import read as read_text
 from robosc.language.libraries import search_folders
+from robosc.ros_types import RosTypes
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+
+#: One edit may show the next fault; two never go round in a circle for longer.
+_ROUNDS = 10
 
 
 @click.command("check")
 @click.argument("models", type=FILE, nargs=-1, required=True, metavar="MODEL...")
 @findings_format
+@click.option("--fix", is_flag=True, help="Do first what hints say to write, in the models themselves.")
 @click.option("--watch", is_flag=True, help="Check again whenever a file changes, until Ctrl-C.")
 @paths
-def command(models: Sequence[str], form: str, watch: bool, paths: Paths) -> None:
+def command(models: Sequence[str], form: str, fix: bool, watch: bool, paths: Paths) -> None:
     """Read robots and libraries, resolve their names and say what breaks a rule of the language.
 
-    MODEL is a .rscd file, a .cif file, or an .xmi file of one of the metamodels. Exit status: 0 no errors, 1 errors.
+    MODEL is a .rscd file, a .cif file, or an .xmi file of one of the metamodels. With --fix a .rscd file is changed
+    where a hint says what to write (`did you mean`, `write 0.0`), and what is left is said. Exit status: 0 no errors, 1
+    errors.
 
     \b
     Examples:
       robosc check line_follower.rscd
+      robosc check line_follower.rscd --fix
       robosc check line_follower.rscd --watch
       robosc check -I libraries robots/*.rscd --format sarif > findings.sarif
     """
+    for model in models if fix else ():
+        _mend(model, paths)
     if not watch:
         _check(models, form, paths)
         return
@@ -55,6 +70,26 @@ def command(models: Sequence[str], form: str, watch: bool, paths: Paths) -> None
     whenever_files_change(
         again, models, [*dict.fromkeys(Path(model).parent for model in models), *search_folders(paths.libraries)]
     )
+
+
+def _mend(model: str, paths: Paths) -> None:
+    """Does what the hints about a text say to write, as long as they do."""
+    if not model.endswith(".rscd"):
+        raise CallError(f"{model} is no .rscd file: only a text can be mended")
+    interfaces = RosTypes(paths.interfaces)
+    for _ in range(_ROUNDS):
+        with noting():  # What is read here may be written over.
+            reading = read_text(model, paths.libraries, interfaces)
+            before = files.read(model)
+        findings = [*reading.findings, *rules_of(reading.base, reading.findings, interfaces)]
+        edits = certain_edits(findings, model)
+        if not edits:
+            return
+        after = reading.file.text.after(edits)
+        if b"\r\n" in before:
+            after = after.replace("\n", "\r\n")
+        interruption.check()
+        write_file(model, after)
 
 
 def _check(models: Sequence[str], form: str, paths: Paths) -> None:

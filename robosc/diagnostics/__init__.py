@@ -102,6 +102,17 @@ def has_errors(findings: Iterable[Diagnostic]) -> bool:
     return any(finding.severity is Severity.ERROR for finding in findings)
 
 
+#: Rules whose edits are one way of several: a person chooses.
+CHOICES = frozenset({"initial-state", "marked-state"})
+
+
+def certain_edits(findings: Iterable[Diagnostic], file: str) -> list[Edit]:
+    """What the hints of findings say to write in a file, where it is not for a person to choose; all at once."""
+    return without_overlaps(
+        edit for finding in findings if finding.file == file and finding.rule not in CHOICES for edit in finding.edits
+    )
+
+
 def without_overlaps(edits: Iterable[Edit]) -> list[Edit]:
     """Edits of one file in order, without those that touch an earlier one: all of these can be done at once."""
     done: list[Edit] = []

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from lsprotocol import types
 
-from robosc.diagnostics import Severity, in_order, without_overlaps
+from robosc.diagnostics import CHOICES, Severity, certain_edits, in_order
 from robosc.diagnostics.rules import address
 from robosc.editor.places import span_range
 
@@ -75,11 +75,11 @@ def code_actions(snapshot: Snapshot, analysis: Analysis, params: types.CodeActio
                         kind=types.CodeActionKind.QuickFix,
                         diagnostics=[diagnostic(snapshot, finding, {text.file: text})],
                         edit=types.WorkspaceEdit({uri: _edits(text, finding.edits)}),
-                        is_preferred=True,
+                        is_preferred=finding.rule not in CHOICES,
                     )
                 )
     if only is not None and any(kind == _MEND_ALL or _MEND_ALL.startswith(f"{kind}.") for kind in only):
-        edits = without_overlaps(edit for finding in own for edit in finding.edits)
+        edits = certain_edits(own, text.file)
         if edits:
             whole = types.WorkspaceEdit({uri: _edits(text, edits)})
             found.append(types.CodeAction("Do what all hints say", kind=_MEND_ALL, edit=whole))

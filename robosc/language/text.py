@@ -16,7 +16,7 @@ from robosc.files import reading as files
 from robosc.metamodel.places import Place, SourceFile
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
 #: A line that is a comment and nothing else.
 _COMMENT = re.compile(r"[ \t]*(?://(?P<words>[^\n]*))")
@@ -96,6 +96,15 @@ class Text:
             return len(self.content), len(self.content)
         ends = self._line_starts[number + 1 :][:1]
         return self._line_starts[number], ends[0] - 1 if ends else len(self.content)
+
+    def after(self, edits: Iterable[Edit]) -> str:
+        """The text after edits that do not overlap."""
+        content = self.content
+        for edit in sorted(edits, reverse=True):
+            span = edit.span
+            start, end = self.offset(span.line, span.column), self.offset(span.end_line, span.end_column)
+            content = content[:start] + edit.text + content[end:]
+        return content
 
     def source(self, start: int, end: int) -> Place:
         """The place between two offsets."""

@@ -80,3 +80,31 @@ def test_saved_models_are_checked_too(run: Run, door: Path) -> None:
     answer = run("check", saved)
     assert answer.exit_code == 1
     assert "[initial-state]" in answer.stdout
+
+
+def test_fix(run: Run, tmp_path: Path) -> None:
+    model = tmp_path / "door.rscd"
+    wrong = (
+        DOOR.replace("goto opened", "goto openned").replace("Leaf.closed", "closed").replace("}\n\n  r", "};\n\n  r")
+    )
+    model.write_bytes(wrong.replace("\n", "\r\n").encode())
+    answer = run("check", model, "--fix")
+    assert (answer.exit_code, answer.output) == (0, "")
+    assert model.read_bytes() == DOOR.replace("\n", "\r\n").encode()
+
+
+def test_what_is_to_be_chosen_is_not_fixed(run: Run, tmp_path: Path) -> None:
+    model = tmp_path / "door.rscd"
+    text = DOOR.replace("marked ", "")
+    model.write_text(text)
+    answer = run("check", model, "--fix")
+    assert answer.exit_code == 1
+    assert "[marked-state]" in answer.stdout
+    assert model.read_text() == text
+
+
+def test_only_texts_are_fixed(run: Run, tmp_path: Path) -> None:
+    (tmp_path / "model.cif").write_text("automaton a: location: initial; marked; end")
+    answer = run("check", tmp_path / "model.cif", "--fix")
+    assert answer.exit_code == 2
+    assert "only a text can be mended" in answer.output
