@@ -12,7 +12,7 @@ modeled as extended finite automata, T-ASE 2011, on reachable states only.
 from __future__ import annotations
 
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import count, groupby
 from typing import TYPE_CHECKING
 
@@ -23,12 +23,16 @@ from robosc.synthesis.bdd import Diagram, Diagrams, split
 if TYPE_CHECKING:
     from collections.abc import Generator, Sequence
 
-    from robosc.synthesis.encoding import Encoding
+    from robosc.synthesis.encoding import Element, Encoding
     from robosc.synthesis.relation import Move, Step
 
     #: States, the bound that they stay within, and the number of the first group of steps that they are closed under.
     Part = tuple[Diagram, Diagram, int]
     Closing = Generator[Part, Diagram, Diagram]
+
+_PAIR = 2
+#: The nodes up to which a relation of present and next values costs no more than two steps without next values.
+_SMALL = 40
 
 
 @dataclass(frozen=True)
@@ -53,7 +57,7 @@ class _Saturation:
         self._diagrams = diagrams
         self._forwards = forwards
         self._acceleration = Acceleration(steps, forwards=forwards)
-        by_level = sorted(steps, key=lambda step: step.level)
+        by_level = sorted(_merged(steps), key=lambda step: step.level)
         self._groups = [(level, list(group)) for level, group in groupby(by_level, key=lambda step: step.level)]
         self._known: dict[Part, Diagram] = {}
 
@@ -72,32 +76,67 @@ class _Saturation:
         states, within, group = part
         level = min(_level(states), _level(within))
         if level >= self._groups[group][0]:
-            return (yield from self._fire_all(states, within, group))
-        halves = []
-        for half, half_within in zip(split(states, level), split(within, level), strict=True):
-            inner = half, half_within, group
-            halves.append(half if self._is_closed(inner) else (yield inner))
-        return self._diagrams.node(level, *halves)
+            closed = yield from self._fire_all(states, within, group)
+        else:
+            halves = []
+            for half, half_within in zip(split(states, level), split(within, level), strict=True):
+                inner = half, half_within, group
+                halves.append(half if self._is_closed(inner) else (yield inner))
+            closed = self._diagrams.node(level, *halves)
+        # What is closed stays as it is: it comes again as a part of what has grown elsewhere.
+        self._known[closed, within, group] = closed
+        return closed
 
     def _fire_all(self, states: Diagram, within: Diagram, group: int) -> Closing:
         here = self._groups[group][1]
+        # What was done without need to be done again, one after the other: the closing below, and each step.
+        idle, turns = 0, len(here) + 1
         for turn in count(1):
             inner = states, within, group + 1
-            closed = states = states if self._is_closed(inner) else (yield inner)
+            closed = states if self._is_closed(inner) else (yield inner)
+            idle = idle + 1 if closed == states else 1
+            states = closed
+            if idle >= turns:
+                return states
             for step in here:
-                states |= self._fire(step, states) & within
-            if states == closed:
-                break
+                further = states | self._fire(step, states) & within
+                if further == states:
+                    idle += 1
+                else:
+                    states = further
+                    idle = 1 if step.apart else 0
+                if idle >= turns:
+                    return states
             if self._acceleration.due(turn):
                 below = [step for _, steps in self._groups[group + 1 :] for step in steps]
                 for accelerated in self._acceleration.over(here, below, turn, within):
-                    states |= self._fire(accelerated, states)
-        return states
+                    further = states | self._fire(accelerated, states)
+                    if further != states:
+                        states, idle = further, 0
+        raise AssertionError
 
     def _fire(self, step: Step, states: Diagram) -> Diagram:
         self._diagrams.statistics.operations += 1
         self._diagrams.tidy()
         return step.image(states) if self._forwards else step.preimage(states)
+
+
+def _merged(steps: Sequence[Step]) -> list[Step]:
+    """The steps, those of one level that change the same elements as one: most of what is fired leads nowhere new.
+
+    A pair is not, where that makes a large relation of next values of two that have none.
+    """
+    alike: dict[tuple[int, frozenset[Element]], list[Step]] = {}
+    for step in steps:
+        alike.setdefault((step.level, frozenset(step.changed)), []).append(step)
+    found = []
+    for some in alike.values():
+        one = some[0]
+        if len(some) > 1:
+            one = replace(one, relation=one.encoding.diagrams.any_of(step.relation for step in some))
+        pays = len(some) != _PAIR or one.apart is not None or one.relation.node_count() <= _SMALL
+        found += [one] if pays else some
+    return found
 
 
 def reachable(diagrams: Diagrams, steps: Sequence[Step], states: Diagram, within: Diagram) -> Diagram:

@@ -41,11 +41,28 @@ class Step:
 
     def image(self, states: Diagram) -> Diagram:
         """The states after the event in one of `states`."""
-        return and_exists(and_exists(states, self.relation, self.present), self.same, self.following)
+        if self.apart is None:
+            return and_exists(and_exists(states, self.relation, self.present), self.same, self.following)
+        source, target = self.apart
+        return and_exists(states, source, self.present) & target
 
     def preimage(self, states: Diagram) -> Diagram:
         """The states in which the event can lead to one of `states`."""
-        return and_exists(and_exists(states, self.same, self.present), self.relation, self.following)
+        if self.apart is None:
+            return and_exists(and_exists(states, self.same, self.present), self.relation, self.following)
+        source, target = self.apart
+        return and_exists(states, target, self.present) & source
+
+    @cached_property
+    def apart(self) -> tuple[Diagram, Diagram] | None:
+        """Where it can happen and where it leads, as sets of states; None where it leads elsewhere from elsewhere.
+
+        Most events are so. To follow them takes no next values, and once: twice in a row, it leads nowhere else.
+        """
+        source, target = self.relation.exists(self.following), self.relation.exists(self.present)
+        if source & target != self.relation:
+            return None
+        return source, and_exists(target, self.same, self.following)
 
 
 class EventRelation:
