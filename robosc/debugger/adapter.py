@@ -106,7 +106,7 @@ class Adapter:
         try:
             body, after = await self._answer(command, {} if arguments is None else arguments)
             self._connection.send("response", **answer, success=True, **({} if body is None else {"body": body}))
-        except (RequestError, LaunchError, NamingError, DataError, OSError) as error:
+        except (RequestError, LaunchError, NamingError, DataError, OSError, MemoryError) as error:
             self._refuse(answer, _said(error))
             if isinstance(error, LaunchError):
                 self._output(as_text.render(error.findings, error.texts), "stderr")

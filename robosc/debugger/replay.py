@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from robosc.engine.timers import Timers
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
-from robosc.semantics.edges import edges_from
+from robosc.semantics.edges import edges_by_event, origin
 from robosc.semantics.evaluation import evaluate
 from robosc.semantics.roles import event_name
 from robosc.simulation.script import WAIT
@@ -74,7 +74,15 @@ class Replay:
         self._next = 0
         #: Until when time goes by, of a step that waits.
         self._until: int | None = None
-        self._events = {event_name(event): event for event in self.engine.roles.events}
+        #: Of each event the transitions that plants may take, each with the location that it leaves, if not any.
+        self._edges = {
+            event_name(event): [
+                (plant, [(edge, origin(edge)) for edge in edges])
+                for plant, edges in taking_part.items()
+                if any(edge.source is not None for edge in edges)
+            ]
+            for event, taking_part in edges_by_event(self.engine.model.plants).items()
+        }
         self._started = next((step.time for step in steps or () if step.time is not None), 0.0)
 
     @property
@@ -189,8 +197,9 @@ class Replay:
     def _taken(self, event: str, inputs: Mapping[str, Value]) -> tuple[sct.Edge, ...]:
         """The transitions of components that an enabled event takes in the present state."""
         found = []
-        for plant in self.engine.model.plants:
-            possible = edges_from(plant.locations[self.engine.location(plant)], self._events[event])
+        for plant, edges in self._edges.get(event, ()):
+            here = plant.locations[self.engine.location(plant)]
+            possible = (edge for edge, left in edges if left is None or left is here)
             edge = next((one for one in possible if one.guard is None or self._holds(one.guard, inputs)), None)
             if edge is not None and edge.source is not None:
                 found.append(edge)

@@ -5,9 +5,12 @@ from pathlib import Path
 import pytest
 
 import robosc
+from robosc.debugger.launching import Launch
 from robosc.debugger.replay import Replay
 from robosc.metamodel import sct
 from robosc.simulation import Simulation
+
+from ..runtime.fake import World
 
 EXAMPLES = sorted((Path(__file__).parent.parent.parent / "examples").glob("*/*.rscd"))
 
@@ -36,6 +39,31 @@ def test_there_and_back_again(path: Path) -> None:
     again = [replay.forward() for _ in moments]
     assert again == moments
     assert (replay.engine.state, replay.timers.saved) == last
+
+
+def test_the_log_of_a_node_is_played_without_a_stop(tmp_path: Path) -> None:
+    """Whatever the node did, the model does, and the clock is the node's."""
+    path = next(path for path in EXAMPLES if path.stem == "line_follower")
+    log = tmp_path / "events.jsonl"
+    world = World(path, log).start()
+    world.hear("scan", ranges=[5.0] * 360)
+    world.hear("correction", data=3.0)
+    world.wait(0.35)
+    world.hear("stop")
+    world.wait(0.2)
+    world.hear("scan", ranges=[0.3] * 360)
+    world.hear("continue")
+    world.wait(0.2)
+    world.controller.close()
+    simulation = Simulation(world.graph.model, world.graph)
+    steps, _ = Launch.of({"program": str(path), "script": str(log)}).steps(simulation)
+    replay = Replay(simulation, steps)
+    moments = [moment for _ in steps or () if (moment := replay.forward()) is not None]
+    assert replay.is_over
+    assert len(moments) == len(log.read_text().splitlines()) > 10
+    assert {moment.event for moment in moments} >= {"message_move.c_trigger", "message_halt.c_trigger"}
+    assert [moment for moment in moments if not moment.happened] == []
+    assert replay.timers.now == 700
 
 
 def _edges(plant: sct.Plant) -> list[sct.Edge]:
