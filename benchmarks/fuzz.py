@@ -1,13 +1,16 @@
-"""Models with faults and random valid robots, in large numbers, through the whole pipeline; ends with 1 on a failure.
+"""Models with faults and random valid ones, in large numbers, through the whole pipeline; ends with 1 on a failure.
 
-    python benchmarks/fuzz.py [--mutants 20000] [--valid 2000] [--seed 0] [--jobs 2] [--keep FOLDER]
+    python benchmarks/fuzz.py [--mutants 20000] [--valid 2000] [--cif 2000] [--cif-mutants 5000] [--seed 0] [--jobs 2]
+        [--keep FOLDER]
 
 A mutant is to end in located findings or in generated code, within 10 s of the processor and 1 GB of memory, and in
 every hundredth the command line is to end with the right exit status. Each fifth is a saved model (XMI), of which the
 command line may tell nothing of other files; each fiftieth has a pipe, a device or the like where a file is looked for;
 each hundredth is written by a command that a signal ends.
 A valid robot draws no error; its CIF is read back, and its engine in C does 200 random operations as the interpreter
-does them. Each model comes from a number alone: `--mutants 1 --valid 0 --seed N` tries the mutant N again. `--keep`
+does them. A random specification of CIF has the states that synthesis by the definition leaves it, or a located finding
+that names what synthesis does not take; a mutant of one goes through `check`, `synthesize` and `transform`. Each model
+comes from a number alone: `--mutants 1 --valid 0 --cif 0 --cif-mutants 0 --seed N` tries the mutant N again. `--keep`
 writes the models that failed to a folder.
 """
 
@@ -30,11 +33,14 @@ from typing import TYPE_CHECKING, Any
 ROOT = Path(__file__).parent.parent
 sys.path.insert(0, str(ROOT))
 
+from tests.cif.comparing import agrees  # noqa: E402
+from tests.cif.random_specifications import Specification  # noqa: E402
 from tests.fuzz.broken_off import broken_off_tried  # noqa: E402
+from tests.fuzz.cif_mutants import cif_mutant  # noqa: E402
 from tests.fuzz.mutants import mutant  # noqa: E402
 from tests.fuzz.saved_mutants import saved_mutant  # noqa: E402
 from tests.fuzz.special import special_tried  # noqa: E402
-from tests.fuzz.trial import called, saved_tried, time_limit, tried  # noqa: E402
+from tests.fuzz.trial import called, cif_tried, saved_tried, time_limit, tried  # noqa: E402
 from tests.fuzz.valid import checked, compared, compiled, valid_robot  # noqa: E402
 
 if TYPE_CHECKING:
@@ -44,7 +50,7 @@ if TYPE_CHECKING:
 LIMIT, MEMORY = 10, 10**9
 #: Seconds of the processor for a valid robot: the second opinions of the tests take most of them.
 VALID_LIMIT = 60
-CHUNKS = {"mutants": 100, "valid": 25}
+CHUNKS = {"mutants": 100, "valid": 25, "cif": 50, "cif-mutants": 50}
 CALLED_EACH, SAVED_EACH, SPECIAL_EACH, BROKEN_OFF_EACH = 100, 5, 50, 100
 #: What is tried of a number that stands for no text of a model.
 OTHERS = {"saved": saved_tried, "special": special_tried, "broken off": broken_off_tried}
@@ -146,10 +152,42 @@ def valid(seeds: range) -> Result:
     return result
 
 
+def _specification(seed: int) -> Specification:
+    """A random specification of CIF; every other has only what CIF's own synthesis computes with."""
+    return Specification(seed, narrow=seed % 2 == 1)
+
+
+def cif(seeds: range) -> Result:
+    """Compares the random specifications of CIF of these numbers with synthesis by the definition."""
+    result = Result()
+    for seed in seeds:
+        failed = len(result.failures)
+        count = result.try_one(seed, agrees, _specification(seed))
+        if len(result.failures) == failed:
+            outcome = "not taken" if count is None else "supervisor" if count else "empty"
+            result.statuses[outcome] += 1
+    return result
+
+
+def cif_mutants(seeds: range) -> Result:
+    """Tries the mutants of specifications of CIF of these numbers."""
+    result = Result()
+    for seed in seeds:
+        with tempfile.TemporaryDirectory() as folder:
+            status = result.try_one(seed, cif_tried, Path(folder), cif_mutant(seed))
+            result.statuses[f"exit status {status}"] += status is not None
+    return result
+
+
+TRIALS = {"mutants": mutants, "valid": valid, "cif": cif, "cif-mutants": cif_mutants}
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--mutants", type=int, default=20_000)
     parser.add_argument("--valid", type=int, default=2_000)
+    parser.add_argument("--cif", type=int, default=2_000, help="random specifications of CIF")
+    parser.add_argument("--cif-mutants", type=int, default=5_000)
     parser.add_argument("--seed", type=int, default=0, help="the number of the first model")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--keep", type=Path, help="the folder for models that failed")
@@ -157,8 +195,8 @@ def main() -> int:
     print("| models | number | s | a second | outcomes | slowest | largest | failed |")
     print("|---|---:|---:|---:|---|---|---|---:|")
     failed = False
-    for kind, trial in (("mutants", mutants), ("valid", valid)):
-        number = getattr(options, kind)
+    for kind, trial in TRIALS.items():
+        number = getattr(options, kind.replace("-", "_"))
         seeds = range(options.seed, options.seed + number)
         began = perf_counter()
         result = _in_parallel(
@@ -193,6 +231,10 @@ def _in_parallel(trial: Callable[[range], Result], chunks: list[range], jobs: in
 
 def _files(kind: str, seed: int) -> dict[str, str]:
     """The files of a model that was tried; none of those that stand where no file is."""
+    if kind == "cif":
+        return _specification(seed).files
+    if kind == "cif-mutants":
+        return {name: content.decode(errors="surrogateescape") for name, content in cif_mutant(seed).items()}
     if kind == "valid":
         return {"model.rscd": valid_robot(seed)}
     if _kind(seed) == "saved":
@@ -202,7 +244,7 @@ def _files(kind: str, seed: int) -> dict[str, str]:
 
 def _show(kind: str, failures: list[tuple[int, str]], folder: Path | None) -> None:
     for seed, message in sorted(failures):
-        others = {"mutants": "--valid 0", "valid": "--mutants 0"}[kind]
+        others = " ".join(f"--{other} 0" for other in TRIALS if other != kind)
         print(
             f"failed: {message}\n  again: python benchmarks/fuzz.py --{kind} 1 {others} --seed {seed}", file=sys.stderr
         )
@@ -210,7 +252,7 @@ def _show(kind: str, failures: list[tuple[int, str]], folder: Path | None) -> No
             folder.mkdir(parents=True, exist_ok=True)
             files = _files(kind, seed)
             for name, text in files.items():
-                (folder / f"{kind}_{seed}.{name}").write_text(text, encoding="utf-8")
+                (folder / f"{kind}_{seed}.{name}").write_bytes(text.encode(errors="surrogateescape"))
 
 
 if __name__ == "__main__":

@@ -1,7 +1,12 @@
-"""Random CIF specifications, and their synthesis by the definition, state by state, from what was drawn."""
+"""Random CIF specifications, and their synthesis by the definition, state by state, from what was drawn.
+
+A specification draws its automata first, each by itself. How they are written is drawn then: in groups, as instances of
+definitions, which may have a second one (a twin, whose events and names are others), and in one file or several.
+"""
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import product
@@ -31,86 +36,299 @@ class Edge:
 
 
 @dataclass
+class Invariant:
+    """A condition on states or, where it has events, on these: what they need, or what disables them."""
+
+    kind: str
+    name: str
+    condition: Term
+    events: list[str] = field(default_factory=list)
+    needs: bool = True
+
+    def within(self, place: Term) -> Invariant:
+        """What it says of all states where it stands in a location: `place` is that the automaton is there."""
+        inner = self.condition
+        if self.needs:
+            condition = Term("", lambda s: not place.value(s) or inner.value(s))
+        else:
+            condition = Term("", lambda s: place.value(s) and inner.value(s))
+        return Invariant(self.kind, self.name, condition, self.events, self.needs)
+
+
+@dataclass
 class Location:
     name: str
     initial: Term | None = None
     marked: Term | None = None
     edges: list[Edge] = field(default_factory=list)
-    lines: list[str] = field(default_factory=list)
+    invariants: list[Invariant] = field(default_factory=list)
 
 
 @dataclass
 class Automaton:
-    """`variables` are, by their names, the type, its values, how the text gives initial values, and these."""
+    """`variables` are, by their names, the type, its values, how the text gives initial values, and these.
+
+    `algebraic` are the types and the value in each location; `declared` is the alphabet where the text gives it.
+    """
 
     name: str
     kind: str
     locations: list[Location] = field(default_factory=list)
     variables: dict[str, tuple[str, list[Any], str, list[Any]]] = field(default_factory=dict)
+    algebraic: dict[str, tuple[str, dict[str, Term]]] = field(default_factory=dict)
     watched: list[str] = field(default_factory=list)
-    lines: list[str] = field(default_factory=list)
+    declared: list[str] | None = None
+    initial: list[Term] = field(default_factory=list)
+    marked: list[Term] = field(default_factory=list)
+    invariants: list[Invariant] = field(default_factory=list)
+    #: The automaton that it is another instance of, and which event stands for each of that one's.
+    twin_of: Automaton | None = None
+    renamed: dict[str, str] = field(default_factory=dict)
 
     @property
     def alphabet(self) -> list[str]:
-        return list(dict.fromkeys(e for one in self.locations for edge in one.edges for e in edge.events))
+        used = list(dict.fromkeys(e for one in self.locations for edge in one.edges for e in edge.events))
+        return used if self.declared is None else self.declared
 
 
 TRUE = Term("true", lambda _: True)
+_CONSTANTS: dict[Any, str] = {2: "two"}
+_NARROW: list[tuple[str, Callable[[int, int], int]]] = [
+    ("({} + {})", lambda a, b: a + b),
+    ("(({} + {}) mod 3)", lambda a, b: (a + b) % 3),
+    ("(({} + {}) div 2)", lambda a, b: (a + b) // 2),
+]
+_WIDE: list[tuple[str, Callable[[int, int], int]]] = [
+    ("({} - {})", lambda a, b: a - b),
+    ("({} * {})", lambda a, b: a * b),
+    ("min({}, {})", min),
+    ("max({}, {})", max),
+    ("abs({} - {})", lambda a, b: abs(a - b)),
+    ("(abs({} - {}) mod 3)", lambda a, b: abs(a - b) % 3),
+    ("(abs({} - {}) div 2)", lambda a, b: abs(a - b) // 2),
+]
+#: An automaton in an expression, and what a definition gets as a parameter: locations and variables of others.
+_AUTOMATON = re.compile(r"(?<![\w.])[AR]\d\b")
+_OUTSIDE = re.compile(r"(?<![\w.])[AR]\d\.[lv]\d\b")
+#: So many states a specification may have, reachable or not: the definition looks at each.
+_MOST_STATES = 4_000
+#: What synthesis does not take: a statement, and what the finding names.
+FOREIGN = (
+    ("supervisor S0: location: initial; marked; edge {event}; end", "supervisor automata"),
+    ("automaton S0: location: initial; marked; edge {event}; end", "automata of no kind"),
+    ("event plainly; plant S0: location: initial; marked; edge plainly; end", "neither controllable nor"),
+    ("plant S0: location: initial; marked; edge tau; end", "edges without an event"),
+    ("plant S0: location: initial; marked; edge {event}, tau when true; end", "edges without an event"),
+    ("plant S0: location: initial; marked; edge when false; end", "edges without an event"),
+    ("plant S0: location: initial; marked; urgent; edge {event}; end", "urgent locations"),
+    ("plant S0: disc int n; location: initial; marked; edge {event}; end", "an int without range"),
+    ("plant S0: disc list bool n; location: initial; marked; edge {event}; end", "the type `list`"),
+    ("plant S0: cont n der 1.0; location: initial; marked; edge {event}; end", "continuous variables"),
+    ("invariant true;", "invariants of no kind"),
+    ("supervisor invariant {event} needs true;", "supervisor invariants"),
+    ("func bool f(): return true; end requirement invariant f();", "functions"),
+)
 
 
 class Specification:
-    """A random specification."""
+    """A random specification; one that is `narrow` has only what CIF's own synthesis computes with.
 
-    def __init__(self, seed: int) -> None:
+    `foreign` is what a finding has to name where it has something that synthesis does not take.
+    """
+
+    def __init__(self, seed: int, *, narrow: bool = False) -> None:
         self.random = Random(seed)  # noqa: S311 - models, no secrets
         some = self.random
-        self.events = {
-            f"{'c' if number % 2 else 'u'}{number}": bool(number % 2) for number in range(some.randint(2, 5))
-        }
+        self.narrow = narrow
+        self.negative = not narrow and some.random() < 0.25
+        self.events = {f"{'c' if number % 3 else 'u'}{number}": number % 3 > 0 for number in range(some.randint(2, 5))}
         self.grouped = {event for event in self.events if some.random() < 0.3}
-        self.inputs = {"in0": ["false", "true"]} if some.random() < 0.25 else {}
-        self.domains: dict[str, list[Any]] = {name: [False, True] for name in self.inputs}
+        self.inputs: dict[str, tuple[str, list[Any]]] = {}
+        self.domains: dict[str, list[Any]] = {}
+        self.algebraic: dict[str, Term] = {}
+        self.numbers: dict[str, Term] = {}
+        self.invariants: list[Invariant] = []
+        self.initial: list[Term] = []
+        self.marked: list[Term] = []
+        self._states = 1
+        if some.random() < 0.25:
+            self._input()
         self.automata = [Automaton(f"A{number}", "plant") for number in range(some.randint(1, 3))]
         self.automata += [Automaton(f"R{number}", "requirement") for number in range(some.randint(0, 1))]
         for one in self.automata:
             self._declare(one)
-        self.algebraic = {f"a{number}": self.condition(2) for number in range(some.randint(0, 2))}
-        self.excluded: list[tuple[str, str, bool, Term]] = []
-        self.invariants: list[tuple[str, Term]] = []
+        self._declare_twin()
+        self.outer = {f"a{number}": self.condition(2) for number in range(some.randint(0, 2))}
+        self.algebraic.update({name: _named(name, "", term.value) for name, term in self.outer.items()})
         for one in self.automata:
-            self._fill(one)
-        self.outer = [f"alg bool {name} = {term.text};" for name, term in self.algebraic.items()]
+            self._compute(one)
+        for one in self.automata:
+            # The twin is the last.
+            (self._fill if one.twin_of is None else self._copy)(one)
+        self._add_outside()
+        self._shape()
+
+    def _add_outside(self) -> None:
+        """What stands outside of the automata."""
+        some = self.random
         for _ in range(some.choice([0, 0, 1, 2])):
-            self._exclude(self.outer)
+            self.invariants += self._excluding()
         for _ in range(some.choice([0, 0, 1])):
-            self._restrict(self.outer)
+            self.invariants.append(self._restricting())
+        if some.random() < 0.1:
+            self.initial.append(self.condition(2))
+        if some.random() < 0.1:
+            self.marked.append(self.condition(2))
+
+    def _shape(self) -> None:
+        """How the specification is written."""
+        some = self.random
+        self.inside = {one.name for one in self.automata if some.random() < 0.25}
+        self.defined = {one.name for one in self.automata if one.twin_of is None and some.random() < 0.25}
+        self.defined |= {one.twin_of.name for one in self.automata if one.twin_of is not None}
+        self.group_defined = some.random() < 0.2
+        self.several_files = some.random() < 0.25
+        self.annotated = some.random() < 0.3
+        statement, self.foreign = some.choice(FOREIGN) if not self.narrow and some.random() < 0.05 else ("", "")
+        self.extra = [statement.format(event=self.event(next(iter(self.events))))] if statement else []
 
     def event(self, name: str) -> str:
         return f"g.{name}" if name in self.grouped else name
 
     # Drawing
 
+    def _grow(self, name: str, values: list[Any]) -> bool:
+        """Gives a variable or an automaton its values, unless there would be too many states."""
+        if self._states * len(values) > _MOST_STATES:
+            return False
+        self._states *= len(values)
+        self.domains[name] = values
+        return True
+
+    def _input(self) -> None:
+        kinds = [("bool", [False, True]), ("int[0..2]", [0, 1, 2]), ("E", ["e0", "e1", "e2"])]
+        kind, values = self.random.choice(kinds)
+        self.inputs["in0"] = kind, values
+        self._grow("in0", values)
+
     def _declare(self, one: Automaton) -> None:
         some = self.random
         one.locations = [Location(f"l{number}") for number in range(some.randint(1, 3))]
-        self.domains[one.name] = [location.name for location in one.locations]
+        if not self._grow(one.name, [location.name for location in one.locations]):
+            del one.locations[1:]
+            self._grow(one.name, ["l0"])
+        kinds: list[tuple[str, list[Any]]] = [
+            ("bool", [False, True]),
+            ("int[0..3]", [0, 1, 2, 3]),
+            ("int[1..two]", [1, 2]),
+            ("T", [0, 1, 2]),
+            ("E", ["e0", "e1", "e2"]),
+        ]
+        if self.negative:
+            kinds.append(("int[-2..1]", [-2, -1, 0, 1]))
         for number in range(some.randint(0, 2)):
-            kind, values = some.choice(
-                [
-                    ("bool", [False, True]),
-                    ("int[0..3]", [0, 1, 2, 3]),
-                    ("int[1..two]", [1, 2]),
-                    ("E", ["e0", "e1", "e2"]),
-                ]
-            )
+            kind, values = some.choice(kinds)
             several = some.sample(values, some.randint(1, 2))
             initial = f"= {_text(several[0])}" if len(several) == 1 else f"in {{{', '.join(map(_text, several))}}}"
             if some.random() < 0.1:
                 initial, several = "in any", values
             elif some.random() < 0.1:
-                initial, several = "", [values[0]]
-            one.variables[f"v{number}"] = kind, values, initial, several
-            self.domains[f"{one.name}.v{number}"] = values
+                initial, several = "", [0 if 0 in values else values[0]]
+            if self._grow(f"{one.name}.v{number}", values):
+                one.variables[f"v{number}"] = kind, values, initial, several
+
+    def _declare_twin(self) -> None:
+        """A second instance of what an automaton is an instance of."""
+        some = self.random
+        if some.random() > 0.2:
+            return
+        first = some.choice(self.automata)
+        size = len(first.locations)
+        for _, values, _, _ in first.variables.values():
+            size *= len(values)
+        if self._states * size > _MOST_STATES:
+            return
+        twin = Automaton(f"{first.name[0]}9", first.kind, [Location(one.name) for one in first.locations])
+        twin.variables, twin.twin_of = first.variables, first
+        for control in (False, True):
+            own = [event for event, controllable in self.events.items() if controllable == control]
+            twin.renamed.update(zip(own, some.sample(own, len(own)), strict=True))
+        self.automata.append(twin)
+        for name in [name for name in self.domains if name.split(".")[0] == first.name]:
+            self._grow(name.replace(first.name, twin.name), self.domains[name])
+
+    def _compute(self, one: Automaton) -> None:
+        """The algebraic variables of an automaton, with one value or one in each location."""
+        some = self.random
+        if one.twin_of is not None:
+            for name, (kind, values) in one.twin_of.algebraic.items():
+                own = {place: self._twin_term(one, value) for place, value in values.items()}
+                one.algebraic[name] = kind, own
+        elif some.random() < 0.3:
+            kind = some.choice(["bool", "int[0..3]"])
+            places = [location.name for location in one.locations] if some.random() < 0.5 else [""]
+            # What it is computed of has no such variable of this automaton, and none of one that comes later.
+            one.algebraic["y0"] = (
+                kind,
+                {place: self.condition(1) if kind == "bool" else self.term([0, 1, 2, 3], 0) for place in places},
+            )
+        for name, (kind, values) in one.algebraic.items():
+            self._know(one, name, kind, values)
+
+    def _know(self, one: Automaton, name: str, kind: str, values: dict[str, Term]) -> None:
+        def value(state: State) -> Any:
+            return (values.get("") or values[state[one.name]]).value(state)
+
+        known = self.algebraic if kind == "bool" else self.numbers
+        known[f"{one.name}.{name}"] = _named(f"{one.name}.{name}", one.name, value)
+
+    def _twin_term(self, one: Automaton, term: Term) -> Term:
+        """What a term of the first instance is in the second: the names of its automaton are those of the other."""
+        first = one.twin_of
+        assert first is not None
+        pattern = re.compile(rf"\b{first.name}\b")
+        names = {name: pattern.sub(one.name, name) for name in self.domains if name.split(".")[0] == first.name}
+        text = pattern.sub(one.name, term.text)
+        return Term(
+            text, lambda s: term.value({**s, **{name: s[other] for name, other in names.items()}, "": (first.name, s)})
+        )
+
+    def _copy(self, one: Automaton) -> None:
+        """Fills the second instance like the first."""
+        first = one.twin_of
+        assert first is not None
+
+        def events(names: list[str]) -> list[str]:
+            return [one.renamed[name] for name in names]
+
+        def term(of: Term | None) -> Any:
+            return of if of is None or of is TRUE else self._twin_term(one, of)
+
+        def invariants(of: list[Invariant]) -> list[Invariant]:
+            return [Invariant(i.kind, i.name, term(i.condition), events(i.events), i.needs) for i in of]
+
+        one.locations = [
+            Location(
+                place.name,
+                term(place.initial),
+                term(place.marked),
+                [
+                    Edge(
+                        events(edge.events),
+                        term(edge.guard),
+                        [(name.replace(first.name, one.name), term(value)) for name, value in edge.updates],
+                        edge.target,
+                    )
+                    for edge in place.edges
+                ],
+                invariants(place.invariants),
+            )
+            for place in first.locations
+        ]
+        one.watched = events(first.watched)
+        one.declared = None if first.declared is None else events(first.declared)
+        one.initial, one.marked = [term(i) for i in first.initial], [term(i) for i in first.marked]
+        one.invariants = invariants(first.invariants)
 
     def _fill(self, one: Automaton) -> None:
         some = self.random
@@ -128,8 +346,25 @@ class Specification:
                 free = [event for event in free if event not in events]
                 if events:
                     location.edges.append(self._edge(events, one))
+        self._add_rest(one)
+
+    def _add_rest(self, one: Automaton) -> None:
+        """Its alphabet, what it watches, and what is initial, marked and invariant in it."""
+        some = self.random
+        if some.random() < 0.15:
+            more = [event for event in self.events if event not in one.alphabet and some.random() < 0.2]
+            one.declared = one.alphabet + more
         if some.random() < 0.2:
-            one.watched = some.sample(one.alphabet, min(len(one.alphabet), 1))
+            one.watched = some.sample(one.alphabet, min(len(one.alphabet), 1)) if some.random() < 0.7 else one.alphabet
+        if some.random() < 0.1:
+            one.initial.append(self.condition(1))
+        if some.random() < 0.1:
+            one.marked.append(self.condition(1))
+        for place in [one, *one.locations]:
+            if some.random() < 0.07:
+                place.invariants += self._excluding()
+            if some.random() < 0.05:
+                place.invariants.append(self._restricting())
 
     def _edge(self, events: list[str], one: Automaton) -> Edge:
         some = self.random
@@ -140,22 +375,21 @@ class Specification:
                 updates.append((f"{one.name}.{name}", self.term(values, 1)))
         return Edge(events, guard, updates, some.choice(one.locations).name)
 
-    def _exclude(self, lines: list[str]) -> None:
+    def _excluding(self) -> list[Invariant]:
+        """An invariant of one event or of several, named at times; it has no name where it has several."""
         some = self.random
-        kind, event = some.choice(["requirement", "requirement", "plant"]), some.choice(list(self.events))
-        needs, condition = some.random() < 0.5, self.condition(2)
-        if not any(event in one.alphabet for one in self.automata):
-            return
-        self.excluded.append((kind, event, needs, condition))
-        text = (
-            f"{self.event(event)} needs {condition.text}" if needs else f"{condition.text} disables {self.event(event)}"
-        )
-        lines.append(f"{kind} invariant {text};")
+        kind, condition = some.choice(["requirement", "requirement", "plant"]), self.condition(2)
+        events = some.sample(list(self.events), some.choice([1, 1, 1, 2]))
+        name = self._fresh() if some.random() < 0.3 and len(events) == 1 else ""
+        return [Invariant(kind, name, condition, events, some.random() < 0.5)]
 
-    def _restrict(self, lines: list[str]) -> None:
+    def _restricting(self) -> Invariant:
         kind, condition = self.random.choice(["requirement", "requirement", "plant"]), self.condition(2)
-        self.invariants.append((kind, condition))
-        lines.append(f"{kind} invariant i{len(self.invariants)}: {condition.text};")
+        return Invariant(kind, self._fresh() if self.random.random() < 0.5 else "", condition)
+
+    def _fresh(self) -> str:
+        self._named = getattr(self, "_named", 0) + 1
+        return f"i{self._named}"
 
     def condition(self, depth: int) -> Term:
         """A boolean of a random shape."""
@@ -175,9 +409,10 @@ class Specification:
         if some.random() < 0.2:
             inner = self.condition(0)
             return Term(f"(not {inner.text})", lambda s: not inner.value(s))
-        if getattr(self, "algebraic", None) and some.random() < 0.3:
-            name = some.choice(list(self.algebraic))
-            return Term(name, self.algebraic[name].value)
+        if self.algebraic and some.random() < 0.3:
+            return some.choice(list(self.algebraic.values()))
+        if some.random() < 0.03:
+            return Term("yes", lambda _: True)
         name = some.choice(list(self.domains))
         values = self.domains[name]
         if name in {one.name for one in self.automata}:
@@ -187,7 +422,7 @@ class Specification:
             return Term(self._called(name), lambda s: s[name])
         if isinstance(values[0], str):
             literal = some.choice(values)
-            return Term(f"({name} = {literal})", lambda s: s[name] == literal)
+            return Term(f"({self._called(name)} = {literal})", lambda s: s[name] == literal)
         left, right = self.term(values, 1), self.term(values, 0)
         word, compute = some.choice(
             [("<", lambda a, b: a < b), (">=", lambda a, b: a >= b), ("=", lambda a, b: a == b)]
@@ -202,80 +437,139 @@ class Specification:
         some = self.random
         if isinstance(values[0], bool):
             return self.condition(1)
-        same = [name for name, other in self.domains.items() if "." in name and type(other[0]) is type(values[0])]
+        same = [name for name, other in self.domains.items() if type(other[0]) is type(values[0])]
         if isinstance(values[0], str):
             same = [name for name in same if self.domains[name][0] == "e0"]
+        if isinstance(values[0], int) and self.numbers and some.random() < 0.1:
+            return some.choice(list(self.numbers.values()))
         if depth and some.random() < 0.5:
             return self._computed(values, depth)
         if same and some.random() < 0.6:
             name = some.choice(same)
-            return Term(name, lambda s: s[name])
+            return Term(self._called(name), lambda s: s[name])
         chosen = some.choice(values)
-        return Term("two" if chosen == 2 and some.random() < 0.5 else _text(chosen), lambda _: chosen)
+        return Term(
+            _CONSTANTS[chosen] if chosen in _CONSTANTS and some.random() < 0.5 else _text(chosen), lambda _: chosen
+        )
 
     def _computed(self, values: list[Any], depth: int) -> Term:
         some = self.random
         left, right, test = self.term(values, depth - 1), self.term(values, depth - 1), self.condition(0)
         if isinstance(values[0], str) or some.random() < 0.3:
             if some.random() < 0.5:
-                one = some.choice(self.automata)
-                place = one.locations[0].name
+                one = some.choice([other for other in self.automata if other.name in self.domains])
+                place = self.domains[one.name][0]
                 text = f"switch {one.name}: case {place}: {left.text} else {right.text} end"
                 return Term(text, lambda s: left.value(s) if s[one.name] == place else right.value(s))
             text = f"if {test.text}: {left.text} else {right.text} end"
             return Term(text, lambda s: left.value(s) if test.value(s) else right.value(s))
-        word, compute = some.choice(
-            [
-                ("({} + {})", lambda a, b: a + b),
-                ("({} - {})", lambda a, b: a - b),
-                ("({} * {})", lambda a, b: a * b),
-                ("min({}, {})", min),
-                ("max({}, {})", max),
-                ("abs({} - {})", lambda a, b: abs(a - b)),
-                ("(({} + {}) mod 3)", lambda a, b: (a + b) % 3),
-                ("(({} + {}) div 2)", lambda a, b: (a + b) // 2),
-            ]
-        )
+        # Synthesis divides what is never negative.
+        operators = _NARROW if self.narrow else _WIDE if self.negative else _NARROW + _WIDE
+        word, compute = some.choice(operators)
         return Term(word.format(left.text, right.text), lambda s: compute(left.value(s), right.value(s)))
 
     # The text
 
     @property
     def text(self) -> str:
-        lines = ["const int two = 2;", "enum E = e0, e1, e2;"]
-        inner = [f"  input bool {name};" for name in self.inputs]
+        """The specification as one file."""
+        return "\n".join([*self._names(), *self._components(), *self._rules(), ""])
+
+    @property
+    def files(self) -> dict[str, str]:
+        """The specification by file; the first imports the others."""
+        if not self.several_files:
+            return {"random.cif": self.text}
+        main = ['import "names.cif", "rules.cif";', *self._components(), ""]
+        rules = ['import "names.cif";', *self._rules(), ""]
+        files = {"random.cif": main, "names.cif": [*self._names(), ""], "rules.cif": rules}
+        return {name: "\n".join(lines) for name, lines in files.items()}
+
+    def _names(self) -> list[str]:
+        lines = ["const int two = 2;", "const bool yes = true;", "enum E = e0, e1, e2;", "type T = int[0..two];"]
+        inner = [f"  input {kind} {name};" for name, (kind, _) in self.inputs.items()]
+        if self.annotated:
+            lines.insert(0, '@@doc("What @doc(\\"it\\") is, a: b;")')
         for event, controllable in self.events.items():
             line = f"{'' if controllable else 'un'}controllable {event};"
+            if self.annotated and event == "u0":
+                line = f'@doc("The first.") @other:one(a: 1, b: [true, false], c: (2, "x")) {line}'
             if event in self.grouped:
                 inner.append(f"  {line}")
             else:
                 lines.append(line)
         if inner:
-            lines += ["group g:", *inner, "end"]
-        for one in self.automata:
-            lines += self._automaton(one)
-        return "\n".join([*lines, *self.outer, ""])
+            lines += ["group def G():" if self.group_defined else "group g:", *inner, "end"]
+            if self.group_defined:
+                lines.append("g: G();")
+        return lines
 
-    def _automaton(self, one: Automaton) -> list[str]:
-        lines = [f"{one.kind} automaton {one.name}:" if one.name == "A0" else f"{one.kind} {one.name}:"]
-        for name, (kind, _, initial, _) in one.variables.items():
-            lines.append(f"  disc {kind} {name} {initial};")
+    def _components(self) -> list[str]:
+        lines, grouped = [], []
+        for one in self.automata:
+            written = self._automaton(one, lines)
+            (grouped if one.name in self.inside else lines).extend(written)
+        return [*lines, "group h:", *grouped, "end"] if grouped else lines
+
+    def _rules(self) -> list[str]:
+        lines = [f"alg bool {name} = {term.text};" for name, term in self.outer.items()]
+        lines += [_stated(one, self.event) for one in self.invariants]
+        lines += [f"initial {term.text};" for term in self.initial]
+        lines += [f"marked {term.text};" for term in self.marked]
+        return [*map(self._absolute, lines), *self.extra]
+
+    def _absolute(self, text: str) -> str:
+        """The text with automata called by where they are."""
+        called = {name: f"h.{name}" if len(self.inside) % 2 else f".h.{name}" for name in self.inside}
+        return _AUTOMATON.sub(lambda match: called.get(match[0], match[0]), text)
+
+    def _automaton(self, one: Automaton, definitions: list[str]) -> list[str]:
+        """The lines of an automaton; where it is an instance, those of its definition are added to the others."""
+        first = one.twin_of or one
+        if first.name not in self.defined:
+            header = f"{one.kind} automaton {one.name}:" if one.name == "A0" else f"{one.kind} {one.name}:"
+            return [header, *(self._absolute(line) for line in self._body(one, self.event)), "end"]
+        body = self._body(first, lambda name: f"p_{name}")
+        parameters = {name for line in body for name in re.findall(r"\bp_(\w+)", line)}
+        declared = [f"{'' if self.events[name] else 'un'}controllable p_{name}" for name in sorted(parameters)]
+        given = [self.event(one.renamed.get(name, name)) for name in sorted(parameters)]
+        for outside in sorted({name for line in body for name in _OUTSIDE.findall(line)}):
+            if outside.split(".")[0] != first.name:
+                parameter = outside.replace(".", "_")
+                kind = self._type(outside)
+                declared.append(f"location {parameter}" if kind is None else f"alg {kind} {parameter}")
+                given.append(self._absolute(outside))
+                body = [re.sub(rf"\b{re.escape(outside)}\b", parameter, line) for line in body]
+        if one is first:
+            own = re.compile(rf"(?<![\w.]){first.name}\.")
+            body = [re.sub(rf"\bswitch {first.name}\b", "switch self", own.sub("", line)) for line in body]
+            header = f"{first.kind} def D{first.name}({'; '.join(declared)}):"
+            definitions += [header, *map(self._absolute, body), "end"]
+        return [f"{one.name}: D{first.name}({', '.join(given)});"]
+
+    def _type(self, name: str) -> str | None:
+        """The type of a variable of an automaton; None of a location."""
+        automaton, _, part = name.partition(".")
+        variables = next(one.variables for one in self.automata if one.name == automaton)
+        return variables[part][0] if part in variables else None
+
+    def _body(self, one: Automaton, event: Callable[[str], str]) -> list[str]:
+        lines = [f"  disc {kind} {name} {initial};" for name, (kind, _, initial, _) in one.variables.items()]
+        for name, (kind, values) in one.algebraic.items():
+            value = f" = {values[''].text}" if "" in values else ""
+            lines.append(f"  alg {kind} {name}{value};")
+        if one.declared is not None:
+            lines.append(f"  alphabet {', '.join(map(event, one.declared))};" if one.declared else "  alphabet;")
         if one.watched:
-            lines.append(f"  monitor {', '.join(map(self.event, one.watched))};")
+            everything = one.watched == one.alphabet
+            lines.append("  monitor;" if everything else f"  monitor {', '.join(map(event, one.watched))};")
+        lines += [f"  initial {term.text};" for term in one.initial]
+        lines += [f"  marked {term.text};" for term in one.marked]
+        lines += [f"  {_stated(invariant, event)}" for invariant in one.invariants]
         for location in one.locations:
-            lines.append(f"  location {location.name}:")
-            for word, condition in (("initial", location.initial), ("marked", location.marked)):
-                if condition is not None:
-                    lines.append(f"    {word}{'' if condition is TRUE else f' {condition.text}'};")
-            for edge in location.edges:
-                guard = "" if edge.guard is TRUE else f" when {edge.guard.text}"
-                updates = ", ".join(f"{name} := {value.text}" for name, value in edge.updates)
-                events = ", ".join(map(self.event, edge.events))
-                goto = "" if edge.target == location.name else f" goto {edge.target}"
-                lines.append(f"    edge {events}{guard}{f' do {updates}' if updates else ''}{goto};")
-            if lines[-1].endswith(":"):
-                lines[-1] = f"  location {location.name};"
-        return [*lines, "end"]
+            inner = [*_elements(location, one, event)]
+            lines += [f"  location {location.name}{':' if inner else ';'}", *(f"    {line}" for line in inner)]
+        return lines
 
     # Synthesis by the definition
 
@@ -286,12 +580,24 @@ class Specification:
         every = (dict(zip(names, chosen, strict=True)) for chosen in product(*self.domains.values()))
         return [state for state in every if self._kept("plant", state)]
 
+    @cached_property
+    def everywhere(self) -> list[Invariant]:
+        """All invariants, those of locations as what they say of all states."""
+        found = list(self.invariants)
+        for one in self.automata:
+            found += one.invariants
+            for location in one.locations:
+                found += [invariant.within(_at(one.name, location.name)) for invariant in location.invariants]
+        return found
+
     def _kept(self, kind: str, state: State) -> bool:
-        return all(condition.value(state) for own, condition in self.invariants if own == kind)
+        return all(one.condition.value(state) for one in self.everywhere if one.kind == kind and not one.events)
 
     def _allowed(self, kind: str, event: str, state: State) -> bool:
         return all(
-            condition.value(state) == needs for own, on, needs, condition in self.excluded if (own, on) == (kind, event)
+            one.condition.value(state) == one.needs
+            for one in self.everywhere
+            if one.kind == kind and event in one.events
         )
 
     def _starts(self, state: State) -> bool:
@@ -301,9 +607,15 @@ class Specification:
                 return False
             if any(state[f"{one.name}.{name}"] not in several for name, (_, _, _, several) in one.variables.items()):
                 return False
-        return True
+        return all(
+            term.value(state) for term in [*self.initial, *(term for one in self.automata for term in one.initial)]
+        )
 
-    def _marked(self, state: State) -> bool:
+    def _marks(self, state: State) -> bool:
+        if not all(
+            term.value(state) for term in [*self.marked, *(term for one in self.automata for term in one.marked)]
+        ):
+            return False
         places = (location for one in self.automata for location in one.locations if location.name == state[one.name])
         return all(place.marked is not None and place.marked.value(state) for place in places)
 
@@ -331,7 +643,7 @@ class Specification:
         """How many states are reachable under the supervisor."""
         steps, bad = self._steps()
         initial = {number for number, state in enumerate(self.states) if self._starts(state)}
-        marked = {number for number, state in enumerate(self.states) if self._marked(state)}
+        marked = {number for number, state in enumerate(self.states) if self._marks(state)}
         good = set(range(len(self.states))) - bad
         while True:
             within = [(before, after) for before, after, _ in steps if before in good and after in good]
@@ -348,7 +660,7 @@ class Specification:
         steps: list[tuple[int, int, bool]] = []
         bad = {number for number, state in enumerate(self.states) if not self._kept("requirement", state)}
         for number, state in enumerate(self.states):
-            changes = ({**state, name: not state[name]} for name in self.inputs)
+            changes = ({**state, name: value} for name, (_, values) in self.inputs.items() for value in values)
             steps += [(number, key.get(tuple(after.values()), number), False) for after in changes]
             for event, after in self._after(state):
                 controllable = self.events[event]
@@ -383,6 +695,50 @@ def _closure(start: set[int], steps: list[tuple[int, int]]) -> set[int]:
         found |= fresh
         pending += fresh
     return found
+
+
+def _at(automaton: str, location: str) -> Term:
+    return Term(f"{automaton}.{location}", lambda s: s[automaton] == location)
+
+
+def _named(name: str, automaton: str, value: Callable[[State], Any]) -> Term:
+    """What has a name: in a twin it is the other's as long as it is its own, and that of the first otherwise."""
+
+    def of(state: State) -> Any:
+        first, whole = state.get("", (automaton, state))
+        return value(state if first == automaton else whole)
+
+    return Term(name, of)
+
+
+def _elements(location: Location, one: Automaton, event: Callable[[str], str]) -> Iterator[str]:
+    """What stands in a location."""
+    for word, condition in (("initial", location.initial), ("marked", location.marked)):
+        if condition is not None:
+            yield f"{word}{'' if condition is TRUE else f' {condition.text}'};"
+    for name, (_, values) in one.algebraic.items():
+        if location.name in values:
+            yield f"equation {name} = {values[location.name].text};"
+    for invariant in location.invariants:
+        yield _stated(invariant, event)
+    for edge in location.edges:
+        guard = "" if edge.guard is TRUE else f" when {edge.guard.text}"
+        updates = ", ".join(f"{name} := {value.text}" for name, value in edge.updates)
+        events = ", ".join(map(event, edge.events))
+        goto = "" if edge.target == location.name else f" goto {edge.target}"
+        yield f"edge {events}{guard}{f' do {updates}' if updates else ''}{goto};"
+
+
+def _stated(one: Invariant, event: Callable[[str], str]) -> str:
+    """The text of an invariant."""
+    name = f"{one.name}: " if one.name else ""
+    if not one.events:
+        return f"{one.kind} invariant {name}{one.condition.text};"
+    events = ", ".join(map(event, one.events))
+    events = f"{{{events}}}" if len(one.events) > 1 else events
+    text = f"{events} needs {one.condition.text}" if one.needs else f"{one.condition.text} disables {events}"
+    # CIF lets the word out; a name needs it.
+    return f"{one.kind} invariant {name}{text};" if name else f"{one.kind} {text};"
 
 
 def _text(value: Any) -> str:

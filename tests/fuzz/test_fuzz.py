@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.fuzz.broken_off import broken_off_tried
+from tests.fuzz.cif_mutants import cif_mutant
 from tests.fuzz.mutants import mutant
 from tests.fuzz.special import COMMANDS, KINDS, tried_with
-from tests.fuzz.trial import called, saved_tried, time_limit, tried
+from tests.fuzz.trial import called, cif_tried, saved_tried, time_limit, tried
 from tests.fuzz.valid import checked, compared, compiled
 
 if TYPE_CHECKING:
@@ -39,6 +40,14 @@ def test_saved_mutants(tmp_path: Path, first: int) -> None:
     for seed in range(first, first + 50):
         with time_limit(60):
             statuses.add(saved_tried(tmp_path, seed))
+    assert {0, 1} <= statuses
+
+
+def test_mutants_of_cif(tmp_path: Path) -> None:
+    statuses = set()
+    for seed in range(40):
+        with time_limit(60):
+            statuses.add(cif_tried(tmp_path, cif_mutant(seed)))
     assert {0, 1} <= statuses
 
 

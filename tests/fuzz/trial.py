@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 from click.testing import CliRunner
 
 import robosc
+import robosc.cif
 from robosc import cli
 from robosc.analysis.supervise import EmptySupervisorError, supervise
 from robosc.checks import check
@@ -166,6 +167,27 @@ def saved_tried(folder: Path, seed: int) -> int:
     assert UNTOLD not in output, "a file beside the folder is told of"
     assert os.environ.get("PATH", UNTOLD) not in output, "the environment is told of"
     return status
+
+
+def cif_tried(folder: Path, files: dict[str, bytes]) -> int:
+    """Writes a specification of CIF and has it checked, synthesized and transformed; returns `synthesize`'s status.
+
+    Raises AssertionError for a finding outside its text and where the commands contradict each other.
+    """
+    for name, content in files.items():
+        (folder / name).write_bytes(content)
+    path = folder / next(iter(files))
+    reading = robosc.cif.read(path)
+    _located(reading.findings, reading.texts)
+    assert (reading.model is None) == has_errors(reading.findings)
+    checking = _run("check", str(path))
+    assert checking == int(has_errors(reading.findings)), f"check ends with {checking}"
+    synthesizing = _run("synthesize", str(path))
+    transforming = _run("transform", str(path), "--to", "cif", "-o", str(folder / "generated"))
+    assert (synthesizing, transforming) in ([(1, 1)] if checking else [(0, 0), (3, 3), (0, 1), (1, 1)]), (
+        f"synthesize ends with {synthesizing}, transform with {transforming}"
+    )
+    return synthesizing
 
 
 def _run(*arguments: str) -> int:

@@ -1,0 +1,140 @@
+"""CIF specifications with a few faults: random ones and those of the tests, their tokens dropped, doubled and swapped.
+
+Now and then the file ends early, or has bytes in it that are no text.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+from functools import cache
+from random import Random
+from typing import TYPE_CHECKING
+
+from tests.cif.random_specifications import Specification
+from tests.fuzz.mutants import HOSTILE, ROOT
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+#: A token with the blanks and comments before it.
+_TOKEN = re.compile(
+    r"(?:\s|//[^\n]*(?:\n|$)|/\*[\s\S]*?\*/)*"
+    r"(?:[.^]?[$\w]+(?:\.[$\w]+)*|\"(?:[^\"\n\\]|\\.)*\"|:=|=>|<=>|!=|<=|>=|\.\.|\S)"
+)
+_BLOCK = re.compile(r"^```cif\n(.*?)^```", re.MULTILINE | re.DOTALL)
+#: Bytes that are no UTF-8, end a text in C, or lead a text that is in another encoding.
+_GARBAGE = (b"\xff", b"\x00", b"\xc3(", b"\xef\xbb\xbf", b"\xed\xa0\x80", b"\xf4\x90\x80\x80", b"\x1a", b"\r")
+#: What other constructs begin with, so that one is found where it does not belong.
+_WORDS = (
+    *("plant", "requirement", "supervisor", "invariant", "needs", "disables", "location", "edge", "goto", "end", "tau"),
+    *(
+        "initial",
+        "marked",
+        "monitor",
+        "alphabet",
+        "equation",
+        "input",
+        "disc",
+        "alg",
+        "const",
+        "enum",
+        "type",
+        "import",
+    ),
+    *("if", "switch", "case", "else", "elif", "not", "self", "any", "in", "min", "abs", "div", "mod", "int", "bool"),
+    *(
+        "group",
+        "def",
+        "func",
+        "cont",
+        "real",
+        "list",
+        "event",
+        "urgent",
+        "now",
+        "time",
+        "print",
+        "svgfile",
+        "namespace",
+    ),
+    *("(", ")", "[", "]", "{", "}", ";", ",", ":", ":=", "..", "=", "!", "?", "@", "$", "-", "2147483648", "0", "1.5"),
+)
+
+
+@cache
+def _small() -> list[str]:
+    """The specifications that tests and pages of the documentation have in them."""
+    found = []
+    for module in sorted((ROOT / "tests" / "cif").glob("test_*.py")):
+        nodes = ast.walk(ast.parse(module.read_text(encoding="utf-8")))
+        texts = (node.value for node in nodes if isinstance(node, ast.Constant))
+        found += [text for text in texts if isinstance(text, str) and "location" in text]
+    for page in sorted((ROOT / "docs").rglob("*.md")):
+        found += _BLOCK.findall(page.read_text(encoding="utf-8"))
+    return found
+
+
+def cif_mutant(seed: int) -> dict[str, bytes]:
+    """The files of a specification with one to four faults in one of them; the first imports the others."""
+    random = Random(seed)  # noqa: S311 - nothing here is secret
+    if random.random() < 0.3:
+        files = {"random.cif": random.choice(_small())}
+    else:
+        files = Specification(random.randrange(10**6), narrow=random.random() < 0.3).files
+    mutated = random.choice(list(files))
+    tokens = _TOKEN.findall(files[mutated])
+    for _ in range(random.choice((1, 1, 1, 2, 2, 3, 4))):
+        if tokens:
+            random.choice(_MUTATIONS)(tokens, random)
+    content = "".join(tokens).encode()
+    if random.random() < 0.08:
+        at = random.randrange(len(content) + 1)
+        content = content[:at] + random.choice(_GARBAGE) + content[at:]
+    return {name: content if name == mutated else text.encode() for name, text in files.items()}
+
+
+def _drop(tokens: list[str], random: Random) -> None:
+    at = random.randrange(len(tokens))
+    del tokens[at : at + random.choice((1, 1, 1, 2, 6))]
+
+
+def _double(tokens: list[str], random: Random) -> None:
+    at = random.randrange(len(tokens))
+    after = at + random.choice((1, 1, 2, 20))
+    tokens[after:after] = tokens[at:after]
+
+
+def _swap(tokens: list[str], random: Random) -> None:
+    one, other = random.randrange(len(tokens)), random.randrange(len(tokens))
+    tokens[one], tokens[other] = tokens[other], tokens[one]
+
+
+def _replace(tokens: list[str], random: Random) -> None:
+    tokens[random.randrange(len(tokens))] = random.choice(tokens)
+
+
+def _exchange(tokens: list[str], random: Random) -> None:
+    tokens[random.randrange(len(tokens))] = f" {random.choice(_WORDS)} "
+
+
+def _insert(tokens: list[str], random: Random) -> None:
+    at = random.randrange(len(tokens))
+    tokens[at:at] = [f" {random.choice(_WORDS)} "] * random.choice((1, 1, 1, 300))
+
+
+def _cut_off(tokens: list[str], random: Random) -> None:
+    del tokens[random.randrange(len(tokens)) :]
+
+
+def _say_hostile(tokens: list[str], random: Random) -> None:
+    at = random.randrange(len(tokens))
+    said = random.choice(HOSTILE)
+    tokens[at] += random.choice((said, f" // {said}\n", f'"{said}"'))
+
+
+#: Those that leave a text that can be read to its end come more often.
+_MUTATIONS: list[Callable[[list[str], Random], None]] = [
+    *[_drop, _double, _swap, _replace] * 3,
+    *[_replace, _exchange, _insert, _cut_off, _say_hostile],
+]
