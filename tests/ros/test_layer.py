@@ -203,6 +203,14 @@ def test_a_cancel_that_the_robot_refuses_is_told(trial: Trial) -> None:
     assert trial.output.count("/go_to: the server refuses to cancel the goal") == 1
 
 
+def test_a_goal_whose_result_is_lost_ends_all_the_same(trial: Trial) -> None:
+    if trial.ros == "ros1":  # in ROS 2 the layer asks for the result
+        assert trial.robot("a result that is lost") == [["go_to", 12.0]]
+        assert trial.controller("a result that is lost") == [["go_to", "ABORTED"]]
+        assert "action_go_to.u_error" in events(trial, "a result that is lost")
+        assert "/go_to: the goal has ended, but its result did not come within 2000 ms" in trial.output
+
+
 def test_nobody_waits_for_a_robot_that_does_not_answer_a_cancel(trial: Trial) -> None:
     if trial.ros == "ros2":
         step = "cancels that the robot does not answer"

@@ -10,6 +10,7 @@ import sys
 import threading
 import time
 from pathlib import Path
+from types import SimpleNamespace
 
 from topics import connect
 
@@ -55,9 +56,19 @@ class Ros1Robot(Robot):
         self.service = rospy.Service("/lamp/light", SetBool, lambda call: SetBoolResponse(self.light(call.data), ""))
         self.goal = None
         self.action = actionlib.ActionServer("/go_to", NavigateToPoseAction, self.on_goal, self.on_cancel, False)
-        hear = self.action.internal_cancel_callback
-        self.action.internal_cancel_callback = lambda goal: self.note("cancel", True) if self.deaf else hear(goal)
+        hear_goal, hear_cancel = self.action.internal_goal_callback, self.action.internal_cancel_callback
+        self.action.internal_goal_callback = lambda goal: self.once_heard(lambda: hear_goal(goal))
+        self.action.internal_cancel_callback = lambda goal: (
+            self.note("cancel", True) if self.deaf else self.once_heard(lambda: hear_cancel(goal))
+        )
         self.serve()
+
+    def once_heard(self, hear):
+        """rospy tells a listener that it is connected before it publishes to it: a result could be lost in between."""
+        until = time.monotonic() + PATIENCE
+        while not self.action.result_pub.get_num_connections() and time.monotonic() < until:
+            time.sleep(0.01)
+        hear()
 
     def serve(self):
         self.action.start()
@@ -85,6 +96,13 @@ class Ros1Robot(Robot):
 
     def end(self, how):
         {"SUCCEEDED": self.goal.set_succeeded, "ABORTED": self.goal.set_aborted}[how]()
+
+    def lose_result(self):
+        """The goal at hand succeeds, and its result reaches nobody."""
+        publisher = self.action.result_pub
+        self.action.result_pub = SimpleNamespace(publish=lambda _: None, get_num_connections=lambda: 1)
+        self.end("SUCCEEDED")
+        self.action.result_pub = publisher
 
 
 class Ros2Robot(Robot):
@@ -244,7 +262,15 @@ class Trial:
         self.heard("battery", self.charge)
         self.ros.listen("label", "std_msgs/String", lambda message: self.labels.append(message.data), latched=True)
         self.step("start")
-        for step in (self.messages, self.services, self.goals, self.cancels, self.failures, self.late_servers):
+        for step in (
+            self.messages,
+            self.services,
+            self.goals,
+            self.cancels,
+            self.failures,
+            self.late_servers,
+            self.lost_result,
+        ):
             step()
         self.wait(lambda: self.labels, "what was sent before anyone listened")
         self.steps["labels"] = self.labels
@@ -421,6 +447,14 @@ class Trial:
             self.robot.end("SUCCEEDED")
             self.ended()
             self.step("cancels that the robot does not answer")
+
+    def lost_result(self):
+        if isinstance(self.robot, Ros1Robot):
+            self.robot.deaf = False
+            self.start(12.0)
+            self.robot.lose_result()
+            self.ended()
+            self.step("a result that is lost")
 
     def leave_with(self, place):
         """The robot's action server goes, and then the controller sends a goal."""

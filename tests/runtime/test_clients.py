@@ -225,6 +225,22 @@ def test_a_refused_cancel_is_reported_and_the_goal_goes_on() -> None:
     assert bench.client.busy
 
 
+def test_a_goal_whose_result_does_not_come_ends_with_the_timeout_whatever_is_asked_meanwhile() -> None:
+    bench = Bench(ActionClient)
+    goal = accepted(bench)
+    bench.do(goal.handlers.over)
+    bench.wait(4.9)
+    assert bench.told == []
+    bench.wait(0.1)
+    assert bench.told == [("error", "the goal has ended, but its result did not come within 5000 ms")]
+    goal = accepted(bench)
+    bench.do(goal.handlers.over)
+    bench.do(bench.client.cancel)
+    bench.do(goal.handlers.refused)
+    bench.wait(5)
+    assert (bench.told[1:], goal.cancels, bench.client.busy) == ([("ended", None)], 0, False)
+
+
 def test_an_interrupted_goal_ends_in_an_error() -> None:
     bench = Bench(ActionClient)
     goal = accepted(bench)
@@ -244,7 +260,9 @@ def test_a_goal_that_is_interrupted_before_it_is_sent_ends_in_the_same_error() -
 
 _GOAL_STEPS = st.lists(
     st.tuples(
-        st.sampled_from(("start", "cancel", "accepted", "rejected", "feedback", "ended", "refused", "wait", "serve")),
+        st.sampled_from(
+            ("start", "cancel", "accepted", "rejected", "feedback", "over", "ended", "refused", "wait", "serve")
+        ),
         st.integers(0, 9),
     ),
     max_size=40,
@@ -267,7 +285,7 @@ def test_every_goal_comes_to_one_end(steps: list[tuple[str, int]]) -> None:
             bench.wait(number)
         elif step == "serve":
             bench.port.served = bool(number % 2)
-        elif goal is not None and step in ("accepted", "rejected", "refused"):
+        elif goal is not None and step in ("accepted", "rejected", "refused", "over"):
             bench.do(getattr(goal.handlers, step))
         elif goal is not None and step == "feedback":
             bench.do(lambda goal=goal, number=number: goal.handlers.feedback(number))

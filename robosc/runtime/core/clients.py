@@ -20,6 +20,7 @@ POLL = 0.05
 #: Seconds after its time for acceptance is over in which a goal may still begin; then it counts as lost.
 LOST = 30.0
 REFUSED = "the server refuses to cancel the goal"
+LOST_RESULT = "the goal has ended, but its result did not come"
 
 
 @dataclass(frozen=True)
@@ -111,6 +112,7 @@ class _Phase(Enum):
     LOOKING = 1
     SENT = 2
     ACCEPTED = 3
+    OVER = 4
 
 
 class ActionClient:
@@ -225,6 +227,7 @@ class ActionClient:
             accepted=lambda: self._event_loop.post(lambda: self._accepted(number)),
             rejected=lambda: later(lambda: self._end("rejected")),
             feedback=lambda feedback: later(lambda: self._feedback(feedback)),
+            over=lambda: later(self._await_result),
             ended=lambda outcome, result, text: later(lambda: self._finish(outcome, result, text)),
             refused=lambda: later(self._refused),
         )
@@ -256,7 +259,13 @@ class ActionClient:
         if not self._cancelling:
             self._answers.feedback(feedback)
 
+    def _await_result(self) -> None:
+        self._phase = _Phase.OVER
+        self._set_deadline(lambda: self._end(f"{LOST_RESULT} within {round(self._timeout * 1000)} ms"))
+
     def _refused(self) -> None:
+        if self._phase is _Phase.OVER:
+            return
         self._set_deadline(None)
         self._port.warn(f"{self._client.identifier}: {REFUSED}")
 

@@ -38,12 +38,14 @@ class CallHandlers:
 class GoalHandlers:
     """What becomes of a goal, called from any thread.
 
-    `ended` gets the result and the server's own text; `refused`: the server does not cancel the goal.
+    `over`: it has ended, and its result may be yet to come; `ended` gets the result and the server's own text;
+    `refused`: the server does not cancel the goal.
     """
 
     accepted: Callable[[], None]
     rejected: Callable[[], None]
     feedback: Callable[[Message], None]
+    over: Callable[[], None]
     ended: Callable[[Outcome, Message, str], None]
     refused: Callable[[], None]
 

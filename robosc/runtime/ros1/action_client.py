@@ -47,6 +47,8 @@ def _follow(handle: Any, handlers: GoalHandlers) -> None:
     state = handle.get_comm_state()
     if state == actionlib.CommState.ACTIVE:
         handlers.accepted()
+    elif state == actionlib.CommState.WAITING_FOR_RESULT:
+        handlers.over()
     elif state == actionlib.CommState.DONE:
         status = handle.get_goal_status()
         if status == GoalStatus.REJECTED:

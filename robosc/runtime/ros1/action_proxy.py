@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import rospy
 from actionlib_msgs.msg import GoalID, GoalStatus, GoalStatusArray
 
-from robosc.runtime.core.clients import REFUSED
+from robosc.runtime.core.clients import LOST_RESULT, REFUSED
 from robosc.runtime.core.proxies import ActionProxy, ProxiedGoal
 from robosc.runtime.ros1.node import advertise
 
@@ -24,9 +24,13 @@ _UNDER_WAY = (GoalStatus.PENDING, GoalStatus.ACTIVE, GoalStatus.PREEMPTING, Goal
 
 @dataclass(eq=False)
 class _Goal(ProxiedGoal):
-    """A goal of the controller's; `cancels` are its own requests to cancel it before it was sent."""
+    """A goal of the controller's; `cancels` are its own requests to cancel it before it was sent.
+
+    `over`: the robot, which had accepted it, tells that it has ended, or tells of it no more.
+    """
 
     refused: bool = False
+    over: bool = False
     cancels: list[Message] = field(default_factory=list)
 
     def __post_init__(self) -> None:
@@ -98,8 +102,12 @@ class Ros1ActionProxy(ActionProxy[_Goal]):
                     goal.status.status = status.status
                 if status.status not in (GoalStatus.PENDING, GoalStatus.RECALLING, GoalStatus.REJECTED):
                     self._accept(goal)
-            if own or not goal.accepted:
-                told.status_list.append(goal.status)  # one that the robot has not heard of yet is not lost
+            if goal.accepted:
+                over = all(status.status not in _UNDER_WAY for status in own)
+                if over and not goal.over:
+                    self._deadline = self._event_loop.clock() + self._timeout
+                goal.over = over
+            told.status_list.append(goal.status)  # even one that the robot does not know: the controller hears its end
         self._statuses.publish(told)
 
     def _accept(self, goal: _Goal) -> None:
@@ -126,7 +134,10 @@ class Ros1ActionProxy(ActionProxy[_Goal]):
         self._cancels.publish(GoalID(id=goal.identifier))  # without a time, which would cancel other goals, too
 
     def _watch(self, goal: _Goal, now: float) -> None:
-        if not goal.cancelled:
+        if goal.over:
+            if now >= self._deadline:
+                self._give_up(goal, f"{LOST_RESULT} within {round(self._timeout * 1000)} ms")
+        elif not goal.cancelled:
             super()._watch(goal, now)
         elif now >= self._deadline and not goal.refused and goal.status.status == GoalStatus.ACTIVE:
             goal.refused = True

@@ -60,6 +60,7 @@ class ActionProxy : public GoalProxy<typename Type::_action_goal_type::_goal_typ
       message_ = message;
       status_ = Status::PENDING;
       refused_ = false;
+      result_due_ = 0.0;
       cancels_before_.clear();
       if (!message.goal_id.id.empty()) return;
       // The server would name it, and the layer would not know it again.
@@ -91,11 +92,15 @@ class ActionProxy : public GoalProxy<typename Type::_action_goal_type::_goal_typ
     actionlib_msgs::GoalStatusArray known;
     known.header = message.header;
     bool listed = false;
+    bool under_way = false;
     for (const Status& status : message.status_list) {
       if (!ended_.empty() && status.goal_id.id == ended_) {
         known.status_list.push_back(status);
       } else if (is_running(status.goal_id)) {
-        if (!is_terminal(status.status)) status_ = status.status;
+        if (!is_terminal(status.status)) {
+          status_ = status.status;
+          under_way = true;
+        }
         if (status.status != Status::PENDING && status.status != Status::RECALLING &&
             status.status != Status::REJECTED) {
           this->accept();
@@ -105,10 +110,16 @@ class ActionProxy : public GoalProxy<typename Type::_action_goal_type::_goal_typ
         listed = true;
       }
     }
-    if (this->running() && !this->accepted() && !listed) {
-      // One that the robot has not heard of yet is not lost.
+    if (this->running() && !listed) {
+      // Even one that the robot does not know: the controller hears its end.
       known.status_list.emplace_back();
       known.status_list.back().goal_id = message_.goal_id;
+      known.status_list.back().status = status_;
+    }
+    if (under_way) {
+      result_due_ = 0.0;
+    } else if (this->running() && this->accepted() && result_due_ == 0.0) {
+      result_due_ = Timer::now() + timeout_;
     }
     status_publisher_.publish(known);
   }
@@ -131,6 +142,15 @@ class ActionProxy : public GoalProxy<typename Type::_action_goal_type::_goal_typ
   }
 
   // Waiting.
+
+  // A result can be lost: actionlib publishes it once, and it reaches who is connected by then.
+  void watch() {
+    if (this->running() && result_due_ > 0.0 && Timer::now() >= result_due_) {
+      this->fail("the goal has ended, but its result did not come" + this->within());
+    } else {
+      this->look();
+    }
+  }
 
   bool is_served() override {
     return goal_publisher_.getNumSubscribers() > 0 && cancel_publisher_.getNumSubscribers() > 0 &&
@@ -217,8 +237,9 @@ class ActionProxy : public GoalProxy<typename Type::_action_goal_type::_goal_typ
   ros::Subscriber status_subscription_;
   ros::Subscriber feedback_subscription_;
   ros::Subscriber result_subscription_;
-  Timer look_{node_, std::chrono::milliseconds(20), [this] { this->look(); }};
+  Timer look_{node_, std::chrono::milliseconds(20), [this] { watch(); }};
   double end_ = 0.0;
+  double result_due_ = 0.0;  // by when the result of a goal that is over has to be there; 0: the goal is under way
   ActionGoal message_;
   std::uint8_t status_ = Status::PENDING;
   bool refused_ = false;
