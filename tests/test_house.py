@@ -27,6 +27,7 @@ ROOMS = {
     "runtime",
     "simulation",
     "debugger",
+    "view",
     "diagrams",
     "editor",
     "m2t",
@@ -37,15 +38,16 @@ ROOMS = {
 }
 #: Rooms that see more than the ground, and what: the root is the public API, the command line is on top.
 ALLOWED = {
-    "": ROOMS - {"cli", "debugger", "editor", "__main__"},
+    "": ROOMS - {"cli", "debugger", "editor", "view", "__main__"},
     "__main__": {"cli"},
     "analysis": {"synthesis", "engine", "m2t"},
     "cif": {"language"},
     "editor": {"", "language", "checks", "analysis"},
     "runtime": {"engine"},
     "node_tests": {"engine", "runtime", "m2t"},
-    "simulation": {"engine", "runtime"},
-    "debugger": {"language", "m2t", "analysis", "engine", "simulation"},
+    "simulation": {"engine", "runtime", "analysis", "language"},
+    "debugger": {"m2t", "analysis", "engine", "simulation"},
+    "view": {"m2t", "analysis", "engine", "simulation", "diagrams"},
     "cli": ROOMS - {"__main__"},
 }
 #: What executes a model, or generates what does, and so begins with making an engine model.
@@ -79,6 +81,7 @@ LIBRARIES = {
     "rosgraph": {"runtime"},
     "rosgraph_msgs": {"runtime"},
     "rospy": {"runtime"},
+    "starlette": {"view"},
     "std_msgs": {"runtime"},
     # What the wheels of ROS 2 generate modules with.
     **{f"rosidl_{name}": {"runtime"} for name in ("adapter", "cli", "generator_c", "generator_py")},
@@ -86,6 +89,7 @@ LIBRARIES = {
     "rosidl_generator_type_description": {"runtime"},
     "numpy": {"runtime"},
     "textx": {"language", "analysis", "cif"},
+    "uvicorn": {"view"},
 }
 
 

@@ -36,6 +36,7 @@ _COMMANDS = {
     "explain": "Say why something can't happen.",
     "verify": "Prove what the supervised robot promises.",
     "simulate": "Try the supervised robot.",
+    "view": "See the supervised robot decide, in a browser.",
     "dap": "Debug a robot in an editor.",
     "run": "Be a robot's controller on ROS, without a build.",
     "format": "Lay out models in the one canonical way.",

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from robosc.analysis.explain import NamingError, Renderer, event_named
 from robosc.debugger.launching import Launch, LaunchError, RequestError
-from robosc.debugger.replay import Replay
 from robosc.debugger.stops import FILTERS, Stop, Stops
 from robosc.debugger.views import Views, at, shown
 from robosc.diagnostics import as_text
 from robosc.files.json_reading import JsonError, json_value
 from robosc.semantics.roles import event_name
 from robosc.simulation import DataError, Simulation, read_script
+from robosc.simulation.replay import Replay
 from robosc.simulation.script import WAIT
 
 if TYPE_CHECKING:
@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
     from robosc.debugger.launching import Loader
     from robosc.debugger.protocol import Connection
-    from robosc.debugger.replay import Moment
     from robosc.debugger.views import Variable
+    from robosc.simulation.replay import Moment
 
 #: The robot is all that runs.
 _THREAD = 1

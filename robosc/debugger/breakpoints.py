@@ -18,8 +18,8 @@ from robosc.semantics.roles import event_name
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from robosc.debugger.replay import Moment, Replay
     from robosc.diagnostics import Span
+    from robosc.simulation.replay import Moment, Replay
 
 #: Of events: what keeps each from happening, and which requirements on it fail.
 _Seen: TypeAlias = dict[str, "tuple[Blocked | None, tuple[sct.Requirement, ...]]"]

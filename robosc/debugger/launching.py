@@ -5,20 +5,14 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
 
-from robosc.analysis.verify import Outcome, verify_system
-from robosc.files import reading as files
-from robosc.language.text import decode
-from robosc.simulation import LoopSimulation, Step, read_script, unfit_data
-from robosc.simulation.script import WAIT
+from robosc.simulation.played import PlayError, counterexample_steps, script_steps
 
 if TYPE_CHECKING:
-    from robosc.analysis.paths import TraceStep
     from robosc.diagnostics import Diagnostic
     from robosc.m2t.models import Models
-    from robosc.simulation import Simulation
+    from robosc.simulation import Simulation, Step
 
 #: So many events happen at random before a run that nothing stops is stopped, if nothing else is said.
 _MOST_AT_RANDOM = 10_000
@@ -103,40 +97,14 @@ class Launch:
 
         Raises LaunchError, RequestError, and OSError where the script can't be read.
         """
-        if self.script is not None:
-            return _script(simulation, self.script), ""
-        if self.counterexample is not None:
-            return _counterexample(simulation, self.counterexample)
+        try:
+            if self.script is not None:
+                return script_steps(simulation, self.script), ""
+            if self.counterexample is not None:
+                wanted = self.counterexample if isinstance(self.counterexample, str) else None
+                return counterexample_steps(simulation, wanted)
+        except PlayError as error:
+            if error.findings:
+                raise LaunchError(str(error), error.findings, error.texts) from None
+            raise RequestError(str(error)) from None
         return None, ""
-
-
-def _script(simulation: Simulation, path: str) -> list[Step]:
-    text, faults = decode(path, files.read(path))
-    events = [*simulation.engine.events, WAIT]
-    others = [word for word in LoopSimulation.OWN if word != WAIT]
-    steps, findings = read_script(path, text.content, events, others)
-    findings += [*faults, *unfit_data(path, (step for step in steps if step.event != WAIT), simulation.data)]
-    if findings:
-        raise LaunchError(f"{path}: {findings[0].message}", findings, {path: text.content})
-    return steps
-
-
-def _counterexample(simulation: Simulation, wanted: str | bool) -> tuple[list[Step], str]:
-    verdicts = verify_system(simulation.engine.model)
-    properties = [verdict.property for verdict in verdicts]
-    if wanted is not True and wanted not in properties:
-        close = get_close_matches(str(wanted), properties, n=1)
-        raise RequestError(f"there is no property `{wanted}`{f'; did you mean `{close[0]}`?' if close else ''}")
-    refuted = next((one for one in verdicts if one.outcome is Outcome.REFUTED and wanted in (True, one.property)), None)
-    if refuted is None:
-        raise RequestError("nothing is refuted: there is no counterexample")
-    return _steps(simulation, [*refuted.trace, *refuted.onwards]), f"{refuted.property}: {refuted.explanation}\n"
-
-
-def _steps(simulation: Simulation, trace: Sequence[TraceStep]) -> list[Step]:
-    """The steps of a trace; data that does not matter in it is as ROS leaves it."""
-    inputs = {event: simulation.data.inputs(event, {}) for event in {step.event for step in trace}}
-    return [
-        Step(number, step.event, simulation.data.shaped(step.event, {**inputs[step.event], **step.inputs}))
-        for number, step in enumerate(trace, 1)
-    ]

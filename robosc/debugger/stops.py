@@ -13,8 +13,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from robosc.debugger.breakpoints import Target
-    from robosc.debugger.replay import Moment, Replay
     from robosc.debugger.views import Views
+    from robosc.simulation.replay import Moment, Replay
 
 REFUSED, FORBIDDEN, STUCK = "refused", "forbidden", "stuck"
 #: What else than breakpoints may stop a run.

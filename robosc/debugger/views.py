@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
     from robosc.analysis.explain import Explanation
-    from robosc.debugger.replay import Moment, Replay
     from robosc.engine.state import State
+    from robosc.simulation.replay import Moment, Replay
 
 _COMMUNICATIONS = (sct.PlantKind.message, sct.PlantKind.service, sct.PlantKind.action)
 

@@ -1,4 +1,4 @@
-"""The run of a robot that is debugged: by a script, an event log or a trace, or at random; forwards and backwards."""
+"""A run of a robot that is looked at: by a script, an event log or a trace, or at random; forwards and backwards."""
 
 from __future__ import annotations
 
@@ -96,6 +96,16 @@ class Replay:
         if self._future:
             return self._future[-1].line
         return self.steps[self._next].line if self.steps is not None and self._next < len(self.steps) else None
+
+    @property
+    def has_future(self) -> bool:
+        """Whether something was taken back that can be played again."""
+        return bool(self._future)
+
+    def freely(self) -> None:
+        """Leaves the script, and what was taken back: from here on what is asked for happens, or chance decides."""
+        self.steps, self._until = None, None
+        self._future.clear()
 
     def forward(self) -> Moment | None:
         """The next step; None where nothing is left to play, or nothing can happen."""

@@ -6,7 +6,7 @@ import pytest
 
 import robosc
 from robosc.debugger.launching import Launch
-from robosc.debugger.replay import Replay
+from robosc.simulation.replay import Replay
 from robosc.metamodel import sct
 from robosc.simulation import Simulation
 

@@ -1,0 +1,66 @@
+"""What a run plays: a script, an event log, or a counterexample of `verify`."""
+
+from __future__ import annotations
+
+from difflib import get_close_matches
+from typing import TYPE_CHECKING
+
+from robosc.analysis.verify import Outcome, verify_system
+from robosc.files import reading as files
+from robosc.language.text import decode
+from robosc.simulation.script import WAIT, Step, read_script, unfit_data
+from robosc.simulation.simulation import LoopSimulation
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from robosc.analysis.paths import TraceStep
+    from robosc.diagnostics import Diagnostic
+    from robosc.simulation.simulation import Simulation
+
+
+class PlayError(Exception):
+    """What can't be played: why, with what was found wrong with a script, and its text by its path."""
+
+    def __init__(
+        self, message: str, findings: Sequence[Diagnostic] = (), texts: Mapping[str, str] | None = None
+    ) -> None:
+        super().__init__(message)
+        self.findings = findings
+        self.texts = texts or {}
+
+
+def script_steps(simulation: Simulation, path: str) -> list[Step]:
+    """The steps of a script or event log. Raises PlayError, and OSError where it can't be read."""
+    text, faults = decode(path, files.read(path))
+    events = [*simulation.engine.events, WAIT]
+    others = [word for word in LoopSimulation.OWN if word != WAIT]
+    steps, findings = read_script(path, text.content, events, others)
+    findings += [*faults, *unfit_data(path, (step for step in steps if step.event != WAIT), simulation.data)]
+    if findings:
+        raise PlayError(f"{path}: {findings[0].message}", findings, {path: text.content})
+    return steps
+
+
+def counterexample_steps(simulation: Simulation, wanted: str | None) -> tuple[list[Step], str]:
+    """A counterexample of a property, or (None) of the first that has one, and what `verify` says of it.
+
+    Data that does not matter in it is as ROS leaves it. Raises PlayError where there is none.
+    """
+    verdicts = verify_system(simulation.engine.model)
+    properties = [verdict.property for verdict in verdicts]
+    if wanted is not None and wanted not in properties:
+        close = get_close_matches(wanted, properties, n=1)
+        raise PlayError(f"there is no property `{wanted}`{f'; did you mean `{close[0]}`?' if close else ''}")
+    refuted = next((one for one in verdicts if one.outcome is Outcome.REFUTED and wanted in (None, one.property)), None)
+    if refuted is None:
+        raise PlayError("nothing is refuted: there is no counterexample")
+    return _steps(simulation, [*refuted.trace, *refuted.onwards]), f"{refuted.property}: {refuted.explanation}\n"
+
+
+def _steps(simulation: Simulation, trace: Sequence[TraceStep]) -> list[Step]:
+    inputs = {event: simulation.data.inputs(event, {}) for event in {step.event for step in trace}}
+    return [
+        Step(number, step.event, simulation.data.shaped(step.event, {**inputs[step.event], **step.inputs}))
+        for number, step in enumerate(trace, 1)
+    ]

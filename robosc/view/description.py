@@ -1,0 +1,216 @@
+"""What a page shows of a robot that never changes: its automata, communication, commands, requirements and texts."""
+
+from __future__ import annotations
+
+import re
+from pathlib import PurePath
+from typing import TYPE_CHECKING, Any
+
+from robosc.analysis.wording import name, words
+from robosc.diagrams import ros_graph
+from robosc.highlighting.lines import coloured
+from robosc.metamodel import expression as ex
+from robosc.metamodel import sct
+from robosc.metamodel.places import place
+from robosc.semantics.edges import edges_of, origin
+from robosc.semantics.roles import Roles, event_name, plant_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from robosc.m2t.models import Models
+
+#: What a robot's text calls automata: its components, and what requirements watch.
+AUTOMATA = (sct.PlantKind.behaviour, sct.PlantKind.requirement)
+#: What goes out to the robot: what a supervisor allows or forbids and a user calls a command.
+_OUTGOING = (sct.EventKind.trigger, sct.EventKind.cancel, sct.EventKind.plain)
+#: A label of a transition that is longer is cut; the whole stands in its title.
+_LONGEST = 60
+
+
+def describe(models: Models, texts: Mapping[str, str]) -> dict[str, Any]:
+    """The description as JSON data; `texts` are those of the files that the model comes from, by their paths.
+
+    Automata are numbered in the order of the model, and so are the states and transitions of each. A place is a
+    `file`, as a position in `files`, with the lines and columns of a span, from 1.
+    """
+    model = models.sct
+    describer = _Describer(texts)
+    automata = [describer.automaton(plant) for plant in automata_of(model)]
+    events = {event_name(event): describer.event(event) for event in Roles(model).events}
+    requirements = [
+        {
+            "event": event_name(requirement.event),
+            "name": requirement.name or "",
+            "text": requirement.text or "",
+            "place": describer.place(requirement),
+        }
+        for requirement in model.requirements
+        if requirement.text
+    ]
+    invariants = [
+        {"event": "", "name": invariant.name or "", "text": invariant.text, "place": describer.place(invariant)}
+        for invariant in model.invariants
+        if invariant.text
+    ]
+    return {
+        "robot": model.name,
+        "automata": automata,
+        "events": events,
+        "commands": [event_name(event) for event in commands_of(model)],
+        "requirements": requirements + invariants,
+        "communication": [] if models.rosgraph is None else _communication(models),
+        "files": [{"name": PurePath(path).name, "lines": coloured(path, text)} for path, text in texts.items()],
+    }
+
+
+def automata_of(model: sct.SupervisoryControlModel) -> list[sct.Plant]:
+    """The plants that are drawn."""
+    return [plant for plant in model.plants if plant.kind in AUTOMATA]
+
+
+def commands_of(model: sct.SupervisoryControlModel) -> list[sct.Event]:
+    """The controllable events that go out to the robot."""
+    return [event for event in Roles(model).events if event.controllable and event.kind in _OUTGOING]
+
+
+def transitions_of(plant: sct.Plant) -> list[list[sct.Edge]]:
+    """The transitions of an automaton, each as the edges that were made of it: one text is several edges."""
+    found: dict[object, list[sct.Edge]] = {}
+    for edge in edges_of(plant):
+        if not _is_written(edge):
+            continue
+        key = (origin(edge), edge.target, str(edge.source or ""), edge.event)
+        found.setdefault(key, []).append(edge)
+    return list(found.values())
+
+
+def _is_written(edge: sct.Edge) -> bool:
+    """Whether the text has a transition: what a state merely lets pass is an edge, too."""
+    left = origin(edge)
+    silent = edge.target in (None, left) and not edge.updates
+    return not silent or (edge.source is not None and str(edge.source) != str(edge.eContainer().source))
+
+
+class _Describer:
+    def __init__(self, texts: Mapping[str, str]) -> None:
+        self._lines = {path: text.split("\n") for path, text in texts.items()}
+        self.files: dict[str, int] = {path: number for number, path in enumerate(texts)}
+
+    def place(self, element: Any) -> dict[str, int] | None:
+        """Where an element stands; None where its text is not there."""
+        if element.source is None:
+            return None
+        file, span = place(element)
+        if file not in self.files:
+            return None
+        return {
+            "file": self.files[file],
+            "line": span.line,
+            "column": span.column,
+            "endLine": span.end_line,
+            "endColumn": span.end_column,
+        }
+
+    def automaton(self, plant: sct.Plant) -> dict[str, Any]:
+        """An automaton with its states and transitions; `source` is null where a transition leaves every state."""
+        position = {location: number for number, location in enumerate(plant.locations)}
+        return {
+            "name": name(plant),
+            "key": plant.name,
+            "kind": plant.kind.name,
+            "variables": [
+                {"name": variable.name, "key": f"{plant.origin or plant.name}.{variable.name}"}
+                | ({"numeric": True} if isinstance(variable.type, ex.IntegerType) else {})
+                for variable in plant.variables
+            ],
+            "place": self.place(plant),
+            "states": [
+                {
+                    "name": location.name,
+                    "initial": bool(location.initial),
+                    "marked": bool(location.marked),
+                    "place": self.place(location),
+                }
+                for location in plant.locations
+            ],
+            "transitions": [
+                {
+                    "source": None if (left := origin(edges[0])) is None else position[left],
+                    "target": position[edges[0].target] if edges[0].target is not None else None,
+                    "event": event_name(edges[0].event),
+                    **self._label(edges[0]),
+                    "place": self.place(edges[0]),
+                }
+                for edges in transitions_of(plant)
+            ],
+        }
+
+    def _label(self, edge: sct.Edge) -> dict[str, str]:
+        """The text of a transition, as short as a picture needs it, and whole."""
+        written = self._written(edge)
+        whole = " ".join(written.split()) if written else words(edge.event).replace("`", "")
+        short = re.sub(r"\s*\bgoto\s+\S+\s*$", "", re.sub(r"^transition\s+(?=\S)", "", whole))
+        return {"label": short if len(short) <= _LONGEST else f"{short[: _LONGEST - 1]}…", "whole": whole}
+
+    def _written(self, edge: sct.Edge) -> str:
+        if edge.source is None:
+            return ""
+        file, span = place(edge)
+        lines = self._lines.get(file, [])[span.line - 1 : span.end_line]
+        if not lines:
+            return ""
+        lines[-1] = lines[-1][: span.end_column - 1]
+        lines[0] = lines[0][span.column - 1 :]
+        return "\n".join(re.sub(r"//.*", "", line) for line in lines)
+
+    def event(self, event: sct.Event) -> dict[str, Any]:
+        """An event in words, where it stands, and the data that it may come with."""
+        return {
+            "words": words(event).replace("`", ""),
+            "controllable": bool(event.controllable),
+            "owner": plant_of(event).origin or plant_of(event).name,
+            "place": self.place(event) or self.place(plant_of(event)),
+            "inputs": [{"name": given.name, "label": _label(given), **_values(given.type)} for given in event.inputs],
+        }
+
+
+def _label(given: sct.Input) -> str:
+    """What an input is of the data of its event, as the text of the model has it."""
+    return given.text or ".".join(["value", *given.name.split("_")[2:]])
+
+
+def _values(kind: ex.Type) -> dict[str, Any]:
+    """The values of a type: all of them, or the least and the greatest."""
+    match kind:
+        case ex.BooleanType():
+            return {"values": [False, True]}
+        case ex.IntegerType():
+            return {"minimum": kind.minimum, "maximum": kind.maximum}
+    assert isinstance(kind, ex.EnumerationType)
+    return {"values": [literal.name for literal in kind.enumeration.literals]}
+
+
+def _communication(models: Models) -> list[dict[str, Any]]:
+    """What the controller is connected to: topics, services and actions, with the communications that use them."""
+    assert models.rosgraph is not None
+    (group,) = ros_graph(models.rosgraph).groups
+    directions = {}
+    for arrow in group.arrows:
+        key = arrow.target if arrow.source == "controller" else arrow.source
+        directions[key] = "both" if arrow.both else "out" if arrow.source == "controller" else "in"
+    return [
+        {
+            "name": node.title,
+            "kind": node.kind,
+            "direction": directions[node.key],
+            "types": [row[0] for row in node.rows if "/" in row[0]],
+            "uses": _uses(row[0] for row in node.rows),
+        }
+        for node in group.nodes
+        if node.kind != "controller"
+    ]
+
+
+def _uses(rows: Iterable[str]) -> list[str]:
+    return [row for row in rows if "/" not in row]

@@ -1,0 +1,32 @@
+"""The page as files that open without a server."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+from robosc.view.page import POLICY, page_files
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+#: What a script can't contain as it is.
+_ESCAPED = {ord("<"): "\\u003c", ord("\u2028"): "\\u2028", ord("\u2029"): "\\u2029"}
+
+
+def export(description: Mapping[str, Any], moments: Sequence[Mapping[str, Any]]) -> dict[str, str]:
+    """The files of the page with a robot's description and the moments of a run: texts by their names.
+
+    Raises PageError where the page has not been built.
+    """
+    files = {name: content.decode() for name, content in page_files().items()}
+    data = json.dumps({"description": description, "moments": moments}, ensure_ascii=False).translate(_ESCAPED)
+    files["run.js"] = f"globalThis.robosc = {data};\n"
+    # A page from a file may start no worker: the layout is computed in the page itself.
+    scripts = (
+        '<script src="run.js"></script>\n    <script src="layout.js"></script>\n    <script src="page.js"></script>'
+    )
+    page = files["index.html"].replace('<script src="page.js"></script>', scripts)
+    policy = f'<meta http-equiv="Content-Security-Policy" content="{POLICY.partition("; frame-ancestors")[0]}" />'
+    files["index.html"] = page.replace('<meta charset="utf-8" />', f'<meta charset="utf-8" />\n    {policy}')
+    return files

@@ -1,0 +1,170 @@
+"""Serves the page, the robot's description and what happens; takes actions for a simulation."""
+
+from __future__ import annotations
+
+import json
+from hmac import compare_digest
+from typing import TYPE_CHECKING, Any
+
+from starlette.applications import Starlette
+from starlette.concurrency import run_in_threadpool
+from starlette.requests import Request
+from starlette.responses import JSONResponse, PlainTextResponse, RedirectResponse, Response, StreamingResponse
+from starlette.routing import Route
+
+from robosc.simulation import DataError
+from robosc.view.page import FILES, POLICY, page_files
+from robosc.view.record import ActionError
+
+if TYPE_CHECKING:
+    from collections.abc import AsyncIterator, Collection, Mapping
+
+    from starlette.types import ASGIApp, Receive, Scope, Send
+
+    from robosc.view.record import Record
+
+_COOKIE = "robosc-view"
+#: An action says little.
+_LONGEST_ACTION = 1 << 20
+#: So many moments go out at once.
+_PORTION = 500
+_HEADERS = {
+    "Content-Security-Policy": POLICY,
+    "X-Content-Type-Options": "nosniff",
+    "Referrer-Policy": "no-referrer",
+    "Cross-Origin-Opener-Policy": "same-origin",
+    "Cross-Origin-Resource-Policy": "same-origin",
+    "Cache-Control": "no-store",
+}
+
+
+def application(
+    description: Mapping[str, Any], record: Record, hosts: Collection[str], token: str | None = None
+) -> ASGIApp:
+    """An ASGI application for a robot's description and run; it answers only who asks for one of `hosts`.
+
+    With a `token` it answers whoever has it, from the address `/?token=…`, and only them; the host may be any then.
+    Raises PageError where the page has not been built.
+    """
+    answers = _Answers(description, record)
+    routes = [
+        Route("/", answers.file),
+        Route("/description", answers.description),
+        Route("/moments", answers.moments),
+        Route("/explain", answers.explain),
+        Route("/do", answers.do, methods=["POST"]),
+        Route("/{name}", answers.file),
+    ]
+    return _Guarded(Starlette(routes=routes), hosts, token)
+
+
+class _Answers:
+    """To each kind of request."""
+
+    def __init__(self, description: Mapping[str, Any], record: Record) -> None:
+        self._files = page_files()
+        self._description = json.dumps(description).encode()
+        self._record = record
+
+    async def file(self, request: Request) -> Response:
+        """A file of the page."""
+        name = request.path_params.get("name", "index.html")
+        if name not in FILES:
+            return PlainTextResponse("there is no such file", 404)
+        return Response(self._files[name], media_type=FILES[name])
+
+    async def description(self, _: Request) -> Response:
+        """What never changes."""
+        return Response(self._description, media_type="application/json")
+
+    async def moments(self, _: Request) -> Response:
+        """All that has happened, and what happens from now on."""
+        return StreamingResponse(told(self._record), media_type="text/event-stream")
+
+    async def explain(self, request: Request) -> Response:
+        """Why an event can't happen at a moment."""
+        try:
+            moment, event = int(request.query_params["moment"]), request.query_params["event"]
+            return JSONResponse(await run_in_threadpool(self._record.explained, moment, event))
+        except (ValueError, KeyError, ActionError) as error:
+            return _refused(error, 400)
+
+    async def do(self, request: Request) -> Response:
+        """An action; it is JSON, which no form of another site can send."""
+        if request.headers.get("content-type") != "application/json":
+            return PlainTextResponse("an action is application/json", 415)
+        body = b""
+        async for part in request.stream():
+            body += part
+            if len(body) > _LONGEST_ACTION:
+                return PlainTextResponse("an action is short", 413)
+        try:
+            self._record.do(json.loads(body))
+        except (ValueError, RecursionError, ActionError, DataError) as error:
+            return _refused(error, 409)
+        finally:
+            await self._record.tell()
+        return JSONResponse({"moment": len(self._record.moments) - 1})
+
+
+async def told(record: Record) -> AsyncIterator[str]:
+    """Moments as server-sent events: `{from, moments}`, where those from there on replace what was told before."""
+    cuts, told = len(record.cuts), 0
+    while True:
+        await record.changed(cuts, told)
+        told = min(told, *record.cuts[cuts:], len(record.moments))
+        cuts = len(record.cuts)
+        portion = record.moments[told : told + _PORTION]
+        yield f"data: {json.dumps({'from': told, 'moments': portion})}\n\n"
+        told += len(portion)
+
+
+class _Guarded:
+    """Answers only who asks for the right host, and knows the token: no other site's page can ask in a user's name."""
+
+    def __init__(self, inner: ASGIApp, hosts: Collection[str], token: str | None) -> None:
+        self._inner = inner
+        self._hosts = hosts
+        self._token = token
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] != "http":
+            await self._inner(scope, receive, send)
+            return
+        request = Request(scope)
+        response = self._refusal(request)
+        if response is not None:
+            response.headers.update(_HEADERS)
+            await response(scope, receive, send)
+            return
+
+        async def with_headers(message: Any) -> None:
+            if message["type"] == "http.response.start":
+                message["headers"] += [(name.lower().encode(), value.encode()) for name, value in _HEADERS.items()]
+            await send(message)
+
+        await self._inner(scope, receive, with_headers)
+
+    def _refusal(self, request: Request) -> Response | None:
+        host = request.headers.get("host")
+        if self._token is None and host not in self._hosts:
+            return PlainTextResponse("this address is not served here", 421)
+        if request.headers.get("origin", f"http://{host}") != f"http://{host}":
+            return PlainTextResponse("another site's page may not ask", 403)
+        if self._token is None:
+            return None
+        if _same(request.cookies.get(_COOKIE, ""), self._token):
+            return None
+        if request.url.path == "/" and _same(request.query_params.get("token", ""), self._token):
+            response = RedirectResponse("/", 303)
+            response.set_cookie(_COOKIE, self._token, httponly=True, samesite="strict")
+            return response
+        return PlainTextResponse("the token is missing: open the address that `robosc view` printed", 403)
+
+
+def _refused(error: Exception, status: int) -> Response:
+    return PlainTextResponse(str(error).encode(errors="replace"), status)
+
+
+def _same(given: str, token: str) -> bool:
+    return compare_digest(given.encode(), token.encode())

@@ -1,0 +1,44 @@
+"""Listens for browsers until it is interrupted."""
+
+from __future__ import annotations
+
+import socket
+from typing import TYPE_CHECKING
+
+import uvicorn
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from starlette.types import ASGIApp
+
+#: The names by which a browser of this computer asks for it.
+LOOPBACK = ("127.0.0.1", "localhost", "[::1]")
+
+
+def listen(address: str, port: int) -> socket.socket:
+    """A socket that listens; port 0: a free one. Raises OSError."""
+    family = socket.AF_INET6 if ":" in address else socket.AF_INET
+    made = socket.socket(family, socket.SOCK_STREAM)
+    try:
+        made.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        made.bind((address, port))
+        made.listen()
+    except OSError:
+        made.close()
+        raise
+    return made
+
+
+def serve(served: ASGIApp, listening: socket.socket, ready: Callable[[], None]) -> None:
+    """Serves an application until SIGINT or SIGTERM; `ready` is called once it answers."""
+
+    class _Server(uvicorn.Server):
+        async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+            await super().startup(sockets)
+            ready()
+
+    configuration = uvicorn.Config(
+        served, log_level="critical", access_log=False, lifespan="off", timeout_graceful_shutdown=1, server_header=False
+    )
+    _Server(configuration).run([listening])

@@ -1,0 +1,303 @@
+"""The page in a real browser: what it shows is what the engine says, step by step."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from contextlib import contextmanager
+from pathlib import Path
+from random import Random
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+import robosc
+from robosc.analysis.wording import words
+from robosc.semantics.roles import Roles, event_name
+from robosc.simulation import Simulation
+from robosc.simulation.session import trace_line
+from robosc.simulation.simulation import whole_state
+from robosc.view import export
+from robosc.view.description import automata_of, commands_of
+
+from .robots import EVIL, record
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+pytestmark = pytest.mark.build
+
+ROOT = Path(__file__).parents[2]
+MODEL = ROOT / "examples" / "line_follower" / "line_follower.rscd"
+AXE = ROOT / "web" / "node_modules" / "axe-core" / "axe.min.js"
+
+
+@contextmanager
+def served(*arguments: str | Path) -> Iterator[str]:
+    """The address at which `robosc view` serves its page."""
+    command = [sys.executable, "-m", "robosc", "view", *map(str, arguments)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as server:
+        try:
+            assert server.stdout is not None
+            address = server.stdout.readline().strip()
+            assert address.startswith("http://127.0.0.1:")
+            yield address
+        finally:
+            server.terminate()
+    assert server.returncode in (0, -15, 130)
+
+
+@contextmanager
+def opened(chromium: Any, address: str, **options: Any) -> Iterator[Any]:
+    """A page that has drawn its robot; it fails where anything in it does."""
+    context = chromium.new_context(**{"viewport": {"width": 1400, "height": 900}, **options})
+    page = context.new_page()
+    faults: list[str] = []
+    page.on("pageerror", lambda error: faults.append(str(error)))
+    page.on("console", lambda said: faults.append(said.text) if said.type in ("error", "warning") else None)
+    page.on("request", lambda asked: faults.append(asked.url) if not asked.url.startswith(origin(address)) else None)
+    page.goto(address)
+    page.wait_for_selector("body[data-drawn][data-moment]")
+    yield page
+    context.close()
+    assert faults == []
+
+
+def origin(address: str) -> str:
+    return address.rpartition("/")[0]
+
+
+def at(page: Any, moment: int) -> None:
+    """Waits until the page shows a moment."""
+    page.wait_for_selector(f'body[data-moment="{moment}"]')
+
+
+def shown(page: Any) -> dict[str, Any]:
+    """What the page says: of each automaton its state, as a word and as what is lit, of each command its verdict."""
+    return page.evaluate(
+        """() => ({
+          states: [...document.querySelectorAll(".card:not(.graph)")].map((card) => [
+            card.querySelector(".name").textContent, card.querySelector(".now").textContent,
+            [...card.querySelectorAll(".current .title")].map((title) => title.textContent)]),
+          variables: Object.fromEntries([...document.querySelectorAll(".variables")].flatMap((list) =>
+            [...list.querySelectorAll("dt")].map((term) => [
+              `${list.closest(".card").querySelector(".name").textContent}.${term.textContent}`,
+              term.nextElementSibling.textContent]))),
+          commands: [...document.querySelectorAll("#commands > li")].map((item) => [
+            item.dataset.event, item.className, item.querySelector(".reason").textContent]),
+        })"""
+    )
+
+
+def truth(simulation: Simulation) -> dict[str, Any]:
+    """What the page has to say of the present state of a run."""
+    engine, model = simulation.engine, simulation.engine.model
+    state = whole_state(engine)
+    automata = automata_of(model)
+    commands = []
+    for event in commands_of(model):
+        by = engine.blocked_by(event_name(event))
+        reason = "" if by is None else simulation.reason(event_name(event), by).removeprefix("forbidden ")
+        kind = "allowed" if by is None else "unready" if by == "plant" else "forbidden"
+        commands.append([event_name(event), kind, reason])
+    return {
+        "states": [[plant.origin or plant.name, state[plant.name], [state[plant.name]]] for plant in automata],
+        "variables": {
+            (key := f"{plant.origin or plant.name}.{variable.name}"): str(state[key])
+            .replace("True", "true")
+            .replace("False", "false")
+            for plant in automata
+            for variable in plant.variables
+        },
+        "commands": commands,
+    }
+
+
+def simulation_of(path: Path) -> Simulation:
+    robot = robosc.load(path)
+    model = robosc.to_sct(robot)
+    robosc.synthesize(model)
+    return Simulation(model, robosc.to_rosgraph(robot))
+
+
+def click(page: Any, event: str) -> None:
+    """Lets an event happen, as a user does."""
+    page.click(f'button[data-event="{event}"]')
+
+
+def test_a_simulation_by_hand(chromium: Any) -> None:
+    simulation, random = simulation_of(MODEL), Random(4)
+    said = {event_name(event): words(event).replace("`", "") for event in Roles(simulation.engine.model).events}
+    with served(MODEL) as address, opened(chromium, address) as page:
+        assert shown(page) == truth(simulation)
+        for number in range(1, 26):
+            event, data = simulation.random_event(random) or ("", {})
+            simulation.perform(event, data)
+            if data:
+                page.locator(f'.performer:has(button[data-event="{event}"]) select').select_option(label=data["value"])
+            click(page, event)
+            at(page, number)
+            assert shown(page) == truth(simulation)
+            last = page.locator("#happened [aria-current]").text_content()
+            assert last.startswith(said[event])
+        for number in range(24, 19, -1):
+            page.get_by_role("button", name="Undo").click()
+            at(page, number)
+            simulation.undo()
+            assert shown(page) == truth(simulation)
+
+
+def test_a_log_moment_by_moment_and_on_from_there(chromium: Any, tmp_path: Path) -> None:
+    simulation, random = simulation_of(MODEL), Random(5)
+    happened = [simulation.random_step(random) for _ in range(150)]
+    log = tmp_path / "log.jsonl"
+    log.write_text("".join(trace_line(one) + "\n" for one in happened if one is not None))
+    with served(MODEL, "--log", log) as address, opened(chromium, address) as page:
+        at(page, 150)
+        assert shown(page) == truth(simulation)
+        for moment in (149, 64, 63, 0, 1, 127, 128, 77):
+            page.locator("#moment").fill(str(moment))
+            at(page, moment)
+            past = simulation_of(MODEL) if moment in (0, 77) else None
+            if past is not None:
+                for one in happened[:moment]:
+                    past.perform(one.event, one.data)  # type: ignore[union-attr]
+                assert shown(page) == truth(past)
+        page.get_by_role("button", name="Go on from here").click()
+        page.wait_for_selector('#moment[max="77"]')
+        event, data = past.random_event(random) or ("", {})  # type: ignore[union-attr]
+        assert past is not None
+        if data:
+            page.locator(f'.performer:has(button[data-event="{event}"]) select').select_option(label=data["value"])
+        past.perform(event, data)
+        click(page, event)
+        at(page, 78)
+        assert shown(page) == truth(past)
+
+
+def test_why_a_command_is_forbidden(chromium: Any) -> None:
+    with served(MODEL) as address, opened(chromium, address) as page:
+        command = page.locator('#commands > li[data-event="message_move.c_trigger"]')
+        command.get_by_role("button", name="What would help?").click()
+        command.get_by_text("The shortest way there:").wait_for()
+        assert "LineDetector.correction" in command.text_content()
+        # The requirement's text is one click away.
+        command.get_by_role("button", name="requirement").click()
+        assert page.locator(".line.here").text_content().startswith("  requirement move needs")
+
+
+def test_two_viewers_see_what_one_does_and_one_that_comes_late_too(chromium: Any) -> None:
+    with served(MODEL) as address, opened(chromium, address) as one, opened(chromium, address) as other:
+        one.get_by_role("button", name="20 random").click()
+        for page in (one, other):
+            at(page, 20)
+        other.get_by_role("button", name="Undo").click()
+        with opened(chromium, address) as late:
+            for page in (one, other, late):
+                at(page, 19)
+            assert shown(one) == shown(other) == shown(late)
+
+
+def test_an_exported_page_opens_without_a_server(chromium: Any, tmp_path: Path) -> None:
+    simulation, random = simulation_of(MODEL), Random(6)
+    happened = [simulation.random_step(random) for _ in range(30)]
+    (tmp_path / "log.jsonl").write_text("".join(trace_line(one) + "\n" for one in happened if one is not None))
+    command = [
+        sys.executable,
+        "-m",
+        "robosc",
+        "view",
+        MODEL,
+        "--log",
+        tmp_path / "log.jsonl",
+        "--export",
+        tmp_path / "out",
+    ]
+    subprocess.run(command, check=True, capture_output=True)
+    address = (tmp_path / "out" / "index.html").as_uri()
+    with opened(chromium, address) as page:
+        at(page, 30)
+        assert shown(page) == truth(simulation)
+        page.locator("#moment").fill("0")
+        at(page, 0)
+        assert shown(page) == truth(simulation_of(MODEL))
+
+
+#: What the page looks other things up by.
+KEYS = ("kind", "direction", "event", "key", "owner")
+
+
+def hostile(value: Any) -> Any:
+    """A description whose every text would be markup."""
+    match value:
+        case dict():
+            return {
+                name: hostile(one) if name not in ("kind", "direction", "event", "key", "owner") else one
+                for name, one in value.items()
+            }
+        case list():
+            return [hostile(one) for one in value]
+        case str():
+            return f"{value}{EVIL}"
+    return value
+
+
+def test_names_are_text_whatever_they_say(chromium: Any, tmp_path: Path) -> None:
+    description, shown_record, _ = record()
+    shown_record.do({"action": "random", "number": 20})
+    events = description["events"]
+    told = hostile(json.loads(json.dumps(description))) | {"commands": description["commands"]}
+    assert set(told["events"]) == set(events)  # type: ignore[call-overload]
+    moments = [moment | {"words": EVIL, "reason": EVIL, "data": {"value": EVIL}} for moment in shown_record.moments]
+    for name, text in export(told, moments).items():
+        (tmp_path / name).write_text(text)
+    with opened(chromium, (tmp_path / "index.html").as_uri()) as page:
+        at(page, 20)
+        assert page.evaluate("globalThis.hacked === undefined && document.querySelectorAll('img').length === 0")
+        assert page.locator("h1").text_content() == f"Gate{EVIL}"
+        assert EVIL in page.locator("#requirements").text_content()
+        assert EVIL in page.locator("#happened").text_content()
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_it_is_accessible(chromium: Any, scheme: str) -> None:
+    if not AXE.exists():
+        pytest.skip("axe-core is not there: `npm ci --prefix web` brings it")
+    with served(MODEL) as address, opened(chromium, address, color_scheme=scheme, bypass_csp=True) as page:
+        page.get_by_role("button", name="20 random").click()
+        at(page, 20)
+        page.add_script_tag(path=str(AXE))
+        told = page.evaluate("axe.run()")
+        assert [(one["id"], [node["html"] for node in one["nodes"]]) for one in told["violations"]] == []
+        # What a screen reader reads names the states, and which is the present one.
+        assert page.get_by_role("button", name="searching").count() == 1
+        assert page.get_by_role("button", name="the present state").count() == 3
+
+
+def test_by_keyboard_alone(chromium: Any) -> None:
+    with served(MODEL) as address, opened(chromium, address) as page:
+        page.locator('button[data-event="message_correction.u_response"]').focus()
+        page.keyboard.press("Enter")
+        at(page, 1)
+        page.locator("#moment").focus()
+        page.keyboard.press("ArrowLeft")
+        at(page, 0)
+        page.keyboard.press("ArrowRight")
+        at(page, 1)
+        page.locator(".state [role=button]").first.focus()
+        page.keyboard.press("Enter")
+        assert "state searching" in page.locator(".line.here").first.text_content()
+
+
+def test_finding_folding_and_zooming(chromium: Any) -> None:
+    with served(MODEL) as address, opened(chromium, address) as page:
+        page.get_by_label("Find").fill("blocked")
+        assert page.locator(".card:visible .name").all_text_contents() == ["Lidar"]
+        page.get_by_label("Find").fill("")
+        page.get_by_role("button", name="Fold all").click()
+        assert page.locator(".card[open]").count() == 0
+        page.get_by_role("button", name="Unfold all").click()
+        before = page.locator(".card svg").first.bounding_box()["width"]
+        page.get_by_role("button", name="Zoom in").click()
+        assert page.locator(".card svg").first.bounding_box()["width"] > before * 1.2

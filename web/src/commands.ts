@@ -1,0 +1,146 @@
+// Commands with their verdicts, what can happen besides, requirements.
+
+import type { Description, Event, Explanation, Input, Place, Value } from "./data";
+import { byId, html } from "./elements";
+import type { Whole } from "./run";
+
+/** What the page can ask of the server; where there is none, nothing. */
+export interface Asking {
+  perform(event: string, inputs: Record<string, Value>): void;
+  explain(event: string): Promise<Explanation>;
+}
+
+interface Shown {
+  item: HTMLLIElement;
+  verdict: HTMLElement;
+  reason: HTMLElement;
+  links: HTMLElement;
+  why: HTMLElement;
+  perform: HTMLButtonElement | null;
+  told: string;
+}
+
+export class CommandsView {
+  private commands = new Map<string, Shown>();
+  private events = new Map<string, HTMLLIElement>();
+
+  constructor(
+    private readonly description: Description,
+    private readonly goTo: (place: Place | null) => void,
+    private readonly asking: Asking | null,
+  ) {
+    const list = byId("commands", HTMLUListElement);
+    for (const name of description.commands) list.append(this.command(name));
+    const requirements = byId("requirements", HTMLUListElement);
+    for (const requirement of description.requirements) {
+      const name = requirement.name === "" ? "" : html("strong", {}, `${requirement.name} `);
+      const link = html("button", { type: "button", class: "link", onclick: () => goTo(requirement.place) }, name, requirement.text);
+      requirements.append(html("li", {}, link));
+    }
+    byId("requirements-section", HTMLElement).hidden = description.requirements.length === 0;
+    const events = byId("events", HTMLUListElement);
+    for (const [name, event] of Object.entries(description.events)) {
+      if (description.commands.includes(name)) continue;
+      const item = html("li", {}, this.performer(name, event));
+      this.events.set(name, item);
+      events.append(item);
+    }
+    byId("events-section", HTMLElement).hidden = asking === null;
+  }
+
+  /** `isLast`: only there something can happen. */
+  show(whole: Whole, isLast: boolean): void {
+    for (const [name, shown] of this.commands) {
+      const verdict = whole.commands.get(name) ?? null;
+      const told = verdict === null ? "" : `${verdict.by} ${verdict.reason}`;
+      if (shown.perform !== null) shown.perform.disabled = !isLast || verdict !== null;
+      if (told === shown.told) continue;
+      shown.told = told;
+      shown.item.className = verdict === null ? "allowed" : verdict.by === "plant" ? "unready" : "forbidden";
+      shown.verdict.textContent = verdict === null ? "allowed" : verdict.by === "plant" ? "not possible" : "forbidden";
+      shown.reason.textContent = verdict?.reason.replace(/^forbidden /, "") ?? "";
+      shown.why.replaceChildren();
+      shown.links.hidden = verdict === null;
+    }
+    for (const [name, item] of this.events) {
+      item.hidden = !whole.enabled.has(name);
+      for (const button of item.querySelectorAll("button")) button.disabled = !isLast;
+    }
+  }
+
+  private command(name: string): HTMLLIElement {
+    const event = this.description.events[name]!;
+    const verdict = html("span", { class: "verdict" });
+    const reason = html("p", { class: "reason" });
+    const why = html("div", { class: "why" });
+    const links = html("p", { class: "links" });
+    for (const requirement of this.description.requirements.filter((one) => one.event === name))
+      links.append(
+        html(
+          "button",
+          { type: "button", class: "link", onclick: () => this.goTo(requirement.place) },
+          requirement.name || "requirement",
+        ),
+        " ",
+      );
+    if (this.asking !== null)
+      links.append(html("button", { type: "button", onclick: () => void this.explain(name, why) }, "What would help?"));
+    const title = html("button", { type: "button", class: "link", onclick: () => this.goTo(event.place) }, event.words);
+    const performer = this.asking === null ? null : this.performer(name, event);
+    const item = html(
+      "li",
+      { "data-event": name },
+      html("p", {}, title, " ", verdict, " ", performer ?? ""),
+      reason,
+      links,
+      why,
+    );
+    const perform = performer?.querySelector("button") ?? null;
+    this.commands.set(name, { item, verdict, reason, links, why, perform, told: "?" });
+    return item;
+  }
+
+  /** A button that lets an event happen, with a field for each of its inputs. */
+  private performer(name: string, event: Event): HTMLElement {
+    const fields = event.inputs.map((input) => [input, field(input)] as const);
+    const label = this.description.commands.includes(name) ? "send" : event.words;
+    const button = html("button", { type: "button", "data-event": name, "aria-label": label === "send" ? `send ${event.words}` : label }, label);
+    button.addEventListener("click", () =>
+      this.asking?.perform(name, Object.fromEntries(fields.map(([input, shown]) => [input.name, value(input, shown)]))),
+    );
+    return html(
+      "span",
+      { class: "performer" },
+      button,
+      ...fields.map(([input, shown]) => html("label", {}, ` ${input.label} `, shown)),
+    );
+  }
+
+  private async explain(name: string, why: HTMLElement): Promise<void> {
+    why.replaceChildren(html("p", {}, "…"));
+    try {
+      const told = await this.asking!.explain(name);
+      const list = (title: string, texts: string[]): Node[] =>
+        texts.length === 0 ? [] : [html("p", {}, title), html("ul", {}, ...texts.map((text) => html("li", {}, text)))];
+      why.replaceChildren(
+        ...list(told.allowed ? "It is allowed." : "Because:", told.notes),
+        ...list("Otherwise:", told.otherwise === "" ? [] : [told.otherwise]),
+        ...list("It would be allowed with:", told.changes),
+        ...list("The shortest way there:", told.way === "" ? [] : [told.way]),
+      );
+    } catch (error) {
+      why.replaceChildren(html("p", { class: "fault" }, String(error instanceof Error ? error.message : error)));
+    }
+  }
+}
+
+function field(input: Input): HTMLSelectElement | HTMLInputElement {
+  if (input.values !== undefined)
+    return html("select", {}, ...input.values.map((one, number) => html("option", { value: number }, String(one))));
+  const { minimum = 0, maximum = 0 } = input;
+  return html("input", { type: "number", min: minimum, max: maximum, value: Math.min(Math.max(0, minimum), maximum) });
+}
+
+function value(input: Input, shown: HTMLSelectElement | HTMLInputElement): Value {
+  return input.values === undefined ? Math.trunc(Number(shown.value)) : input.values[Number(shown.value)]!;
+}

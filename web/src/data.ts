@@ -1,0 +1,116 @@
+// What the server tells: see robosc/view/description.py and robosc/view/record.py.
+
+export type Value = string | number | boolean;
+
+export interface Place {
+  file: number;
+  line: number;
+  column: number;
+  endLine: number;
+  endColumn: number;
+}
+
+export interface State {
+  name: string;
+  initial: boolean;
+  marked: boolean;
+  place: Place | null;
+}
+
+export interface Transition {
+  source: number | null;
+  target: number | null;
+  event: string;
+  label: string;
+  whole: string;
+  place: Place | null;
+}
+
+export interface Variable {
+  name: string;
+  key: string;
+  numeric?: boolean;
+}
+
+export interface Automaton {
+  name: string;
+  key: string;
+  kind: string;
+  variables: Variable[];
+  place: Place | null;
+  states: State[];
+  transitions: Transition[];
+}
+
+export interface Input {
+  name: string;
+  label: string;
+  values?: Value[];
+  minimum?: number;
+  maximum?: number;
+}
+
+export interface Event {
+  words: string;
+  controllable: boolean;
+  owner: string;
+  place: Place | null;
+  inputs: Input[];
+}
+
+export interface Requirement {
+  event: string;
+  name: string;
+  text: string;
+  place: Place | null;
+}
+
+export interface Endpoint {
+  name: string;
+  kind: string;
+  direction: "in" | "out" | "both";
+  types: string[];
+  uses: string[];
+}
+
+export interface Description {
+  robot: string;
+  automata: Automaton[];
+  events: Record<string, Event>;
+  commands: string[];
+  requirements: Requirement[];
+  communication: Endpoint[];
+  files: { name: string; lines: [string, string][][] }[];
+}
+
+export interface Verdict {
+  by: string;
+  reason: string;
+}
+
+export interface Moment {
+  time: number;
+  event?: string;
+  words?: string;
+  data?: Record<string, unknown>;
+  by?: string;
+  reason?: string;
+  transitions?: [number, number][];
+  state: Record<string, Value>;
+  commands: Record<string, Verdict | null>;
+  enabled: Record<string, boolean>;
+  timers: Record<string, number | false>;
+}
+
+export interface Explanation {
+  allowed: boolean;
+  notes: string[];
+  otherwise: string;
+  changes: string[];
+  way: string;
+}
+
+export interface Exported {
+  description: Description;
+  moments: Moment[];
+}

@@ -1,0 +1,53 @@
+// Elements are made here, and nowhere from markup: what a model says is text.
+
+type Attributes = Record<string, string | number | boolean | ((event: never) => void)>;
+
+/** An HTML element with attributes, listeners (`onclick: …`) and children. */
+export function html<Name extends keyof HTMLElementTagNameMap>(
+  name: Name,
+  attributes: Attributes = {},
+  ...children: (Node | string)[]
+): HTMLElementTagNameMap[Name] {
+  return filled(document.createElement(name), attributes, children);
+}
+
+/** An SVG element, alike. */
+export function svg<Name extends keyof SVGElementTagNameMap>(
+  name: Name,
+  attributes: Attributes = {},
+  ...children: (Node | string)[]
+): SVGElementTagNameMap[Name] {
+  return filled(document.createElementNS("http://www.w3.org/2000/svg", name), attributes, children);
+}
+
+/** The element of the page with this identifier. */
+export function byId<Kind extends HTMLElement>(id: string, kind: new () => Kind): Kind {
+  const found = document.getElementById(id);
+  if (!(found instanceof kind)) throw new Error(`the page has no ${id}`);
+  return found;
+}
+
+function filled<Kind extends Element>(element: Kind, attributes: Attributes, children: (Node | string)[]): Kind {
+  for (const [name, value] of Object.entries(attributes)) {
+    if (typeof value === "function") element.addEventListener(name.slice(2), value as EventListener);
+    else if (value === true) element.setAttribute(name, "");
+    else if (value !== false) element.setAttribute(name, String(value));
+  }
+  element.append(...children);
+  return element;
+}
+
+/** Lets a click or the keys Enter and Space do something. */
+export function pressed(element: Element, act: () => void): void {
+  element.addEventListener("click", (event) => {
+    event.stopPropagation();
+    act();
+  });
+  element.addEventListener("keydown", (event) => {
+    const { key } = event as KeyboardEvent;
+    if (key === "Enter" || key === " ") {
+      event.preventDefault();
+      act();
+    }
+  });
+}

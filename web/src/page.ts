@@ -1,0 +1,160 @@
+// The page of `robosc view`: a robot, and the moments of its run, from a server or from a file beside it.
+
+import { CommandsView } from "./commands";
+import type { Description, Explanation, Exported, Moment, Value } from "./data";
+import { byId, html } from "./elements";
+import { RobotView } from "./robot";
+import { Run } from "./run";
+import { TextView } from "./text";
+import { TimelineView } from "./timeline";
+
+declare global {
+  // What `robosc view --export` writes.
+  var robosc: Exported | undefined;
+}
+
+const ALL_BUTTONS: [string, Record<string, unknown>][] = [
+  ["Undo", { action: "undo" }],
+  ["Redo", { action: "redo" }],
+  ["Random", { action: "random", number: 1 }],
+  ["20 random", { action: "random", number: 20 }],
+  ["Wait 1 s", { action: "wait", seconds: 1 }],
+  ["Start again", { action: "restart" }],
+];
+
+class Page {
+  private readonly run = new Run();
+  private readonly robot: RobotView;
+  private readonly text: TextView;
+  private readonly commands: CommandsView;
+  private readonly timeline: TimelineView;
+  private readonly status = byId("status", HTMLElement);
+  private readonly follow = byId("follow", HTMLButtonElement);
+  private readonly onward = html("button", { type: "button", onclick: () => this.goOn() }, "Go on from here");
+  private shown = 0;
+  private following = true;
+  private drawing = false;
+
+  constructor(
+    private readonly description: Description,
+    private readonly isServed: boolean,
+  ) {
+    document.title = `${description.robot} – RoboSC`;
+    byId("robot-name", HTMLElement).textContent = description.robot;
+    this.text = new TextView(description);
+    this.robot = new RobotView(description, (place) => this.text.goTo(place));
+    const asking = isServed
+      ? {
+          perform: (event: string, inputs: Record<string, Value>) => void this.act({ action: "perform", event, inputs }),
+          explain: (event: string) => this.explain(event),
+        }
+      : null;
+    this.commands = new CommandsView(description, (place) => this.text.goTo(place), asking);
+    this.timeline = new TimelineView(description, this.run, (number) => this.choose(number));
+    this.follow.addEventListener("click", () => this.choose(this.run.moments.length - 1));
+    if (isServed) {
+      const controls = byId("controls", HTMLElement);
+      for (const [name, action] of ALL_BUTTONS)
+        controls.append(html("button", { type: "button", onclick: () => void this.act(action) }, name));
+      controls.append(this.onward);
+    }
+    window.addEventListener("resize", () => this.schedule());
+    window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.schedule());
+  }
+
+  async draw(): Promise<void> {
+    await this.robot.draw();
+    document.body.dataset["drawn"] = "true";
+    this.schedule();
+  }
+
+  /** Takes in moments, from a number on. */
+  tell(from: number, moments: Moment[]): void {
+    this.run.replace(from, moments);
+    const last = this.run.moments.length - 1;
+    if (this.following || this.shown > last) this.shown = Math.max(0, last);
+    this.schedule();
+  }
+
+  say(text: string, isFault = false): void {
+    this.status.textContent = text;
+    this.status.classList.toggle("fault", isFault);
+  }
+
+  private choose(number: number): void {
+    this.shown = number;
+    this.following = number === this.run.moments.length - 1;
+    this.schedule();
+  }
+
+  /** However much comes, a frame shows it once. */
+  private schedule(): void {
+    if (this.drawing) return;
+    this.drawing = true;
+    requestAnimationFrame(() => {
+      this.drawing = false;
+      const moment = this.run.moments[this.shown];
+      if (moment !== undefined) this.show(moment);
+    });
+  }
+
+  private show(moment: Moment): void {
+    const isLast = this.shown === this.run.moments.length - 1;
+    this.timeline.show(this.shown);
+    const whole = this.run.at(this.shown);
+    this.robot.show(whole, moment);
+    this.commands.show(whole, isLast && this.isServed);
+    const taken = (moment.transitions ?? []).map(
+      ([automaton, number]) => this.description.automata[automaton]?.transitions[number]?.place ?? null,
+    );
+    this.text.happened(taken);
+    this.follow.setAttribute("aria-pressed", String(this.following));
+    this.onward.disabled = isLast;
+    document.body.dataset["moment"] = String(this.shown);
+  }
+
+  private goOn(): void {
+    void this.act({ action: "continue", moment: this.shown });
+  }
+
+  private async act(action: Record<string, unknown>): Promise<void> {
+    try {
+      const answer = await fetch("do", {
+        method: "POST",
+        headers: { "Content-Type": "application/json" },
+        body: JSON.stringify(action),
+      });
+      this.following = true;
+      this.say(answer.ok ? "" : await answer.text(), !answer.ok);
+    } catch {
+      this.say("The server does not answer.", true);
+    }
+  }
+
+  private async explain(event: string): Promise<Explanation> {
+    const answer = await fetch(`explain?${new URLSearchParams({ moment: String(this.shown), event })}`);
+    if (!answer.ok) throw new Error(await answer.text());
+    return (await answer.json()) as Explanation;
+  }
+}
+
+async function start(): Promise<void> {
+  if (globalThis.robosc !== undefined) {
+    const page = new Page(globalThis.robosc.description, false);
+    page.tell(0, globalThis.robosc.moments);
+    await page.draw();
+    return;
+  }
+  const answer = await fetch("description");
+  const page = new Page((await answer.json()) as Description, true);
+  const source = new EventSource("moments");
+  source.addEventListener("message", (event) => {
+    const told = JSON.parse(event.data as string) as { from: number; moments: Moment[] };
+    page.tell(told.from, told.moments);
+  });
+  source.addEventListener("error", () => page.say("The server does not answer; the page waits for it.", true));
+  source.addEventListener("open", () => page.say(""));
+  await page.draw();
+}
+
+void start();
