@@ -6,9 +6,9 @@ import pytest
 
 import robosc
 from robosc.debugger.launching import Launch
-from robosc.simulation.replay import Replay
 from robosc.metamodel import sct
 from robosc.simulation import Simulation
+from robosc.simulation.replay import Replay
 
 from ..runtime.fake import World
 

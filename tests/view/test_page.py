@@ -271,7 +271,7 @@ def test_it_is_accessible(chromium: Any, scheme: str) -> None:
         told = page.evaluate("axe.run()")
         assert [(one["id"], [node["html"] for node in one["nodes"]]) for one in told["violations"]] == []
         # What a screen reader reads names the states, and which is the present one.
-        assert page.get_by_role("button", name="searching").count() == 1
+        assert page.locator("#cards").get_by_role("button", name="searching").count() == 1
         assert page.get_by_role("button", name="the present state").count() == 3
 
 
