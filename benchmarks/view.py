@@ -2,8 +2,8 @@
 
     python benchmarks/view.py [--components 100] [--picture docs/pictures/view.png]
 
-It needs Debian's `chromium`, `playwright` and the built page. Times are medians of five, in milliseconds: from asking for
-the page until all is drawn, and from a click that lets 1,000 random events happen until the last of them is shown.
+It needs Debian's `chromium`, `playwright` and the built page. Times are medians of five, in milliseconds: from asking
+for the page until all is drawn, and from a call that lets 1,000 random events happen until the last of them is shown.
 """
 
 from __future__ import annotations
