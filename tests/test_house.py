@@ -188,11 +188,12 @@ OPENERS = {
     "files.writing",
     "cli",  # the null device, for streams that are closed
     "cli.format",  # the standard output
-    "diagnostics.rules",  # what ships with the tool, here and in the next six
+    "diagnostics.rules",  # what ships with the tool, here and in the next seven
     "semantics.naming",
     "synthesis.memory",  # what the kernel tells of the process
     "m2t.ros.packages",
     "metamodel._ecore",
+    "cli.view",  # the browser
     "view.page",
     "node_tests.trace_test",
     "runtime.ros2.interfaces",  # a tool of its own, whose files are made for the generators
