@@ -22,6 +22,7 @@ COMMANDS = [
     "explain",
     "verify",
     "simulate",
+    "view",
     "dap",
     "run",
     "format",
