@@ -122,9 +122,9 @@ class RoboscPrinter(Printer):
                 array, body = texts
                 return Printed(f"({expression.quantifier} {written(expression.element.name)} in {array}: {body})")
             case robosc.InstanceQuantifier():
-                return Printed(f"({expression.quantifier} {written(expression.template.name)}: {texts[0]})")
+                return Printed(f"({expression.quantifier} {_name(expression.template)}: {texts[0]})")
             case robosc.Call():
-                return Printed(f"{written(expression.function.name)}({', '.join(texts)})")
+                return Printed(f"{_name(expression.function)}({', '.join(texts)})")
             case robosc.ArrayLiteral():
                 return Printed(f"[{', '.join(texts)}]")
         return super().write(expression, given)
@@ -144,10 +144,14 @@ class RoboscPrinter(Printer):
         return super().atom(expression)
 
 
+def _name(found: ex.NamedElement | None) -> str:
+    """The name of what an expression refers to; what linking did not find is told elsewhere."""
+    return written(found.name) if found else "…"
+
+
 def _step(segment: robosc.AccessSegment, indices: Iterator[str]) -> str:
     if isinstance(segment, robosc.PropertySegment):
-        # What linking did not find is told elsewhere.
-        return f".{written(segment.property.name)}" if segment.property else ".…"
+        return f".{_name(segment.property)}"
     assert isinstance(segment, robosc.IndexSegment)
     first = segment.index if segment.first is None else next(indices)
     return f"[{first}]" if segment.last is None else f"[{first}..{next(indices)}]"

@@ -31,9 +31,10 @@ robot R {{
         "on response from scan do seen := value.near < 0.5 goto blocked",
         "on response from scan do far := value.near goto blocked",
         "on response from scan if value.range_min.near < 0.5 goto blocked",
+        "on response from scan if near(value.range_min) < 0.5 goto blocked",
     ],
 )
-def test_a_property_that_is_not_there_is_one_finding(tmp_path: Path, transition: str) -> None:
+def test_what_is_not_there_is_one_finding(tmp_path: Path, transition: str) -> None:
     path = tmp_path / "robot.rscd"
     path.write_text(ROBOT.format(transition=transition))
     answer = CliRunner().invoke(main, ["check", str(path)])
