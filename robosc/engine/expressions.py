@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 
 from robosc.metamodel import engine
 from robosc.metamodel import expression as ex
@@ -84,6 +84,18 @@ class Compiler:
 def _inside(node: ex.Expression) -> Sequence[ex.Expression]:
     """What the value of an expression is made of: of a shared condition its value."""
     return [node.condition.value] if isinstance(node, engine.ConditionReference) else operands(node)
+
+
+def all_inside(expressions: Iterable[ex.Expression]) -> Iterator[ex.Expression]:
+    """All parts of expressions, those of shared conditions, too, each of these once."""
+    seen: set[ex.Expression] = set()
+    pending = list(expressions)
+    while pending:
+        part = pending.pop()
+        if part not in seen:
+            seen.add(part)
+            yield part
+            pending += _inside(part)
 
 
 def _first(parts: Sequence[Function], deciding: int) -> Function:

@@ -6,13 +6,14 @@ from collections.abc import Callable, Sequence
 from enum import StrEnum
 from typing import TYPE_CHECKING
 
-from robosc.engine.expressions import Compiler, Function
+from robosc.engine.expressions import Compiler, Function, all_inside
 from robosc.engine.state import Domain, Layout, State, Value
 from robosc.m2m.sct_to_engine import transform
 from robosc.metamodel import engine, sct
 from robosc.metamodel import expression as ex
 from robosc.semantics.evaluation import evaluate
 from robosc.semantics.roles import Roles, event_name
+from robosc.semantics.walks import parts
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -56,6 +57,9 @@ class Engine:
         self._guards = {event.name: self._all(event.guard) for event in self.executed.events}
         self._effects = {event.name: self._steps(event.effect.steps) for event in self.executed.events}
         self._reasons: dict[str, list[tuple[Blocked, Function]]] = {}
+        self._required: dict[str, list[sct.Requirement]] = {}
+        for requirement in model.requirements:
+            self._required.setdefault(event_name(requirement.event), []).append(requirement)
         self._by_name = {event.name: event for event in self.executed.events}
         self._cells = tuple(variable.initial for variable in self.executed.variables)
 
@@ -70,23 +74,51 @@ class Engine:
             raise ValueError("the state is another engine's")
         self._cells = state.cells
 
+    def state_with(self, values: Mapping[sct.Plant | sct.DiscreteVariable, Value]) -> State:
+        """The current state, but for the locations of some plants and the values of some variables.
+
+        Raises ValueError where one has no such location or value.
+        """
+        cells = list(self._cells)
+        for element, value in values.items():
+            if element in self._layout.cells:
+                cell = self._layout.cells[element]
+                cells[cell] = self._layout.domains[cell].internal(value)
+            elif isinstance(element, sct.Plant) and value != element.locations[0].name:
+                raise ValueError(f"{value!r} is not {element.locations[0].name}")
+        return State(self._layout, tuple(cells))
+
+    def reads(self, event: str) -> frozenset[sct.Plant | sct.DiscreteVariable]:
+        """The parts of the state on which it depends whether the event can happen, and why it can't."""
+        guard = self._by_name[event].guard
+        conditions = [term.condition for term in guard.terms]
+        conditions += [part for part in (guard.plants, guard.requirement, guard.synthesis) if part is not None]
+        read = {part.variable for part in all_inside(conditions) if isinstance(part, engine.VariableReference)}
+        found = {variable.variable or variable.plant for variable in read}
+        for requirement in self._required.get(event, ()):
+            for part in parts(requirement.condition):
+                if isinstance(part, sct.LocationReference):
+                    found.add(part.location.eContainer())
+                elif isinstance(part, sct.VariableReference):
+                    found.add(part.variable)
+        return frozenset(found)
+
     def blocked_by(self, event: str) -> Blocked | None:
         """What keeps the event from happening in this state; None where it is enabled."""
         if self.enabled(event):
             return None
         if event not in self._reasons:
             guard = self._by_name[event].guard
-            parts = zip(Blocked, (guard.plants, guard.requirement, guard.synthesis), strict=True)
-            self._reasons[event] = [(reason, self._compile(part)) for reason, part in parts if part is not None]
+            conditions = zip(Blocked, (guard.plants, guard.requirement, guard.synthesis), strict=True)
+            self._reasons[event] = [(reason, self._compile(part)) for reason, part in conditions if part is not None]
         return next(reason for reason, holds in self._reasons[event] if not holds(self._cells, ()))
 
     def failing(self, event: str) -> list[sct.Requirement]:
         """The requirements on the event that forbid it in this state, whatever else does."""
         return [
             requirement
-            for requirement in self.model.requirements
-            if event_name(requirement.event) == event
-            and bool(evaluate(requirement.condition, self.read)) == (requirement.kind == sct.RequirementKind.disables)
+            for requirement in self._required.get(event, ())
+            if bool(evaluate(requirement.condition, self.read)) == (requirement.kind == sct.RequirementKind.disables)
         ]
 
     def enabled(self, event: str) -> bool:

@@ -58,9 +58,11 @@ class Layout:
     def __init__(self, model: engine.EngineModel) -> None:
         self.domains = [Domain(variable.type) for variable in model.variables]
         self.position = {variable.name: cell for cell, variable in enumerate(model.variables)}
-        self.cells: dict[sct.Plant | sct.DiscreteVariable, int] = {
-            variable.variable or variable.plant: cell for cell, variable in enumerate(model.variables)
-        }
+        #: The name of each cell, and what it is of.
+        self.elements: list[tuple[str, sct.Plant | sct.DiscreteVariable]] = [
+            (variable.name, variable.variable or variable.plant) for variable in model.variables
+        ]
+        self.cells = {element: cell for cell, (_, element) in enumerate(self.elements)}
 
 
 class State(Mapping[str, Value]):

@@ -7,16 +7,20 @@ from typing import TYPE_CHECKING
 
 from robosc.analysis.verify import Outcome, verify_system
 from robosc.files import reading as files
+from robosc.files.json_reading import JsonError, json_value
 from robosc.language.text import decode
+from robosc.recordings import recorded_texts
 from robosc.simulation.script import WAIT, Step, read_script, unfit_data
 from robosc.simulation.simulation import LoopSimulation
+from robosc.simulation.tracking import ReportError, Tracker
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from robosc.analysis.paths import TraceStep
     from robosc.diagnostics import Diagnostic
     from robosc.simulation.simulation import Simulation
+    from robosc.simulation.tracking import Told
 
 
 class PlayError(Exception):
@@ -40,6 +44,37 @@ def script_steps(simulation: Simulation, path: str) -> list[Step]:
     if findings:
         raise PlayError(f"{path}: {findings[0].message}", findings, {path: text.content})
     return steps
+
+
+def recorded_moments(simulation: Simulation, path: str, node: str | None) -> Iterator[tuple[float, Told]]:
+    """What a node told that was recorded, each with its time in seconds; the simulation is in the state after it.
+
+    `node` is its full name; None: the only one that tells of this robot. Raises PlayError, RecordingError, and OSError.
+    """
+    tracker = Tracker(simulation.engine)
+    began: float | None = None
+    fault = None
+    told_by: str | None = None
+    for topic, text in recorded_texts(path):
+        name, _, kind = topic.rpartition("/")
+        if kind not in ("state", "definition") or name != (node or told_by or name):
+            continue
+        if kind == "definition":
+            tracker.begin()
+            continue
+        try:
+            report = json_value(text)
+            followed = tracker.report(report)
+        except (JsonError, ReportError) as error:
+            fault = fault or f"{topic}: {error}"
+            continue
+        told_by = name
+        began = report["time"] if began is None else began
+        for told in followed:
+            yield round(report["time"] - began, 3), told
+    if began is None:
+        asked = f"`{node}/state`" if node else "a topic `~/state`"
+        raise PlayError(f"{path} has no reports of this robot on {asked}{f': {fault}' if fault else ''}")
 
 
 def counterexample_steps(simulation: Simulation, wanted: str | None) -> tuple[list[Step], str]:
