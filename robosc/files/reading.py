@@ -37,19 +37,27 @@ def read(path: str | os.PathLike[str], *, is_input: bool = True) -> bytes:
     Raises OSError where it can't be read, is no regular file (nothing is opened then), or has more than MOST_BYTES.
     """
     name = os.fspath(path)
+    with opened(name, is_input=is_input, buffering=0) as file:
+        return _bounded(file, name)
+
+
+@contextmanager
+def opened(path: str | os.PathLike[str], *, is_input: bool = True, buffering: int = -1) -> Iterator[IO[bytes]]:
+    """A regular file of any size, to be read as binary; as for `read`. Raises OSError."""
+    name = os.fspath(path)
     try:
         _require_regular(Path(name).stat(), name)
         # Between the two calls it may have become something else, which must not make us wait, either.
         descriptor = os.open(name, os.O_RDONLY | _CAUTIOUS)
     except ValueError as error:  # a null character
         raise OSError(errno.EINVAL, str(error), name) from None
-    with os.fdopen(descriptor, "rb", buffering=0) as file:
+    with os.fdopen(descriptor, "rb", buffering=buffering) as file:
         found = os.fstat(descriptor)
         _require_regular(found, name)
         noted = _noted.get()
         if is_input and noted is not None:
             noted[_identity(found)] = name
-        return _bounded(file, name)
+        yield file
 
 
 def read_stdin(name: str) -> bytes:
