@@ -1,24 +1,40 @@
 """How long the page of `robosc view` takes to draw a robot of many components, and to show events; its picture.
 
-    python benchmarks/view.py [--components 100] [--picture docs/pictures/view.png]
+    python benchmarks/view.py [--components 100] [--flood SECONDS] [--picture docs/pictures/view.png]
 
 It needs Debian's `chromium`, `playwright` and the built page. Times are medians of five, in milliseconds: from asking
 for the page until all is drawn, and from a call that lets 1,000 random events happen until the last of them is shown.
+
+With `--flood` a node's reports come to the page, 1,000 events a second in 100 reports, for so long: the frames that the
+browser draws a second, the memory of its scripts after each tenth of that time, and the processor time of the server.
 """
 
 from __future__ import annotations
 
 import argparse
+import asyncio
+import json
+import os
 import statistics
 import subprocess
 import sys
 import tempfile
 from contextlib import contextmanager
+from multiprocessing import Process
 from pathlib import Path
+from random import Random
+from socket import socket
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
+from playwright.sync_api import Error as PlaywrightError
 from playwright.sync_api import sync_playwright
+
+import robosc
+from robosc import view
+from robosc.m2t.models import Models
+from robosc.simulation import Simulation
+from robosc.view import serving
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -41,6 +57,10 @@ DOOR = """\
     }}
   }}
 """
+
+
+#: Events a second, and reports.
+_RATE, _REPORTS = 1000, 100
 
 
 @contextmanager
@@ -72,16 +92,84 @@ def measured(browser: Any, address: str) -> tuple[float, float]:
     return 1000 * (drawn - began), 1000 * (shown - drawn)
 
 
+def flooding(model: Path, port: int, seconds: float) -> None:
+    """Serves the page of a robot whose doors open and close, until it is killed."""
+    loaded = robosc.load(model)
+    supervised, graph = robosc.to_sct(loaded), robosc.to_rosgraph(loaded)
+    robosc.synthesize(supervised)
+    live = view.Live(Simulation(supervised, graph), graph, "/doors_controller")
+    description = view.describe(Models(supervised, graph, loaded), {})
+    application = view.application(description, live, [f"127.0.0.1:{port}"])
+    states = ["closed"] * len(description["automata"])
+
+    async def flood() -> None:
+        loop, random = asyncio.get_running_loop(), Random(0)
+        began = loop.time()
+        for number in range(round(seconds * _REPORTS)):
+            await asyncio.sleep(began + number / _REPORTS - loop.time())
+            events = []
+            for door in random.choices(range(len(states)), k=_RATE // _REPORTS):
+                states[door] = "opened" if states[door] == "closed" else "closed"
+                events.append(f"message_{states[door]}{door}.u_response")
+            components = {f"Door{door}": {"state": state, "variables": {}} for door, state in enumerate(states)}
+            report = {"robot": "Doors", "time": number / _REPORTS, "components": components, "transitions": events}
+            live.told(json.dumps(report))
+            await live.tell()
+
+    def ready() -> None:
+        asyncio.get_running_loop().flood = asyncio.ensure_future(flood())  # type: ignore[attr-defined]  # keeps it
+
+    live.heard(1)
+    serving.serve(application, serving.listen("127.0.0.1", port), ready)
+
+
+def flooded(browser: Any, model: Path, seconds: float) -> None:
+    """Prints what a flood costs."""
+    with socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    server = Process(target=flooding, args=(model, port, seconds + 5))
+    server.start()
+    page = browser.new_page(viewport={"width": 1500, "height": 950})
+    while True:
+        try:
+            page.goto(f"http://127.0.0.1:{port}/")
+            break
+        except PlaywrightError:
+            page.wait_for_timeout(100)
+    page.wait_for_selector("body[data-drawn][data-moment]")
+    count = "window.frames_drawn = 0; (function one() { window.frames_drawn++; requestAnimationFrame(one); })()"
+    page.evaluate(count)
+    tools = page.context.new_cdp_session(page)
+    tools.send("Performance.enable")
+    heaps, rates = [], []
+    for _ in range(10):
+        before, began = page.evaluate("window.frames_drawn"), perf_counter()
+        page.wait_for_timeout(100 * seconds)
+        rates.append((page.evaluate("window.frames_drawn") - before) / (perf_counter() - began))
+        tools.send("HeapProfiler.collectGarbage")
+        metrics = {one["name"]: one["value"] for one in tools.send("Performance.getMetrics")["metrics"]}
+        heaps.append(metrics["JSHeapUsedSize"] / 1e6)
+    moment = int(page.locator("body").get_attribute("data-moment"))
+    used = sum(map(int, Path(f"/proc/{server.pid}/stat").read_text().split()[13:15])) / os.sysconf("SC_CLK_TCK")
+    server.terminate()
+    print(f"shown: event {moment}; frames a second: {min(rates):.0f} at least, {statistics.median(rates):.0f} mostly")
+    print(
+        f"MB of scripts: {', '.join(f'{heap:.0f}' for heap in heaps)}; the server took {used:.0f} s of processor time"
+    )
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--components", type=int, default=100)
     parser.add_argument("--picture", type=Path)
+    parser.add_argument("--flood", type=float, metavar="SECONDS")
     options = parser.parse_args()
     with sync_playwright() as playwright, tempfile.TemporaryDirectory() as folder:
         browser = playwright.chromium.launch(executable_path="/usr/bin/chromium", args=["--no-sandbox"])
         if options.picture is not None:
             with served(MODEL) as address:
-                page = browser.new_page(viewport={"width": 1400, "height": 860})
+                page = browser.new_page(viewport={"width": 1280, "height": 760})
                 page.goto(address)
                 page.wait_for_selector("body[data-drawn][data-moment]")
                 page.get_by_role("button", name="20 random").click()
@@ -93,6 +181,9 @@ def main() -> None:
         model = Path(folder) / "doors.rscd"
         doors = "\n".join(DOOR.format(number=number) for number in range(options.components))
         model.write_text(f"robot Doors {{\n{doors}}}\n", encoding="utf-8")
+        if options.flood is not None:
+            flooded(browser, model, options.flood)
+            return
         with served(model) as address:
             times = [measured(browser, address) for _ in range(5)]
         drawn, shown = (statistics.median(one) for one in zip(*times, strict=True))

@@ -6,7 +6,7 @@ import type { Whole } from "./run";
 
 /** What the page can ask of the server; where there is none, nothing. */
 export interface Asking {
-  perform(event: string, inputs: Record<string, Value>): void;
+  perform: ((event: string, inputs: Record<string, Value>) => void) | null;
   explain(event: string): Promise<Explanation>;
 }
 
@@ -41,7 +41,7 @@ export class CommandsView {
     const events = byId("events", HTMLUListElement);
     for (const [name, event] of Object.entries(description.events)) {
       if (description.commands.includes(name)) continue;
-      const item = html("li", {}, this.performer(name, event));
+      const item = html("li", {}, asking?.perform ? this.performer(name, event) : this.link(event));
       this.events.set(name, item);
       events.append(item);
     }
@@ -64,7 +64,7 @@ export class CommandsView {
     }
     for (const [name, item] of this.events) {
       item.hidden = !whole.enabled.has(name);
-      for (const button of item.querySelectorAll("button")) button.disabled = !isLast;
+      for (const button of item.querySelectorAll<HTMLButtonElement>("button[data-event]")) button.disabled = !isLast;
     }
   }
 
@@ -85,8 +85,8 @@ export class CommandsView {
       );
     if (this.asking !== null)
       links.append(html("button", { type: "button", onclick: () => void this.explain(name, why) }, "What would help?"));
-    const title = html("button", { type: "button", class: "link", onclick: () => this.goTo(event.place) }, event.words);
-    const performer = this.asking === null ? null : this.performer(name, event);
+    const title = this.link(event);
+    const performer = this.asking?.perform ? this.performer(name, event) : null;
     const item = html(
       "li",
       { "data-event": name },
@@ -100,13 +100,17 @@ export class CommandsView {
     return item;
   }
 
+  private link(event: Event): HTMLElement {
+    return html("button", { type: "button", class: "link", onclick: () => this.goTo(event.place) }, event.words);
+  }
+
   /** A button that lets an event happen, with a field for each of its inputs. */
   private performer(name: string, event: Event): HTMLElement {
     const fields = event.inputs.map((input) => [input, field(input)] as const);
     const label = this.description.commands.includes(name) ? "send" : event.words;
     const button = html("button", { type: "button", "data-event": name, "aria-label": label === "send" ? `send ${event.words}` : label }, label);
     button.addEventListener("click", () =>
-      this.asking?.perform(name, Object.fromEntries(fields.map(([input, shown]) => [input.name, value(input, shown)]))),
+      this.asking?.perform?.(name, Object.fromEntries(fields.map(([input, shown]) => [input.name, value(input, shown)]))),
     );
     return html(
       "span",

@@ -75,6 +75,8 @@ export interface Endpoint {
 
 export interface Description {
   robot: string;
+  /** Whether actions can be asked for. */
+  acts?: boolean;
   automata: Automaton[];
   events: Record<string, Event>;
   commands: string[];
@@ -100,6 +102,8 @@ export interface Moment {
   commands: Record<string, Verdict | null>;
   enabled: Record<string, boolean>;
   timers: Record<string, number | false>;
+  /** It says all, not what has changed. */
+  whole?: boolean;
 }
 
 export interface Explanation {

@@ -53,8 +53,10 @@ const OPTIONS = {
 };
 
 let engine: InstanceType<typeof ELK> | null = null;
+const drawings = new Map<string, Promise<Drawing>>();
 
-function elk(): InstanceType<typeof ELK> {
+/** Starts the worker, which takes a while. */
+export function begin(): InstanceType<typeof ELK> {
   const Layouter = globalThis.layoutWorker;
   engine ??= new ELK({
     workerUrl: "layout.js",
@@ -63,8 +65,39 @@ function elk(): InstanceType<typeof ELK> {
   return engine;
 }
 
-/** Rejects where ELK can't lay it out. */
-export async function layout(boxes: Box[], lines: Line[]): Promise<Drawing> {
+/** Boxes on both sides of a high one, each with a level line to it: ELK takes seconds for two hundred. */
+export function columns(middle: Box, left: Box[], right: Box[]): Drawing {
+  const [apart, between, margin] = [70, 10, 12];
+  const sides = [left, right].map((side) => {
+    const sizes = side.map((box) => size(box.texts, 24, 12));
+    return { side, sizes, width: Math.max(0, ...sizes.map(({ width }) => width)) };
+  });
+  const height = Math.max(...sides.map(({ sizes }) => sizes.reduce((sum, one) => sum + one.height + between, 0)), LINE + 12);
+  const center = size(middle.texts, 24, 12);
+  const [before, after] = sides.map(({ side, width }) => (side.length > 0 ? width + apart : 0)) as [number, number];
+  const box = { x: margin + before, y: margin, width: center.width, height };
+  const drawing: Drawing = {
+    width: before + center.width + after + 2 * margin,
+    height: height + 2 * margin,
+    boxes: new Map([[middle.id, box]]),
+    lines: new Map(),
+  };
+  sides.forEach(({ side, sizes, width }, index) => {
+    let y = margin + between / 2;
+    side.forEach(({ id }, number) => {
+      const own = { x: index === 0 ? margin + width - sizes[number]!.width : box.x + box.width + apart, y, ...sizes[number]! };
+      drawing.boxes.set(id, own);
+      const level = y + own.height / 2;
+      const points = [box.x + (index === 0 ? 0 : box.width), own.x + (index === 0 ? own.width : 0)].map((x) => ({ x, y: level }));
+      drawing.lines.set(id, { points, label: points[0]! });
+      y += own.height + between;
+    });
+  });
+  return drawing;
+}
+
+/** Rejects where ELK can't lay it out. What is alike but for its words, as instances of a template, is laid out once. */
+export function layout(boxes: Box[], lines: Line[]): Promise<Drawing> {
   const graph: ElkNode = {
     id: "root",
     layoutOptions: OPTIONS,
@@ -76,22 +109,25 @@ export async function layout(boxes: Box[], lines: Line[]): Promise<Drawing> {
       labels: line.texts.length === 0 ? [] : [{ id: `${line.id}-label`, text: "x", ...size(line.texts, 6, 2) }],
     })),
   };
-  const laidOut = await elk().layout(graph);
+  const key = JSON.stringify(graph);
+  const made = drawings.get(key) ?? begin().layout(graph).then(drawing);
+  drawings.set(key, made);
+  return made;
+}
+
+function drawing({ width = 0, height = 0, children = [], edges = [] }: ElkNode): Drawing {
   return {
-    width: laidOut.width ?? 0,
-    height: laidOut.height ?? 0,
+    width,
+    height,
     boxes: new Map(
-      (laidOut.children ?? []).map((box) => [
-        box.id,
-        { x: box.x ?? 0, y: box.y ?? 0, width: box.width ?? 0, height: box.height ?? 0 },
-      ]),
+      children.map(({ id, x = 0, y = 0, width = 0, height = 0 }) => [id, { x, y, width, height }]),
     ),
     lines: new Map(
-      ((laidOut.edges ?? []) as ElkExtendedEdge[]).map((edge) => {
+      edges.map((edge: ElkExtendedEdge) => {
         const section = edge.sections?.[0];
         const points = section ? [section.startPoint, ...(section.bendPoints ?? []), section.endPoint] : [];
-        const label = edge.labels?.[0];
-        return [edge.id, { points, label: { x: label?.x ?? 0, y: label?.y ?? 0 } }];
+        const { x = 0, y = 0 } = edge.labels?.[0] ?? {};
+        return [edge.id, { points, label: { x, y } }];
       }),
     ),
   };

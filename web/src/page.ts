@@ -3,8 +3,9 @@
 import { CommandsView } from "./commands";
 import type { Description, Explanation, Exported, Moment, Value } from "./data";
 import { byId, html } from "./elements";
+import { begin } from "./layout";
 import { RobotView } from "./robot";
-import { Run } from "./run";
+import { MOST, Run } from "./run";
 import { TextView } from "./text";
 import { TimelineView } from "./timeline";
 
@@ -23,7 +24,7 @@ const ALL_BUTTONS: [string, Record<string, unknown>][] = [
 ];
 
 class Page {
-  private readonly run = new Run();
+  private readonly run: Run;
   private readonly robot: RobotView;
   private readonly text: TextView;
   private readonly commands: CommandsView;
@@ -31,28 +32,29 @@ class Page {
   private readonly status = byId("status", HTMLElement);
   private readonly follow = byId("follow", HTMLButtonElement);
   private readonly onward = html("button", { type: "button", onclick: () => this.goOn() }, "Go on from here");
+  private readonly acts: boolean;
   private shown = 0;
   private following = true;
+  private ofSource = "";
   private drawing = false;
 
   constructor(
     private readonly description: Description,
-    private readonly isServed: boolean,
+    isServed: boolean,
   ) {
+    this.acts = isServed && description.acts === true;
+    this.run = new Run(isServed && !this.acts ? MOST : Infinity);
     document.title = `${description.robot} – RoboSC`;
     byId("robot-name", HTMLElement).textContent = description.robot;
     this.text = new TextView(description);
     this.robot = new RobotView(description, (place) => this.text.goTo(place));
-    const asking = isServed
-      ? {
-          perform: (event: string, inputs: Record<string, Value>) => void this.act({ action: "perform", event, inputs }),
-          explain: (event: string) => this.explain(event),
-        }
-      : null;
+    const perform = (event: string, inputs: Record<string, Value>): void =>
+      void this.act({ action: "perform", event, inputs });
+    const asking = isServed ? { perform: this.acts ? perform : null, explain: (event: string) => this.explain(event) } : null;
     this.commands = new CommandsView(description, (place) => this.text.goTo(place), asking);
     this.timeline = new TimelineView(description, this.run, (number) => this.choose(number));
-    this.follow.addEventListener("click", () => this.choose(this.run.moments.length - 1));
-    if (isServed) {
+    this.follow.addEventListener("click", () => this.choose(this.run.end));
+    if (this.acts) {
       const controls = byId("controls", HTMLElement);
       for (const [name, action] of ALL_BUTTONS)
         controls.append(html("button", { type: "button", onclick: () => void this.act(action) }, name));
@@ -71,9 +73,21 @@ class Page {
   /** Takes in moments, from a number on. */
   tell(from: number, moments: Moment[]): void {
     this.run.replace(from, moments);
-    const last = this.run.moments.length - 1;
-    if (this.following || this.shown > last) this.shown = Math.max(0, last);
+    const { first, end } = this.run;
+    if (this.following || this.shown > end) this.shown = Math.max(0, end);
+    this.shown = Math.max(first, this.shown);
     this.schedule();
+  }
+
+  isConnected(): void {
+    this.say(this.ofSource);
+  }
+
+  /** How it stands with what the moments come from. */
+  saysOfSource(status: string): void {
+    if (status === this.ofSource) return;
+    this.ofSource = status;
+    this.say(status);
   }
 
   say(text: string, isFault = false): void {
@@ -83,7 +97,7 @@ class Page {
 
   private choose(number: number): void {
     this.shown = number;
-    this.following = number === this.run.moments.length - 1;
+    this.following = number === this.run.end;
     this.schedule();
   }
 
@@ -93,17 +107,16 @@ class Page {
     this.drawing = true;
     requestAnimationFrame(() => {
       this.drawing = false;
-      const moment = this.run.moments[this.shown];
-      if (moment !== undefined) this.show(moment);
+      if (this.run.end >= this.run.first) this.show(this.run.moment(this.shown));
     });
   }
 
   private show(moment: Moment): void {
-    const isLast = this.shown === this.run.moments.length - 1;
+    const isLast = this.shown === this.run.end;
     this.timeline.show(this.shown);
     const whole = this.run.at(this.shown);
     this.robot.show(whole, moment);
-    this.commands.show(whole, isLast && this.isServed);
+    this.commands.show(whole, isLast && this.acts);
     const taken = (moment.transitions ?? []).map(
       ([automaton, number]) => this.description.automata[automaton]?.transitions[number]?.place ?? null,
     );
@@ -139,6 +152,7 @@ class Page {
 }
 
 async function start(): Promise<void> {
+  begin();
   if (globalThis.robosc !== undefined) {
     const page = new Page(globalThis.robosc.description, false);
     page.tell(0, globalThis.robosc.moments);
@@ -149,11 +163,12 @@ async function start(): Promise<void> {
   const page = new Page((await answer.json()) as Description, true);
   const source = new EventSource("moments");
   source.addEventListener("message", (event) => {
-    const told = JSON.parse(event.data as string) as { from: number; moments: Moment[] };
+    const told = JSON.parse(event.data as string) as { from: number; moments: Moment[]; status: string };
     page.tell(told.from, told.moments);
+    page.saysOfSource(told.status);
   });
   source.addEventListener("error", () => page.say("The server does not answer; the page waits for it.", true));
-  source.addEventListener("open", () => page.say(""));
+  source.addEventListener("open", () => page.isConnected());
   await page.draw();
 }
 

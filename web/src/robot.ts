@@ -2,7 +2,7 @@
 
 import type { Automaton, Description, Endpoint, Moment, Place } from "./data";
 import { byId, html, pressed, svg } from "./elements";
-import { type Box, type Drawing, layout, type Line, LINE, path } from "./layout";
+import { type Box, columns, type Drawing, layout, type Line, LINE, path } from "./layout";
 import type { Whole } from "./run";
 
 /** Above so many lines a transition says how many more there are. */
@@ -47,8 +47,8 @@ export class RobotView {
   /** Lays out and draws everything; resolves when it is there. */
   async draw(): Promise<void> {
     const jobs = this.description.automata.map((automaton) => this.card(automaton));
-    const graph = this.description.communication.length > 0 ? [this.graph(this.description.communication)] : [];
-    await Promise.all([...jobs, ...graph]);
+    if (this.description.communication.length > 0) this.graph(this.description.communication);
+    await Promise.all(jobs);
   }
 
   show(whole: Whole, moment: Moment): void {
@@ -185,7 +185,7 @@ export class RobotView {
     return group;
   }
 
-  private async graph(ends: Endpoint[]): Promise<void> {
+  private graph(ends: Endpoint[]): void {
     const drawn = html("div", { class: "drawn" });
     const element = html(
       "details",
@@ -195,22 +195,18 @@ export class RobotView {
     );
     this.cards.push({ element, texts: ends.map((end) => [end.name, ...end.types, ...end.uses].join(" ")).join("\n").toLowerCase() });
     this.holder.append(element);
+    const controller: Box = { id: "controller", texts: [`${this.description.robot}: controller`] };
     const boxes: Box[] = ends.map((end, number) => ({ id: String(number), texts: [end.name, ...end.types] }));
-    boxes.push({ id: "controller", texts: [`${this.description.robot}: controller`] });
-    const lines: Line[] = ends.map((end, number) => ({
-      id: `line${number}`,
-      source: end.direction === "in" ? String(number) : "controller",
-      target: end.direction === "in" ? "controller" : String(number),
-      texts: [],
-    }));
-    const drawing = await layout(boxes, lines);
+    const isIn = (box: Box): boolean => ends[Number(box.id)]!.direction === "in";
+    const drawing = columns(controller, boxes.filter(isIn), boxes.filter((box) => !isIn(box)));
     const image = canvas(drawing, "The controller, with its topics, services and actions");
-    lines.forEach((line, number) => {
-      const both = ends[number]!.direction === "both" ? { "marker-start": "url(#tip)" } : {};
-      const d = path(drawing.lines.get(line.id)!.points);
+    ends.forEach(({ direction }, number) => {
+      const { points } = drawing.lines.get(String(number))!;
+      const both = direction === "both" ? { "marker-start": "url(#tip)" } : {};
+      const d = path(direction === "in" ? [...points].reverse() : points);
       image.append(svg("path", { d, class: "line", "marker-end": "url(#tip)", ...both }));
     });
-    for (const box of boxes) {
+    for (const box of [controller, ...boxes]) {
       const place = drawing.boxes.get(box.id)!;
       const end = ends[Number(box.id)];
       const group = svg("g", { class: `end ${end?.kind ?? "controller"}` }, svg("rect", { ...plain(place), rx: 4, class: "box" }));

@@ -11,37 +11,81 @@ export interface Whole {
 
 /** From one moment that is kept whole to the next. */
 const APART = 64;
+/** So many moments of a robot that runs; what is played is never so long, and can be taken back. */
+export const MOST = 40_000;
 
+/** Of more than so many moments the older half goes. Moments are numbered from the beginning of the run, also where the oldest are not kept. */
 export class Run {
-  moments: Moment[] = [];
+  first = 0;
+  private moments: Moment[] = [];
   private kept: Whole[] = [];
-  private last: { number: number; whole: Whole } | null = null;
+  private last: { index: number; whole: Whole } | null = null;
+  private readonly most: number;
 
-  /** Replaces all moments from a number on. */
+  constructor(most = Infinity) {
+    this.most = most;
+  }
+
+  get end(): number {
+    return this.first + this.moments.length - 1;
+  }
+
+  moment(number: number): Moment {
+    return this.moments[number - this.first]!;
+  }
+
+  /** Replaces all moments from a number on; those before are forgotten where some between are missing. */
   replace(from: number, moments: Moment[]): void {
-    this.moments.length = from;
-    this.kept.length = Math.min(this.kept.length, Math.ceil(from / APART));
-    if (this.last !== null && this.last.number >= from) this.last = null;
+    if (from < this.first || from > this.end + 1) {
+      this.clear([]);
+      this.first = from;
+    }
+    const length = from - this.first;
+    this.moments.length = length;
+    this.kept.length = Math.min(this.kept.length, Math.ceil(length / APART));
+    if (this.last !== null && this.last.index >= length) this.last = null;
     for (const moment of moments) this.moments.push(moment);
+    if (this.moments.length > this.most) this.forget(this.moments.length - (this.most >> 1));
   }
 
   /** Everything at a moment. What it returns is not to be changed. */
   at(number: number): Whole {
-    if (this.last !== null && this.last.number === number) return this.last.whole;
-    const isNear = this.last !== null && this.last.number < number && number - this.last.number < APART;
-    let from = isNear ? this.last!.number : this.keptBefore(number);
+    const index = number - this.first;
+    if (this.last !== null && this.last.index === index) return this.last.whole;
+    const isNear = this.last !== null && this.last.index < index && index - this.last.index < APART;
+    let from = isNear ? this.last!.index : this.keptBefore(index);
     const whole = isNear ? this.last!.whole : copy(this.kept[from / APART] ?? empty());
     if (!isNear && from === 0 && this.kept.length === 0) from = -1;
-    for (let next = from + 1; next <= number; next++) {
+    for (let next = from + 1; next <= index; next++) {
       apply(whole, this.moments[next]!);
       if (next % APART === 0 && this.kept.length === next / APART) this.kept.push(copy(whole));
     }
-    this.last = { number, whole };
+    this.last = { index, whole };
     return whole;
   }
 
-  private keptBefore(number: number): number {
-    return Math.max(0, Math.min(Math.floor(number / APART), this.kept.length - 1)) * APART;
+  private keptBefore(index: number): number {
+    return Math.max(0, Math.min(Math.floor(index / APART), this.kept.length - 1)) * APART;
+  }
+
+  private clear(moments: Moment[]): void {
+    this.moments = moments;
+    this.kept = [];
+    this.last = null;
+  }
+
+  private forget(number: number): void {
+    const whole = this.at(this.first + number);
+    const oldest: Moment = {
+      ...this.moments[number]!,
+      whole: true,
+      state: Object.fromEntries(whole.state),
+      commands: Object.fromEntries(whole.commands),
+      enabled: Object.fromEntries([...whole.enabled].map((event) => [event, true])),
+      timers: Object.fromEntries(whole.timers),
+    };
+    this.clear([oldest, ...this.moments.slice(number + 1)]);
+    this.first += number;
   }
 }
 
@@ -59,6 +103,12 @@ function copy(whole: Whole): Whole {
 }
 
 function apply(whole: Whole, moment: Moment): void {
+  if (moment.whole === true) {
+    whole.state.clear();
+    whole.commands.clear();
+    whole.enabled.clear();
+    whole.timers.clear();
+  }
   for (const [name, value] of Object.entries(moment.state)) whole.state.set(name, value);
   for (const [name, verdict] of Object.entries(moment.commands)) whole.commands.set(name, verdict);
   for (const [name, can] of Object.entries(moment.enabled)) {

@@ -40,10 +40,11 @@ export class TimelineView {
   }
 
   show(shown: number): void {
-    const last = this.run.moments.length - 1;
+    const last = this.run.end;
+    this.slider.min = String(this.run.first);
     this.slider.max = String(last);
     this.slider.value = String(shown);
-    const moment = this.run.moments[shown]!;
+    const moment = this.run.moment(shown);
     const said = `${shown} of ${last}, at ${moment.time} s`;
     this.number.textContent = said;
     this.slider.setAttribute("aria-valuetext", `${said}: ${told(moment)}`);
@@ -52,10 +53,10 @@ export class TimelineView {
   }
 
   private listAround(shown: number, last: number): void {
-    const first = Math.max(0, Math.min(shown - AROUND, last - 2 * AROUND));
+    const first = Math.max(this.run.first, Math.min(shown - AROUND, last - 2 * AROUND));
     const items = [];
     for (let number = first; number <= Math.min(last, first + 2 * AROUND); number++) {
-      const moment = this.run.moments[number]!;
+      const moment = this.run.moment(number);
       const button = html("button", { type: "button", class: "link", onclick: () => this.choose(number) }, told(moment));
       if (number === shown) button.setAttribute("aria-current", "true");
       items.push(html("li", { value: number, class: moment.by === undefined ? "" : "refused" }, button));
@@ -66,8 +67,8 @@ export class TimelineView {
   }
 
   private window(shown: number): [number, number] {
-    const last = this.run.moments.length - 1;
-    const first = Math.max(0, Math.min(shown - WINDOW / 2, last - WINDOW + 1));
+    const last = this.run.end;
+    const first = Math.max(this.run.first, Math.min(shown - WINDOW / 2, last - WINDOW + 1));
     return [first, Math.min(last, first + WINDOW - 1)];
   }
 
@@ -80,7 +81,7 @@ export class TimelineView {
       columns.push({
         state: automata.map((automaton) => state.get(automaton.key) as string | undefined),
         numbers: this.plots.map((plot) => Number(state.get(plot.key))),
-        refused: this.run.moments[number]!.by !== undefined,
+        refused: this.run.moment(number).by !== undefined,
       });
     }
     const colours = getComputedStyle(document.documentElement);
@@ -151,7 +152,7 @@ function prepared(canvas: HTMLCanvasElement, height: number): CanvasRenderingCon
 }
 
 function told(moment: Moment): string {
-  if (moment.event === undefined) return "start";
+  if (moment.event === undefined) return moment.words ?? "start";
   const data = moment.data === undefined || Object.keys(moment.data).length === 0 ? "" : ` ${JSON.stringify(moment.data)}`;
   return `${moment.words ?? moment.event}${data}${moment.reason === undefined ? "" : `: ${moment.reason}`}`;
 }
