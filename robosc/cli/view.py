@@ -12,22 +12,27 @@ import click
 from robosc.cli import CallError, put, say
 from robosc.cli.options import Paths, model, paths
 from robosc.cli.parameters import parameters, set_parameters
-from robosc.cli.reading import read_models, supervise_models
+from robosc.cli.reading import read_configuration, read_models, supervise_models
 from robosc.cli.report import Report
 from robosc.files.writing import write
+from robosc.recordings import RecordingError, is_recording
 from robosc.simulation import Simulation
-from robosc.simulation.played import PlayError, counterexample_steps, script_steps
+from robosc.simulation.played import PlayError, counterexample_steps, recorded_moments, script_steps
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
-    from robosc.simulation import Step
-    from robosc.view import Record
+    from robosc.configuration import Configuration
+    from robosc.metamodel import rosgraph
+    from robosc.view import Live, Moments, Record
 
 
 @click.command("view")
 @model
-@click.option("--log", type=click.Path(), help="Show an event log or a script.")
+@click.option("--ros1", "version", flag_value=1, type=int, help="Show a robot of ROS 1 that runs.")
+@click.option("--ros2", "version", flag_value=2, type=int, help="Show a robot of ROS 2 that runs.")
+@click.option("--node", help="Of this node, such as /robot/line_follower_controller; without it, by its usual name.")
+@click.option("--log", type=click.Path(), help="Show an event log, a script, or a recording: a bag, MCAP.")
 @click.option("--trace", "refuted", metavar="PROPERTY", help="Show a counterexample of `verify`; `any`: the first.")
 @click.option("--seed", type=int, default=0, show_default=True, help="Of random events.")
 @click.option("--export", "folder", type=click.Path(), help="Write the page to FOLDER, to open without a server.")
@@ -40,6 +45,8 @@ if TYPE_CHECKING:
 @paths
 def command(
     model: str,
+    version: int | None,
+    node: str | None,
     log: str | None,
     refuted: str | None,
     seed: int,
@@ -52,20 +59,25 @@ def command(
 ) -> None:
     """See a supervised robot decide, in a browser: states, commands, and why they are forbidden.
 
-    MODEL is a .rscd file with a robot, a .cif file, or an .xmi file that `transform --to xmi` wrote. Without --log and
-    --trace the robot is simulated: a click lets an event happen. From any moment of a log one goes on in simulation.
+    MODEL is a .rscd file with a robot, a .cif file, or an .xmi file that `transform --to xmi` wrote. The robot is
+    simulated: a click lets an event happen. --log and --trace show a run that has been, and from any moment of it one
+    goes on in simulation. --ros1 and --ros2 show a robot that runs, by what its node tells on ~/state.
 
     \b
     Examples:
       robosc view line_follower.rscd --open
+      robosc view line_follower.rscd --ros2
       robosc view line_follower.rscd --log ~/.ros/log/line_follower-events.jsonl
+      robosc view line_follower.rscd --log rosbag2_2026_11_24-10_20_30
       robosc view line_follower.rscd --trace never-collides
       robosc view line_follower.rscd --log events.jsonl --export page
 
     Exit status: 0 done, 1 errors in the model or log, 2 a wrong call, 3 no supervisor exists.
     """
-    if log is not None and refuted is not None:
-        raise click.UsageError("--log and --trace exclude each other")
+    if sum(source is not None for source in (version, log, refuted)) > 1:
+        raise click.UsageError("--ros1, --ros2, --log and --trace exclude each other")
+    if version is not None and folder is not None:
+        raise click.UsageError("a robot that runs can't be exported: record it, and export the recording with --log")
     try:
         from robosc import view
         from robosc.view import serving
@@ -74,40 +86,83 @@ def command(
     with Report(aside=True) as report:
         models = read_models(model, paths, report, cif=True)
         set_parameters(models.rosgraph, given)
+        settings = read_configuration(model, None, report)
         supervise_models(models, report)
         simulation = Simulation(models.sct, models.rosgraph)
-        steps = _steps(simulation, log, refuted, report)
+        record = _record(simulation, log, node, refuted, seed, report) if version is None else None
     description = view.describe(models, report.texts)
-    record = view.Record(simulation, steps, seed)
     try:
-        if folder is not None:
+        if record is None:
+            assert version is not None
+            if models.rosgraph is None:
+                raise CallError(f"{model} has no ROS graph, so no node tells of it: give its .rosgraph.xmi or .rscd")
+            nodes = [node] if node else _nodes(models.rosgraph, settings)
+            live = view.Live(simulation, models.rosgraph, " or ".join(nodes))
+            _serve(serving, description, live, address, port, opens=opens, begin=_listening(version, nodes, live))
+        elif folder is not None:
             write({Path(folder): view.export(description, record.moments)})
             say(f"written: {Path(folder) / 'index.html'}")
-            return
-        _serve(serving, description, record, address, port, opens=opens)
+        else:
+            _serve(serving, description, record, address, port, opens=opens)
     except view.PageError as error:
         raise CallError(str(error)) from None
 
 
-def _steps(simulation: Simulation, log: str | None, refuted: str | None, report: Report) -> Sequence[Step] | None:
-    """What is played; None where nothing is. Ends the report where the log has faults."""
+def _nodes(graph: rosgraph.RosGraph, settings: Configuration) -> list[str]:
+    """The full names that the robot's controller and layer have where nothing renames them."""
+    return list(dict.fromkeys(f"/{name}" for name in (settings.package_name(graph), settings.layer_name(graph))))
+
+
+def _listening(version: int, nodes: Sequence[str], live: Live) -> Callable[[], Callable[[], None]]:
+    """What lets the page hear what nodes tell, to be called once it is served; it gives what ends that."""
+
+    def begin() -> Callable[[], None]:
+        from robosc.runtime.core.listening import listen
+        from robosc.runtime.core.node import StartError
+        from robosc.view.relay import Relay
+
+        try:
+            return listen(version, nodes, Relay(live)).close
+        except StartError as error:
+            raise CallError(f"{error}\n  {error.hint}" if error.hint else str(error)) from error
+
+    return begin
+
+
+def _record(
+    simulation: Simulation, log: str | None, node: str | None, refuted: str | None, seed: int, report: Report
+) -> Record:
+    """What is played. Ends the report where the log has faults."""
+    from robosc import view
+
     try:
+        if log is not None and is_recording(log):
+            return view.Record(simulation, seed=seed, recorded=recorded_moments(simulation, log, node))
         if log is not None:
-            return script_steps(simulation, log)
+            return view.Record(simulation, script_steps(simulation, log), seed)
         if refuted is not None:
             steps, said = counterexample_steps(simulation, None if refuted == "any" else refuted)
             say(said, err=True, nl=False)
-            return steps
+            return view.Record(simulation, steps, seed)
+    except RecordingError as error:
+        raise CallError(str(error)) from None
     except PlayError as error:
         if not error.findings:
             raise CallError(str(error)) from None
         report.add(error.findings, error.texts)
         report.stop_on_errors()
-    return None
+    return view.Record(simulation, seed=seed)
 
 
 def _serve(
-    serving: Any, description: Mapping[str, Any], record: Record, address: str, port: int, *, opens: bool
+    serving: Any,
+    description: Mapping[str, Any],
+    record: Moments,
+    address: str,
+    port: int,
+    *,
+    opens: bool,
+    begin: Callable[[], Callable[[], None]] | None = None,
 ) -> None:
     from robosc import view
 
@@ -121,10 +176,17 @@ def _serve(
     token = None if is_loopback else secrets.token_urlsafe(16)
     hosts = {f"{name}:{number}" for name in (*serving.LOOPBACK, host)}
     path = f"http://{host}:{number}/{'' if token is None else f'?token={token}'}"
+    ends: list[Callable[[], None]] = []
 
     def ready() -> None:
+        if begin is not None:
+            ends.append(begin())
         put(path)
         if opens:
             webbrowser.open(path)
 
-    serving.serve(view.application(description, record, hosts, token), listening, ready)
+    try:
+        serving.serve(view.application(description, record, hosts, token), listening, ready)
+    finally:
+        for end in ends:
+            end()

@@ -72,7 +72,7 @@ def _run(
     except StartError:
         node.close()
         raise
-    node.info(_started(node.full_name, graph))
+    node.info(_started(node.full_name, graph, shows=bool(reports)))
     node.spin(handler)
 
 
@@ -88,8 +88,8 @@ def _node(
     return Ros2Node(name, graph, configuration, arguments)
 
 
-def _started(name: str, graph: rosgraph.RosGraph) -> str:
-    """What a person who has started a node wants to know: that it runs, what it is connected to, how it ends."""
+def _started(name: str, graph: rosgraph.RosGraph, *, shows: bool) -> str:
+    """What a person who has started a node wants to know: what it is connected to, where to look, how it ends."""
     parts = (
         ("hears", [subscription.topic for subscription in graph.subscriptions]),
         ("sends", [publisher.topic for publisher in graph.publishers]),
@@ -97,4 +97,5 @@ def _started(name: str, graph: rosgraph.RosGraph) -> str:
         ("starts", [client.identifier for client in graph.actionClients]),
     )
     connected = "; ".join(f"{verb} {', '.join(names)}" for verb, names in parts if names)
-    return f"{name} runs{f': {connected}' if connected else ''}. Ctrl-C ends it."
+    look = " `robosc view` shows it decide." if shows else ""
+    return f"{name} runs{f': {connected}' if connected else ''}.{look} Ctrl-C ends it."

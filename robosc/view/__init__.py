@@ -1,13 +1,16 @@
-"""`robosc view`: a model, a log or a counterexample in the browser, decision by decision.
+"""`robosc view`: a model, a log, a counterexample or a robot that runs in the browser, decision by decision.
 
-`Record` is what has happened, `describe` what does not change, `application` serves both with the page, `export` writes
-them as files that open without a server. The page itself is TypeScript, in `web/`.
+`Moments` are what has happened: of a `Record` that is played, or `Live` as a node tells. `describe` says what does not
+change, `application` serves both with the page, `export` writes them as files that open without a server. The page
+itself is TypeScript, in `web/`.
 """
 
 from robosc.view.description import describe
 from robosc.view.export import export
+from robosc.view.live import Live
+from robosc.view.moments import Moments
 from robosc.view.page import PageError
 from robosc.view.record import Record
 from robosc.view.server import application
 
-__all__ = ["PageError", "Record", "application", "describe", "export"]
+__all__ = ["Live", "Moments", "PageError", "Record", "application", "describe", "export"]

@@ -13,15 +13,15 @@ from starlette.responses import JSONResponse, PlainTextResponse, RedirectRespons
 from starlette.routing import Route
 
 from robosc.simulation import DataError
+from robosc.view.moments import ActionError
 from robosc.view.page import FILES, POLICY, page_files
-from robosc.view.record import ActionError
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator, Collection, Mapping
 
     from starlette.types import ASGIApp, Receive, Scope, Send
 
-    from robosc.view.record import Record
+    from robosc.view.moments import Moments
 
 _COOKIE = "robosc-view"
 #: An action says little.
@@ -39,7 +39,7 @@ _HEADERS = {
 
 
 def application(
-    description: Mapping[str, Any], record: Record, hosts: Collection[str], token: str | None = None
+    description: Mapping[str, Any], record: Moments, hosts: Collection[str], token: str | None = None
 ) -> ASGIApp:
     """An ASGI application for a robot's description and run; it answers only who asks for one of `hosts`.
 
@@ -61,9 +61,9 @@ def application(
 class _Answers:
     """To each kind of request."""
 
-    def __init__(self, description: Mapping[str, Any], record: Record) -> None:
+    def __init__(self, description: Mapping[str, Any], record: Moments) -> None:
         self._files = page_files()
-        self._description = json.dumps(description).encode()
+        self._description = json.dumps({**description, "acts": record.acts}).encode()
         self._record = record
 
     async def file(self, request: Request) -> Response:
@@ -104,18 +104,21 @@ class _Answers:
             return _refused(error, 409)
         finally:
             await self._record.tell()
-        return JSONResponse({"moment": len(self._record.moments) - 1})
+        return JSONResponse({"moment": self._record.length - 1})
 
 
-async def told(record: Record) -> AsyncIterator[str]:
-    """Moments as server-sent events: `{from, moments}`, where those from there on replace what was told before."""
-    cuts, told = len(record.cuts), 0
+async def told(record: Moments) -> AsyncIterator[str]:
+    """Moments as server-sent events: `{from, moments, status}`; those from there on replace what was told before.
+
+    Where `from` is beyond what was told before, that is no longer kept.
+    """
+    cuts, told, status = len(record.cuts), 0, ""
     while True:
-        await record.changed(cuts, told)
-        told = min(told, *record.cuts[cuts:], len(record.moments))
-        cuts = len(record.cuts)
-        portion = record.moments[told : told + _PORTION]
-        yield f"data: {json.dumps({'from': told, 'moments': portion})}\n\n"
+        await record.changed(cuts, told, status)
+        told = max(record.first, min(told, *record.cuts[cuts:], record.length))
+        cuts, status = len(record.cuts), record.status
+        portion = record.moments[told - record.first :][:_PORTION]
+        yield f"data: {json.dumps({'from': told, 'moments': portion, 'status': status})}\n\n"
         told += len(portion)
 
 

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import asyncio
+import json
+from typing import TYPE_CHECKING, Any
 
 import robosc
 from robosc.m2t.models import Models
 from robosc.simulation import Simulation
 from robosc.view import Record, describe
+from robosc.view.server import told
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from robosc.simulation import Step
+    from robosc.view import Moments
 
 #: What would be seen if any of it became markup.
 EVIL = '<img src=x onerror="globalThis.hacked = 1"></script><script>globalThis.hacked = 1</script>'
@@ -51,3 +55,39 @@ def record(text: str = GATE, steps: Sequence[Step] | None = None) -> tuple[Mappi
     robosc.synthesize(model)
     described = describe(Models(model, graph, robot), {"<text>": text})
     return described, Record(Simulation(model, graph), steps), Simulation(model, graph)
+
+
+def wholes(moments: list[dict[str, Any]]) -> list[dict[str, dict[str, Any]]]:
+    """Everything at each moment, from what each says has changed."""
+    now: dict[str, dict[str, Any]] = {part: {} for part in ("state", "commands", "timers", "enabled")}
+    found = []
+    for moment in moments:
+        if moment.get("whole"):
+            now = {part: {} for part in now}
+        for part, values in now.items():
+            changed = {**values, **moment[part]}
+            gone = [name for name, value in changed.items() if value is False and part in ("timers", "enabled")]
+            now[part] = {name: value for name, value in changed.items() if name not in gone}
+        found.append(dict(now))
+    return found
+
+
+class Viewer:
+    """What a page knows that reads a stream of moments."""
+
+    def __init__(self, shown: Moments) -> None:
+        self._shown = shown
+        self._stream = told(shown)
+        self._first = 0
+        self.moments: list[dict[str, Any]] = []
+
+    async def read(self) -> None:
+        text = await asyncio.wait_for(anext(self._stream), 30)
+        part = json.loads(text.removeprefix("data: "))
+        if part["from"] > self._first + len(self.moments):
+            self._first, self.moments = part["from"], []
+        self.moments[part["from"] - self._first :] = part["moments"]
+
+    async def read_all(self) -> None:
+        while self._first + len(self.moments) != self._shown.length:
+            await self.read()

@@ -20,6 +20,7 @@ from robosc.simulation.session import trace_line
 from robosc.simulation.simulation import whole_state
 from robosc.view import export
 from robosc.view.description import automata_of, commands_of
+from tests.chromium import opened, shown
 
 from .robots import EVIL, record
 
@@ -48,46 +49,9 @@ def served(*arguments: str | Path) -> Iterator[str]:
     assert server.returncode in (0, -15, 130)
 
 
-@contextmanager
-def opened(chromium: Any, address: str, **options: Any) -> Iterator[Any]:
-    """A page that has drawn its robot; it fails where anything in it does."""
-    context = chromium.new_context(**{"viewport": {"width": 1400, "height": 900}, **options})
-    page = context.new_page()
-    faults: list[str] = []
-    page.on("pageerror", lambda error: faults.append(str(error)))
-    page.on("console", lambda said: faults.append(said.text) if said.type in ("error", "warning") else None)
-    page.on("request", lambda asked: faults.append(asked.url) if not asked.url.startswith(origin(address)) else None)
-    page.goto(address)
-    page.wait_for_selector("body[data-drawn][data-moment]")
-    yield page
-    context.close()
-    assert faults == []
-
-
-def origin(address: str) -> str:
-    return address.rpartition("/")[0]
-
-
 def at(page: Any, moment: int) -> None:
     """Waits until the page shows a moment."""
     page.wait_for_selector(f'body[data-moment="{moment}"]')
-
-
-def shown(page: Any) -> dict[str, Any]:
-    """What the page says: of each automaton its state, as a word and as what is lit, of each command its verdict."""
-    return page.evaluate(
-        """() => ({
-          states: [...document.querySelectorAll(".card:not(.graph)")].map((card) => [
-            card.querySelector(".name").textContent, card.querySelector(".now").textContent,
-            [...card.querySelectorAll(".current .title")].map((title) => title.textContent)]),
-          variables: Object.fromEntries([...document.querySelectorAll(".variables")].flatMap((list) =>
-            [...list.querySelectorAll("dt")].map((term) => [
-              `${list.closest(".card").querySelector(".name").textContent}.${term.textContent}`,
-              term.nextElementSibling.textContent]))),
-          commands: [...document.querySelectorAll("#commands > li")].map((item) => [
-            item.dataset.event, item.className, item.querySelector(".reason").textContent]),
-        })"""
-    )
 
 
 def truth(simulation: Simulation) -> dict[str, Any]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 from contextlib import suppress
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pytest
 from hypothesis import given, settings
@@ -15,10 +15,12 @@ from robosc.engine import Blocked
 from robosc.simulation import DataError, Simulation
 from robosc.simulation.script import Step
 from robosc.simulation.simulation import whole_state
-from robosc.view.record import ActionError, Record
-from robosc.view.server import told
+from robosc.view.moments import ActionError
 
-from .robots import record
+from .robots import Viewer, record, wholes
+
+if TYPE_CHECKING:
+    from robosc.view.record import Record
 
 _, SHARED, _ = record()
 EVENTS = ["message_open.c_trigger", "message_close.c_trigger", "message_car.u_response", "component_Barrier.u_after1"]
@@ -30,19 +32,6 @@ ACTIONS = st.one_of(
     st.builds(lambda moment: {"action": "continue", "moment": moment}, st.integers(0, 12)),
     st.sampled_from([{"action": "undo"}, {"action": "redo"}, {"action": "restart"}]),
 )
-
-
-def wholes(moments: list[dict[str, Any]]) -> list[dict[str, dict[str, Any]]]:
-    """Everything at each moment, from what each says has changed."""
-    now: dict[str, dict[str, Any]] = {part: {} for part in ("state", "commands", "timers", "enabled")}
-    found = []
-    for moment in moments:
-        for part, values in now.items():
-            changed = {**values, **moment[part]}
-            gone = [name for name, value in changed.items() if value is False and part in ("timers", "enabled")]
-            now[part] = {name: value for name, value in changed.items() if name not in gone}
-        found.append(dict(now))
-    return found
 
 
 def assert_true(shown: Record, simulation: Simulation) -> None:
@@ -144,19 +133,6 @@ def test_explained() -> None:
     for moment, event in ((1, EVENTS[1]), (-1, EVENTS[1]), (0, "nothing")):
         with pytest.raises(ActionError):
             shown.explained(moment, event)
-
-
-class Viewer:
-    """What a page knows that reads a stream of moments."""
-
-    def __init__(self, shown: Record) -> None:
-        self._stream = told(shown)
-        self.moments: list[dict[str, Any]] = []
-
-    async def read(self) -> None:
-        text = await asyncio.wait_for(anext(self._stream), 30)
-        part = json.loads(text.removeprefix("data: "))
-        self.moments[part["from"] :] = part["moments"]
 
 
 @settings(max_examples=30)

@@ -60,10 +60,7 @@ class Ros1Node(Node):
 
     def __init__(self, name: str, graph: rosgraph.RosGraph, arguments: Sequence[str]) -> None:
         super().__init__(graph)
-        try:
-            rospy.init_node(name, argv=["robosc", *arguments], disable_signals=True)
-        except rospy.exceptions.ROSInitException as error:
-            raise StartError(str(error), "start roscore, or name its ROS_MASTER_URI") from None
+        start(name, arguments)
         self.simulated = bool(rospy.get_param("/use_sim_time", default=False))
         clock = rospy.get_time if self.simulated else time.monotonic
         self.event_loop = EventLoop(clock, starts_late=self.simulated)
@@ -251,6 +248,14 @@ class Ros1Node(Node):
         from robosc.runtime.ros1.action_proxy import Ros1ActionProxy  # noqa: PLC0415  # needs python3-actionlib-msgs
 
         return Ros1ActionProxy(self, self._types[action.interface]["Action"], action, layer, timeout)
+
+
+def start(name: str, arguments: Sequence[str], *, anonymous: bool = False) -> None:
+    """Makes this process the node of a name, or of one like it; `arguments` are those of ROS. Raises StartError."""
+    try:
+        rospy.init_node(name, argv=["robosc", *arguments], anonymous=anonymous, disable_signals=True)
+    except rospy.exceptions.ROSInitException as error:
+        raise StartError(str(error), "start roscore, or name its ROS_MASTER_URI") from None
 
 
 def advertise(name: str, kind: Any, *, latch: bool = False) -> Any:

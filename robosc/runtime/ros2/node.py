@@ -84,13 +84,8 @@ class Ros2Node(Node):
     ) -> None:
         super().__init__(graph)
         self._configuration = configuration
-        try:
-            rclpy.init(args=["robosc", *arguments], signal_handler_options=SignalHandlerOptions.NO)
-            self.node = rclpy.create_node(name)
-        except (RuntimeError, rclpy.exceptions.ParameterException) as error:
-            # Of an argument, a file or a folder, the log's too; where in rcl it was found helps nobody.
-            raise StartError(f"ROS 2 does not start: {str(error).partition(', at /')[0]}") from None
-        self._executor = _executor()
+        self.node = start(name, arguments)
+        self._executor = executor()
         self._executor.add_node(self.node)
         self._clock = self.node.get_clock()
         self.simulated = bool(self.node.get_parameter("use_sim_time").value)
@@ -333,7 +328,17 @@ class Ros2Node(Node):
         return Ros2ActionProxy(self, self._types[action.interface].Impl, action, layer, timeout)
 
 
-def _executor() -> Any:
+def start(name: str, arguments: Sequence[str]) -> Any:
+    """Starts ROS and a node of this name; `arguments` are those of ROS. Raises StartError."""
+    try:
+        rclpy.init(args=["robosc", *arguments], signal_handler_options=SignalHandlerOptions.NO)
+        return rclpy.create_node(name)
+    except (RuntimeError, rclpy.exceptions.ParameterException) as error:
+        # Of an argument, a file or a folder, the log's too; where in rcl it was found helps nobody.
+        raise StartError(f"ROS 2 does not start: {str(error).partition(', at /')[0]}") from None
+
+
+def executor() -> Any:
     """What waits for ROS: by events where rclpy can, which takes a fiftieth of the time for a message."""
     try:
         from rclpy.experimental import EventsExecutor  # noqa: PLC0415  # not in every rclpy

@@ -1,0 +1,52 @@
+"""Listens to what nodes of ROS 2 tell of themselves."""
+
+from __future__ import annotations
+
+import os
+import threading
+from typing import TYPE_CHECKING
+
+import rclpy
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from std_msgs.msg import String
+
+from robosc.runtime.core.listening import LOOK, WAITING
+from robosc.runtime.ros2.node import executor, start
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from robosc.runtime.core.listening import Listener
+
+
+class Ros2Ear:
+    """A node of ROS 2 that only listens."""
+
+    def __init__(self, nodes: Sequence[str], listener: Listener) -> None:
+        self._node = start(f"robosc_view_{os.getpid()}", [])
+        self._listener = listener
+        self._states = [f"{name}/state" for name in nodes]
+        kept = QoSProfile(depth=len(nodes), durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        for name in nodes:
+            self._node.create_subscription(String, f"{name}/definition", lambda text: listener.defined(text.data), kept)
+            self._node.create_subscription(String, f"{name}/state", lambda text: listener.told(text.data), WAITING)
+        self._node.create_timer(LOOK, self._look)
+        self._closed = threading.Event()
+        self._executor = executor()
+        self._executor.add_node(self._node)
+        self._thread = threading.Thread(target=self._spin, daemon=True)
+        self._thread.start()
+
+    def close(self) -> None:
+        """Ends the node."""
+        self._closed.set()
+        self._thread.join(2 * LOOK)
+        self._executor.shutdown()
+        rclpy.try_shutdown()
+
+    def _spin(self) -> None:
+        while not self._closed.is_set():
+            self._executor.spin_once(timeout_sec=LOOK)
+
+    def _look(self) -> None:
+        self._listener.heard(sum(self._node.count_publishers(topic) for topic in self._states))

@@ -1,0 +1,215 @@
+"""The moments of a run, as a page is told of them: each says what has changed against the one before."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from typing import TYPE_CHECKING, Any
+
+from robosc.analysis.blocking_in_words import counterexample_in_words
+from robosc.analysis.explain import explain, explored, state_given
+from robosc.analysis.wording import in_words, words
+from robosc.semantics.roles import Roles, event_name
+from robosc.simulation.simulation import whole_state
+from robosc.view.description import automata_of, commands_of, transitions_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from robosc.engine.state import State
+    from robosc.metamodel import sct
+    from robosc.simulation import Simulation
+    from robosc.simulation.tracking import Told
+
+
+#: So many answers of `explain` are kept.
+_MOST_EXPLAINED = 1000
+
+
+class ActionError(Exception):
+    """An action that can't be done: the message says why."""
+
+
+class Moments:
+    """The moments of a run: the first is the start, or the oldest that is kept.
+
+    Each is JSON data: `time` in seconds, `event`, `words`, `data`, `by` and `reason` where it was kept from happening,
+    `transitions` taken as pairs of automaton and transition, and what has changed against the moment before: `state`,
+    `commands` (null: allowed, else `by` and `reason`), `enabled` (of all events), `timers` (in milliseconds). One that
+    is `whole` says all of these.
+    """
+
+    #: Whether `do` can do anything.
+    acts = False
+
+    def __init__(self, simulation: Simulation, most: int | None = None) -> None:
+        """Of more than `most` moments the older half goes; None: all are kept."""
+        self.simulation = simulation
+        self.engine = simulation.engine
+        self.events = {event_name(event): event for event in Roles(self.engine.model).events}
+        self._model = self.engine.model
+        self._most = most
+        self._numbers = {
+            edge: (number, position)
+            for number, plant in enumerate(automata_of(self._model))
+            for position, edges in enumerate(transitions_of(plant))
+            for edge in edges
+        }
+        self._commands = {event_name(event) for event in commands_of(self._model)}
+        self._readers: dict[sct.Plant | sct.DiscreteVariable, list[str]] = {}
+        for event in self.events:
+            for element in self.engine.reads(event):
+                self._readers.setdefault(element, []).append(event)
+        self._explained: dict[tuple[str, State], dict[str, Any]] = {}
+        self._changed = asyncio.Condition()
+        #: Where moments were taken back: how many were left, each time.
+        self.cuts: list[int] = []
+        #: What the page says of where the moments come from.
+        self.status = ""
+        #: The number of the first of `moments`.
+        self.first = 0
+        self.moments: list[dict[str, Any]] = []
+        self._states: list[State] = []
+        self._running: list[Mapping[str, int]] = []
+        self._verdicts: dict[str, dict[str, str] | None] = {}
+
+    @property
+    def length(self) -> int:
+        """How many moments there have been, with those that are not kept any more."""
+        return self.first + len(self.moments)
+
+    def do(self, action: Any) -> None:
+        """Does what a page asks for. Raises ActionError."""
+        raise ActionError(f"nothing can be done here: {json.dumps(action)}")
+
+    # What happens
+
+    def _add(self, time: float, running: Mapping[str, int], told: Mapping[str, Any], edges: Iterable[sct.Edge]) -> None:
+        """A moment in which the engine is in its present state and timers have so many milliseconds left."""
+        moment: dict[str, Any] = {"time": time, **told}
+        if "event" in told:
+            moment["transitions"] = [list(self._numbers[edge]) for edge in edges if edge in self._numbers]
+        state = self.engine.state
+        if self._states:
+            moment |= self._changes(self._states[-1], state)
+            moment["timers"] = _changed(self._running[-1], running)
+        else:
+            moment |= self._whole(running)
+        self.moments.append(moment)
+        self._states.append(state)
+        self._running.append(dict(running))
+        if self._most is not None and len(self.moments) > self._most:
+            self._forget(len(self.moments) // 2)
+
+    def _add_told(self, time: float, running: Mapping[str, int], told: Told) -> None:
+        """A moment of which a node has told."""
+        said = (
+            {"words": "what the node says"}
+            if told.event is None
+            else {"event": told.event, "words": self.said(told.event)}
+        )
+        self._add(time, running, said, told.edges)
+
+    def _changes(self, before: State, now: State) -> dict[str, Any]:
+        """What differs between two states, of which the engine is in the second."""
+        concerned: dict[str, None] = {}
+        state = {}
+        for cell, (name, element) in enumerate(now.layout.elements):
+            if before.cells[cell] != now.cells[cell]:
+                state[name] = now.layout.domains[cell].shown(now.cells[cell])
+                concerned |= dict.fromkeys(self._readers.get(element, ()))
+        commands, enabled = {}, {}
+        for event in self.events:
+            if event in concerned:
+                verdict = self._verdict(event)
+                if (verdict is None) != (self._verdicts[event] is None):
+                    enabled[event] = verdict is None
+                if event in self._commands and verdict != self._verdicts[event]:
+                    commands[event] = verdict
+                self._verdicts[event] = verdict
+        return {"state": state, "commands": commands, "enabled": enabled}
+
+    def _whole(self, running: Mapping[str, int]) -> dict[str, Any]:
+        """All that a moment can say of the engine's present state."""
+        self._look()
+        return {
+            "whole": True,
+            "state": whole_state(self.engine),
+            "commands": {event: self._verdicts[event] for event in self.events if event in self._commands},
+            "enabled": {event: True for event, verdict in self._verdicts.items() if verdict is None},
+            "timers": dict(running),
+        }
+
+    def _look(self) -> None:
+        self._verdicts = {event: self._verdict(event) for event in self.events}
+
+    def _verdict(self, event: str) -> dict[str, str] | None:
+        by = self.engine.blocked_by(event)
+        if by is None:
+            return None
+        return {"by": str(by), "reason": self.simulation.reason(event, by) if event in self._commands else ""}
+
+    def _cut(self, length: int) -> None:
+        """Takes moments back, until so many are left; the engine is in the state of the last of them."""
+        kept = length - self.first
+        del self.moments[kept:], self._states[kept:], self._running[kept:]
+        self.cuts.append(length)
+        self._look()
+
+    def _forget(self, number: int) -> None:
+        """Drops the oldest moments: what is the first then says all."""
+        now = self.engine.state
+        self.engine.state = self._states[number]
+        first = self.moments[number] | self._whole(self._running[number])
+        self.engine.state = now
+        self._look()
+        self.moments[: number + 1] = [first]
+        del self._states[:number], self._running[:number]
+        self.first += number
+
+    def said(self, event: str) -> str:
+        """An event in the words of the model."""
+        return words(self.events[event]).replace("`", "")
+
+    # Who looks
+
+    async def changed(self, cuts: int, length: int, status: str) -> None:
+        """Waits until there are not so many moments any more, moments were taken back, or the status is another one."""
+
+        def is_other() -> bool:
+            return len(self.cuts) != cuts or self.length != length or self.status != status
+
+        async with self._changed:
+            await self._changed.wait_for(is_other)
+
+    async def tell(self) -> None:
+        """Lets all know who wait for changes."""
+        async with self._changed:
+            self._changed.notify_all()
+
+    def explained(self, number: int, event: str) -> dict[str, Any]:
+        """What `explain` says of an event at a moment, in words. Raises ActionError where there is no such."""
+        if event not in self.events or not self.first <= number < self.length:
+            raise ActionError("there is no such event, or moment")
+        state = self._states[number - self.first]
+        key = event, state
+        if key not in self._explained:
+            if len(self._explained) == _MOST_EXPLAINED:
+                self._explained.clear()
+            codes = state_given(self._model, json.dumps({"state": dict(state)}))
+            told = explored(self._model, lambda system: explain(system, self.events[event], codes))
+            blocking = told.counterexample
+            self._explained[key] = {
+                "allowed": told.allowed,
+                "notes": [note.text for note in (*told.plants, *told.requirements)],
+                "otherwise": "" if blocking is None else counterexample_in_words(blocking, self._model),
+                "changes": [note.text for note in told.changes],
+                "way": in_words(told.way, self._model) if told.way else "",
+            }
+        return self._explained[key]
+
+
+def _changed(before: Mapping[str, int], now: Mapping[str, int]) -> dict[str, int | bool]:
+    """What is new or other now; what is no longer there is false."""
+    gone: dict[str, int | bool] = dict.fromkeys((name for name in before if name not in now), False)
+    return gone | {name: value for name, value in now.items() if before.get(name) != value}

@@ -1,0 +1,72 @@
+"""A browser for tests of the page of `robosc view`."""
+
+from __future__ import annotations
+
+import shutil
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from robosc.view.page import PageError, page_files
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+
+@pytest.fixture(scope="module")
+def chromium() -> Iterator[Any]:
+    """A browser, as Playwright drives it. Skips where there is none, or where the page has not been built."""
+    program = shutil.which("chromium")
+    if program is None:
+        pytest.skip("there is no chromium (Debian's package)")
+    try:
+        page_files()
+    except PageError as error:
+        pytest.skip(str(error))
+    from playwright.sync_api import sync_playwright  # noqa: PLC0415
+
+    with sync_playwright() as playwright:
+        # As root, as in containers, chromium has no sandbox.
+        browser = playwright.chromium.launch(executable_path=program, args=["--no-sandbox"])
+        yield browser
+        browser.close()
+
+
+@contextmanager
+def opened(chromium: Any, address: str, *, drawn: str = "[data-moment]", **options: Any) -> Iterator[Any]:
+    """A page that has drawn its robot; it fails where anything in it does."""
+    context = chromium.new_context(**{"viewport": {"width": 1400, "height": 900}, **options})
+    page = context.new_page()
+    faults: list[str] = []
+    page.on("pageerror", lambda error: faults.append(str(error)))
+    page.on("console", lambda said: faults.append(said.text) if said.type in ("error", "warning") else None)
+    page.on("request", lambda asked: faults.append(asked.url) if not asked.url.startswith(origin(address)) else None)
+    page.goto(address)
+    page.wait_for_selector(f"body[data-drawn]{drawn}")
+    yield page
+    context.close()
+    assert faults == []
+
+
+def origin(address: str) -> str:
+    """The part of an address that is before the page."""
+    return address.rpartition("/")[0]
+
+
+def shown(page: Any) -> dict[str, Any]:
+    """What the page says: of each automaton its state, as a word and as what is lit, of each command its verdict."""
+    found: dict[str, Any] = page.evaluate(
+        """() => ({
+          states: [...document.querySelectorAll(".card:not(.graph)")].map((card) => [
+            card.querySelector(".name").textContent, card.querySelector(".now").textContent,
+            [...card.querySelectorAll(".current .title")].map((title) => title.textContent)]),
+          variables: Object.fromEntries([...document.querySelectorAll(".variables")].flatMap((list) =>
+            [...list.querySelectorAll("dt")].map((term) => [
+              `${list.closest(".card").querySelector(".name").textContent}.${term.textContent}`,
+              term.nextElementSibling.textContent]))),
+          commands: [...document.querySelectorAll("#commands > li")].map((item) => [
+            item.dataset.event, item.className, item.querySelector(".reason").textContent]),
+        })"""
+    )
+    return found
