@@ -99,7 +99,7 @@ def flooding(model: Path, port: int, seconds: float) -> None:
     robosc.synthesize(supervised)
     live = view.Live(Simulation(supervised, graph), graph, "/doors_controller")
     description = view.describe(Models(supervised, graph, loaded), {})
-    application = view.application(description, live, [f"127.0.0.1:{port}"])
+    application = view.application([(description, live)], [f"127.0.0.1:{port}"])
     states = ["closed"] * len(description["automata"])
 
     async def flood() -> None:

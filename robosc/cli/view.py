@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from robosc.cli import CallError, put, say
-from robosc.cli.options import Paths, model, paths
+from robosc.cli.options import FILE, Paths, paths
 from robosc.cli.parameters import parameters, set_parameters
 from robosc.cli.reading import read_configuration, read_models, supervise_models
 from robosc.cli.report import Report
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 @click.command("view")
-@model
+@click.argument("models", metavar="MODEL...", nargs=-1, required=True, type=FILE)
 @click.option("--ros1", "version", flag_value=1, type=int, help="Show a robot of ROS 1 that runs.")
 @click.option("--ros2", "version", flag_value=2, type=int, help="Show a robot of ROS 2 that runs.")
 @click.option("--node", help="Of this node, such as /robot/line_follower_controller; without it, by its usual name.")
@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 @parameters
 @paths
 def command(
-    model: str,
+    models: Sequence[str],
     version: int | None,
     node: str | None,
     log: str | None,
@@ -61,12 +61,14 @@ def command(
 
     MODEL is a .rscd file with a robot, a .cif file, or an .xmi file that `transform --to xmi` wrote. The robot is
     simulated: a click lets an event happen. --log and --trace show a run that has been, and from any moment of it one
-    goes on in simulation. --ros1 and --ros2 show a robot that runs, by what its node tells on ~/state.
+    goes on in simulation. --ros1 and --ros2 show a robot that runs, by what its node tells on ~/state. Of several
+    models the page shows the one that is chosen there.
 
     \b
     Examples:
       robosc view line_follower.rscd --open
       robosc view line_follower.rscd --ros2
+      robosc view base.rscd arm.rscd --ros2
       robosc view line_follower.rscd --log ~/.ros/log/line_follower-events.jsonl
       robosc view line_follower.rscd --log rosbag2_2026_11_24-10_20_30
       robosc view line_follower.rscd --trace never-collides
@@ -78,32 +80,40 @@ def command(
         raise click.UsageError("--ros1, --ros2, --log and --trace exclude each other")
     if version is not None and folder is not None:
         raise click.UsageError("a robot that runs can't be exported: record it, and export the recording with --log")
+    if len(models) > 1 and {node, log, refuted, folder} != {None}:
+        raise click.UsageError("--node, --log, --trace and --export are for one model")
     try:
         from robosc import view
-        from robosc.view import serving
     except ModuleNotFoundError as error:
         raise CallError(f"{error.name} is missing: `pip install 'robosc[view]'` brings it") from error
-    with Report(aside=True) as report:
-        models = read_models(model, paths, report, cif=True)
-        set_parameters(models.rosgraph, given)
-        settings = read_configuration(model, None, report)
-        supervise_models(models, report)
-        simulation = Simulation(models.sct, models.rosgraph)
-        record = _record(simulation, log, node, refuted, seed, report) if version is None else None
-    description = view.describe(models, report.texts)
+    shown: list[tuple[Mapping[str, Any], Moments]] = []
+    heard: list[tuple[list[str], Live]] = []
+    for model in models:
+        with Report(aside=True) as report:
+            robot = read_models(model, paths, report, cif=True)
+            set_parameters(robot.rosgraph, given)
+            settings = read_configuration(model, None, report)
+            supervise_models(robot, report)
+            simulation = Simulation(robot.sct, robot.rosgraph)
+            if version is None:
+                record: Moments = _record(simulation, log, node, refuted, seed, report)
+            else:
+                if robot.rosgraph is None:
+                    raise CallError(
+                        f"{model} has no ROS graph, so no node tells of it: give its .rosgraph.xmi or .rscd"
+                    )
+                nodes = [node] if node else _nodes(robot.rosgraph, settings)
+                record = view.Live(simulation, robot.rosgraph, " or ".join(nodes))
+                heard.append((nodes, record))
+        shown.append((view.describe(robot, report.texts), record))
     try:
-        if record is None:
-            assert version is not None
-            if models.rosgraph is None:
-                raise CallError(f"{model} has no ROS graph, so no node tells of it: give its .rosgraph.xmi or .rscd")
-            nodes = [node] if node else _nodes(models.rosgraph, settings)
-            live = view.Live(simulation, models.rosgraph, " or ".join(nodes))
-            _serve(serving, description, live, address, port, opens=opens, begin=_listening(version, nodes, live))
-        elif folder is not None:
+        if folder is not None:
+            ((description, record),) = shown
             write({Path(folder): view.export(description, record.moments)})
             say(f"written: {Path(folder) / 'index.html'}")
         else:
-            _serve(serving, description, record, address, port, opens=opens)
+            begin = None if version is None else _listening(version, heard)
+            _serve(shown, address, port, opens=opens, begin=begin)
     except view.PageError as error:
         raise CallError(str(error)) from None
 
@@ -113,7 +123,7 @@ def _nodes(graph: rosgraph.RosGraph, settings: Configuration) -> list[str]:
     return list(dict.fromkeys(f"/{name}" for name in (settings.package_name(graph), settings.layer_name(graph))))
 
 
-def _listening(version: int, nodes: Sequence[str], live: Live) -> Callable[[], Callable[[], None]]:
+def _listening(version: int, heard: Sequence[tuple[Sequence[str], Live]]) -> Callable[[], Callable[[], None]]:
     """What lets the page hear what nodes tell, to be called once it is served; it gives what ends that."""
 
     def begin() -> Callable[[], None]:
@@ -122,7 +132,7 @@ def _listening(version: int, nodes: Sequence[str], live: Live) -> Callable[[], C
         from robosc.view.relay import Relay
 
         try:
-            return listen(version, nodes, Relay(live)).close
+            return listen(version, [(nodes, Relay(live)) for nodes, live in heard]).close
         except StartError as error:
             raise CallError(f"{error}\n  {error.hint}" if error.hint else str(error)) from error
 
@@ -155,16 +165,15 @@ def _record(
 
 
 def _serve(
-    serving: Any,
-    description: Mapping[str, Any],
-    record: Moments,
+    shown: Sequence[tuple[Mapping[str, Any], Moments]],
     address: str,
     port: int,
     *,
     opens: bool,
-    begin: Callable[[], Callable[[], None]] | None = None,
+    begin: Callable[[], Callable[[], None]] | None,
 ) -> None:
     from robosc import view
+    from robosc.view import serving
 
     try:
         listening = serving.listen(address, port)
@@ -186,7 +195,7 @@ def _serve(
             webbrowser.open(path)
 
     try:
-        serving.serve(view.application(description, record, hosts, token), listening, ready)
+        serving.serve(view.application(shown, hosts, token), listening, ready)
     finally:
         for end in ends:
             end()

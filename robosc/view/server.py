@@ -17,7 +17,7 @@ from robosc.view.moments import ActionError
 from robosc.view.page import FILES, POLICY, page_files
 
 if TYPE_CHECKING:
-    from collections.abc import AsyncIterator, Collection, Mapping
+    from collections.abc import AsyncIterator, Collection, Mapping, Sequence
 
     from starlette.types import ASGIApp, Receive, Scope, Send
 
@@ -39,14 +39,15 @@ _HEADERS = {
 
 
 def application(
-    description: Mapping[str, Any], record: Moments, hosts: Collection[str], token: str | None = None
+    shown: Sequence[tuple[Mapping[str, Any], Moments]], hosts: Collection[str], token: str | None = None
 ) -> ASGIApp:
-    """An ASGI application for a robot's description and run; it answers only who asks for one of `hosts`.
+    """An ASGI application for the descriptions and runs of robots; it answers only who asks for one of `hosts`.
 
-    With a `token` it answers whoever has it, from the address `/?token=…`, and only them; the host may be any then.
+    What is asked with `?robot=1` is of the second; without that of the first. With a `token` it answers whoever has it,
+    from the address `/?token=…`, and only them; the host may be any then.
     Raises PageError where the page has not been built.
     """
-    answers = _Answers(description, record)
+    answers = _Answers(shown)
     routes = [
         Route("/", answers.file),
         Route("/description", answers.description),
@@ -61,10 +62,20 @@ def application(
 class _Answers:
     """To each kind of request."""
 
-    def __init__(self, description: Mapping[str, Any], record: Moments) -> None:
+    def __init__(self, shown: Sequence[tuple[Mapping[str, Any], Moments]]) -> None:
         self._files = page_files()
-        self._description = json.dumps({**description, "acts": record.acts}).encode()
-        self._record = record
+        robots = [description["robot"] for description, _ in shown]
+        self._descriptions = [
+            json.dumps({**description, "acts": record.acts, "robots": robots}).encode() for description, record in shown
+        ]
+        self._records = [record for _, record in shown]
+
+    def _robot(self, request: Request) -> int:
+        """The number of the robot that is asked for. Raises ActionError where there is none."""
+        asked = request.query_params.get("robot", "0")
+        if asked not in map(str, range(len(self._records))):
+            raise ActionError("there is no such robot")
+        return int(asked)
 
     async def file(self, request: Request) -> Response:
         """A file of the page."""
@@ -73,19 +84,26 @@ class _Answers:
             return PlainTextResponse("there is no such file", 404)
         return Response(self._files[name], media_type=FILES[name])
 
-    async def description(self, _: Request) -> Response:
+    async def description(self, request: Request) -> Response:
         """What never changes."""
-        return Response(self._description, media_type="application/json")
+        try:
+            return Response(self._descriptions[self._robot(request)], media_type="application/json")
+        except ActionError as error:
+            return _refused(error, 404)
 
-    async def moments(self, _: Request) -> Response:
+    async def moments(self, request: Request) -> Response:
         """All that has happened, and what happens from now on."""
-        return StreamingResponse(told(self._record), media_type="text/event-stream")
+        try:
+            return StreamingResponse(told(self._records[self._robot(request)]), media_type="text/event-stream")
+        except ActionError as error:
+            return _refused(error, 404)
 
     async def explain(self, request: Request) -> Response:
         """Why an event can't happen at a moment."""
         try:
             moment, event = int(request.query_params["moment"]), request.query_params["event"]
-            return JSONResponse(await run_in_threadpool(self._record.explained, moment, event))
+            record = self._records[self._robot(request)]
+            return JSONResponse(await run_in_threadpool(record.explained, moment, event))
         except (ValueError, KeyError, ActionError) as error:
             return _refused(error, 400)
 
@@ -99,12 +117,16 @@ class _Answers:
             if len(body) > _LONGEST_ACTION:
                 return PlainTextResponse("an action is short", 413)
         try:
-            self._record.do(json.loads(body))
+            record = self._records[self._robot(request)]
+        except ActionError as error:
+            return _refused(error, 404)
+        try:
+            record.do(json.loads(body))
         except (ValueError, RecursionError, ActionError, DataError) as error:
             return _refused(error, 409)
         finally:
-            await self._record.tell()
-        return JSONResponse({"moment": self._record.length - 1})
+            await record.tell()
+        return JSONResponse({"moment": record.length - 1})
 
 
 async def told(record: Moments) -> AsyncIterator[str]:

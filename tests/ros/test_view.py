@@ -36,10 +36,11 @@ MODEL = PROJECT / "examples" / "line_follower" / "line_follower.rscd"
 SIMULATOR = PROJECT / "examples" / "simulator"
 
 
-def view(processes: Processes, runner: Runner, folder: Path) -> tuple[str, subprocess.Popen[bytes]]:
-    """The address of the page beside the robot."""
+def view(processes: Processes, runner: Runner, folder: Path, *others: Path) -> tuple[str, subprocess.Popen[bytes]]:
+    """The address of the page beside the robot, and those of other models."""
     path = os.pathsep.join(filter(None, (str(PROJECT), processes.environment.get("PYTHONPATH"))))
-    command = ["env", f"PYTHONPATH={path}", runner.robosc, "-m", "robosc", "view", MODEL, f"--ros{runner.ros.version}"]
+    command = ["env", f"PYTHONPATH={path}", runner.robosc, "-m", "robosc", "view", MODEL, *others]
+    command.append(f"--ros{runner.ros.version}")
     process, log = processes.start("view", command), folder / "view.log"
     address = re.compile(r"^http://\S+$", re.MULTILINE)
     processes.wait_until(lambda: address.search(log.read_text()) is not None, "the page is served")
@@ -145,7 +146,9 @@ def test_a_node_that_starts_again_is_followed(
     folder = tmp_path / "run"
     with middleware(runner, folder) as processes:
         node = processes.start("node", runner.node(PACKAGE))
-        address, _ = view(processes, runner, folder)
+        address, _ = view(processes, runner, folder, HERE / "times" / "patience.rscd")
+        with opened(chromium, f"{address}?robot=1", drawn="") as other:
+            says(processes, other, "Waiting for /patience_controller")
         with opened(chromium, address) as page:
             says(processes, page, "")
             node.kill()

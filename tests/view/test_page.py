@@ -224,6 +224,21 @@ def test_names_are_text_whatever_they_say(chromium: Any, tmp_path: Path) -> None
         assert EVIL in page.locator("#happened").text_content()
 
 
+def test_one_of_several_robots_is_chosen(chromium: Any) -> None:
+    other = ROOT / "examples" / "simple_navigation" / "simple_navigation.rscd"
+    with served(MODEL, other) as address, opened(chromium, address) as page:
+        assert page.locator("#robot-name").text_content() == "LineFollower"
+        click(page, "message_stop.u_response")
+        at(page, 1)
+        page.locator("#robots-choice").select_option("SimpleNavigation")
+        page.wait_for_url("**/?robot=1")
+        page.wait_for_selector('body[data-drawn][data-moment="0"]')
+        assert shown(page) == truth(simulation_of(other))
+        page.locator("#robots-choice").select_option("LineFollower")
+        page.wait_for_url("**/?robot=0")
+        at(page, 1)
+
+
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_it_is_accessible(chromium: Any, scheme: str) -> None:
     if not AXE.exists():

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 from starlette.testclient import TestClient
@@ -10,10 +10,14 @@ from starlette.testclient import TestClient
 from robosc.view import application, page
 from robosc.view.page import FILES, POLICY
 
-from .robots import record
+from .robots import GATE, record
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
     from pathlib import Path
+
+    from robosc.view import Moments
+
 
 HOSTS = ("127.0.0.1:8000", "localhost:8000")
 OPEN = {"action": "perform", "event": "message_open.c_trigger", "inputs": {}}
@@ -29,7 +33,13 @@ def built(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 def client(key: str | None = None, host: str = HOSTS[0]) -> TestClient:
     description, shown, _ = record()
-    return TestClient(application(description, shown, HOSTS, key), base_url=f"http://{host}", follow_redirects=False)
+    return client_of([(description, shown)], key, host)
+
+
+def client_of(
+    shown: list[tuple[Mapping[str, Any], Moments]], key: str | None = None, host: str = HOSTS[0]
+) -> TestClient:
+    return TestClient(application(shown, HOSTS, key), base_url=f"http://{host}", follow_redirects=False)
 
 
 def test_the_page_and_nothing_else() -> None:
@@ -41,6 +51,25 @@ def test_the_page_and_nothing_else() -> None:
     for path in ("/nothing", "/..%2fpage.py", "/%2e%2e/page.py", "/robosc.view", "/do"):
         assert asking.get(path).status_code in (404, 405)
     assert asking.get("/description").json()["robot"] == "Gate"
+
+
+def test_each_of_several_robots_is_asked_by_its_number() -> None:
+    other = GATE.replace("robot Gate", "robot Other")
+    (gate, first, _), (second_gate, second, _) = record(), record(other)
+    asking = client_of([(gate, first), (second_gate, second)])
+    for number, name in (("", "Gate"), ("?robot=0", "Gate"), ("?robot=1", "Other")):
+        described = asking.get(f"/description{number}").json()
+        assert (described["robot"], described["robots"]) == (name, ["Gate", "Other"])
+    assert asking.post("/do?robot=1", json=OPEN).json() == {"moment": 1}
+    assert (first.length, second.length) == (1, 2)
+    asked = {"moment": 1, "event": OPEN["event"]}
+    assert asking.get("/explain", params={**asked, "robot": 1}).status_code == 200
+    assert asking.get("/explain", params={**asked, "robot": 0}).status_code == 400
+    for number in ("2", "-1", "x", "", "1e0", "9" * 9999):
+        assert asking.get("/description", params={"robot": number}).status_code == 404
+        assert asking.get("/moments", params={"robot": number}).status_code == 404
+        assert asking.get("/explain", params={**asked, "robot": number}).status_code == 400
+        assert asking.post("/do", params={"robot": number}, json=OPEN).status_code == 404
 
 
 def test_every_answer_forbids_the_page_to_ask_elsewhere() -> None:

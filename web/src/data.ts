@@ -75,6 +75,8 @@ export interface Endpoint {
 
 export interface Description {
   robot: string;
+  /** The names of all robots that the server has. */
+  robots?: string[];
   /** Whether actions can be asked for. */
   acts?: boolean;
   automata: Automaton[];

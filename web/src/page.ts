@@ -23,6 +23,13 @@ const ALL_BUTTONS: [string, Record<string, unknown>][] = [
   ["Start again", { action: "restart" }],
 ];
 
+/** Which of the server's robots the page shows. */
+const ROBOT = new URLSearchParams(location.search).get("robot") ?? "0";
+
+function asked(what: string, given: Record<string, string> = {}): string {
+  return `${what}?${new URLSearchParams({ robot: ROBOT, ...given })}`;
+}
+
 class Page {
   private readonly run: Run;
   private readonly robot: RobotView;
@@ -46,6 +53,7 @@ class Page {
     this.run = new Run(isServed && !this.acts ? MOST : Infinity);
     document.title = `${description.robot} – RoboSC`;
     byId("robot-name", HTMLElement).textContent = description.robot;
+    this.offer(description.robots ?? []);
     this.text = new TextView(description);
     this.robot = new RobotView(description, (place) => this.text.goTo(place));
     const perform = (event: string, inputs: Record<string, Value>): void =>
@@ -62,6 +70,14 @@ class Page {
     }
     window.addEventListener("resize", () => this.schedule());
     window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.schedule());
+  }
+
+  /** Lets another of several robots be chosen. */
+  private offer(robots: string[]): void {
+    const choice = byId("robots-choice", HTMLSelectElement);
+    choice.append(...robots.map((name, number) => html("option", { value: number, selected: String(number) === ROBOT }, name)));
+    choice.addEventListener("change", () => location.assign(`?${new URLSearchParams({ robot: choice.value })}`));
+    byId("robots", HTMLElement).hidden = robots.length < 2;
   }
 
   async draw(): Promise<void> {
@@ -132,7 +148,7 @@ class Page {
 
   private async act(action: Record<string, unknown>): Promise<void> {
     try {
-      const answer = await fetch("do", {
+      const answer = await fetch(asked("do"), {
         method: "POST",
         headers: { "Content-Type": "application/json" },
         body: JSON.stringify(action),
@@ -145,7 +161,7 @@ class Page {
   }
 
   private async explain(event: string): Promise<Explanation> {
-    const answer = await fetch(`explain?${new URLSearchParams({ moment: String(this.shown), event })}`);
+    const answer = await fetch(asked("explain", { moment: String(this.shown), event }));
     if (!answer.ok) throw new Error(await answer.text());
     return (await answer.json()) as Explanation;
   }
@@ -159,9 +175,9 @@ async function start(): Promise<void> {
     await page.draw();
     return;
   }
-  const answer = await fetch("description");
+  const answer = await fetch(asked("description"));
   const page = new Page((await answer.json()) as Description, true);
-  const source = new EventSource("moments");
+  const source = new EventSource(asked("moments"));
   source.addEventListener("message", (event) => {
     const told = JSON.parse(event.data as string) as { from: number; moments: Moment[]; status: string };
     page.tell(told.from, told.moments);

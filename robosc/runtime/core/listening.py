@@ -33,17 +33,17 @@ class Ear(Protocol):
         """Nothing is heard any more."""
 
 
-def listen(version: int, nodes: Sequence[str], listener: Listener) -> Ear:
-    """Listens to `~/state` and `~/definition` of nodes, by their full names, whenever they are there.
+def listen(version: int, heard: Sequence[tuple[Sequence[str], Listener]]) -> Ear:
+    """Listens to `~/state` and `~/definition` of nodes whenever they are there, as one node of ROS `version`.
 
-    `version` is that of ROS. Raises StartError where there is no ROS.
+    `heard`: the full names of nodes, and who is called with what these tell. Raises StartError where there is no ROS.
     """
     if version == 1:
         import robosc.runtime.ros1.node  # noqa: PLC0415  # says what is missing, and where it comes from
         from robosc.runtime.ros1.listening import Ros1Ear  # noqa: PLC0415
 
-        return Ros1Ear(nodes, listener)
+        return Ros1Ear(heard)
     import robosc.runtime.ros2.node  # noqa: F401, PLC0415
     from robosc.runtime.ros2.listening import Ros2Ear  # noqa: PLC0415
 
-    return Ros2Ear(nodes, listener)
+    return Ros2Ear(heard)

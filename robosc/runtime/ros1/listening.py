@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import rospy
 from std_msgs.msg import String
@@ -20,16 +20,10 @@ if TYPE_CHECKING:
 class Ros1Ear:
     """A node of ROS 1 that only listens."""
 
-    def __init__(self, nodes: Sequence[str], listener: Listener) -> None:
+    def __init__(self, heard: Sequence[tuple[Sequence[str], Listener]]) -> None:
         start("robosc_view", [], anonymous=True)
-        self._listener = listener
+        self._states = [(listener, [_listen(node, listener) for node in nodes]) for nodes, listener in heard]
         self._closed = threading.Event()
-        for name in nodes:
-            rospy.Subscriber(f"{name}/definition", String, lambda message: listener.defined(message.data))
-        self._states = [
-            rospy.Subscriber(f"{name}/state", String, lambda message: listener.told(message.data), queue_size=WAITING)
-            for name in nodes
-        ]
         threading.Thread(target=self._look, daemon=True).start()
 
     def close(self) -> None:
@@ -39,5 +33,11 @@ class Ros1Ear:
 
     def _look(self) -> None:
         while not self._closed.is_set():
-            self._listener.heard(sum(state.get_num_connections() for state in self._states))
+            for listener, states in self._states:
+                listener.heard(sum(state.get_num_connections() for state in states))
             self._closed.wait(LOOK)
+
+
+def _listen(node: str, listener: Listener) -> Any:
+    rospy.Subscriber(f"{node}/definition", String, lambda message: listener.defined(message.data))
+    return rospy.Subscriber(f"{node}/state", String, lambda message: listener.told(message.data), queue_size=WAITING)

@@ -22,14 +22,12 @@ if TYPE_CHECKING:
 class Ros2Ear:
     """A node of ROS 2 that only listens."""
 
-    def __init__(self, nodes: Sequence[str], listener: Listener) -> None:
+    def __init__(self, heard: Sequence[tuple[Sequence[str], Listener]]) -> None:
         self._node = start(f"robosc_view_{os.getpid()}", [])
-        self._listener = listener
-        self._states = [f"{name}/state" for name in nodes]
-        kept = QoSProfile(depth=len(nodes), durability=DurabilityPolicy.TRANSIENT_LOCAL)
-        for name in nodes:
-            self._node.create_subscription(String, f"{name}/definition", lambda text: listener.defined(text.data), kept)
-            self._node.create_subscription(String, f"{name}/state", lambda text: listener.told(text.data), WAITING)
+        self._heard = heard
+        for nodes, listener in heard:
+            for node in nodes:
+                self._listen(node, listener)
         self._node.create_timer(LOOK, self._look)
         self._closed = threading.Event()
         self._executor = executor()
@@ -48,5 +46,11 @@ class Ros2Ear:
         while not self._closed.is_set():
             self._executor.spin_once(timeout_sec=LOOK)
 
+    def _listen(self, node: str, listener: Listener) -> None:
+        kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        self._node.create_subscription(String, f"{node}/definition", lambda text: listener.defined(text.data), kept)
+        self._node.create_subscription(String, f"{node}/state", lambda text: listener.told(text.data), WAITING)
+
     def _look(self) -> None:
-        self._listener.heard(sum(self._node.count_publishers(topic) for topic in self._states))
+        for nodes, listener in self._heard:
+            listener.heard(sum(self._node.count_publishers(f"{node}/state") for node in nodes))
