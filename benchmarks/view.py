@@ -1,12 +1,17 @@
 """How long the page of `robosc view` takes to draw a robot of many components, and to show events; its picture.
 
-    python benchmarks/view.py [--components 100] [--flood SECONDS] [--picture docs/pictures/view.png]
+    python benchmarks/view.py [--components 100] [--flood SECONDS]
+    python benchmarks/view.py --picture docs/pictures/view.png
+    python benchmarks/view.py --recording docs/pictures/view.gif
 
 It needs Debian's `chromium`, `playwright` and the built page. Times are medians of five, in milliseconds: from asking
 for the page until all is drawn, and from a call that lets 1,000 random events happen until the last of them is shown.
 
 With `--flood` a node's reports come to the page, 1,000 events a second in 100 reports, for so long: the frames that the
 browser draws a second, the memory of its scripts after each tenth of that time, and the processor time of the server.
+
+`--picture` draws the page of the line follower. `--recording` plays its scenario in the simulator, and films thirty
+seconds of its event log in the page, around the obstacle.
 """
 
 from __future__ import annotations
@@ -20,6 +25,7 @@ import subprocess
 import sys
 import tempfile
 from contextlib import contextmanager
+from io import BytesIO
 from multiprocessing import Process
 from pathlib import Path
 from random import Random
@@ -27,6 +33,7 @@ from socket import socket
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
+from PIL import Image
 from playwright.sync_api import Error as PlaywrightError
 from playwright.sync_api import sync_playwright
 
@@ -59,14 +66,16 @@ DOOR = """\
 """
 
 
+#: Of the recording, a second.
+_FRAMES = 3
 #: Events a second, and reports.
 _RATE, _REPORTS = 1000, 100
 
 
 @contextmanager
-def served(model: Path) -> Iterator[str]:
+def served(model: Path, *options: str) -> Iterator[str]:
     """The address of the page of a model."""
-    command = [sys.executable, "-m", "robosc", "view", str(model)]
+    command = [sys.executable, "-m", "robosc", "view", str(model), *options]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, cwd=ROOT) as server:
         assert server.stdout is not None
         yield server.stdout.readline().strip()
@@ -159,10 +168,36 @@ def flooded(browser: Any, model: Path, seconds: float) -> None:
     )
 
 
+def record(browser: Any, log: Path, film: Path) -> None:
+    """Films thirty seconds of the line follower's scenario, from five seconds before it halts for the obstacle."""
+    simulator = [sys.executable, str(ROOT / "examples" / "simulator"), "--scenario", "line_follower", "--log", str(log)]
+    subprocess.run(simulator, check=True)
+    entries = [json.loads(line) for line in log.read_text(encoding="utf-8").splitlines()]
+    times = [entry["time"] - entries[0]["time"] for entry in entries]
+    moving = next(at for at, entry in enumerate(entries) if entry["event"] == "message_move.c_trigger")
+    halt = next(at for at in range(moving, len(entries)) if entries[at]["event"] == "message_halt.c_trigger")
+    pictures = []
+    with served(MODEL, "--log", str(log)) as address:
+        page = browser.new_page(viewport={"width": 1180, "height": 640})
+        page.goto(address)
+        page.wait_for_selector(f'body[data-drawn][data-moment="{len(entries)}"]')
+        for number in range(30 * _FRAMES):
+            now = times[halt] - 5 + number / _FRAMES
+            moment = sum(time <= now for time in times)
+            choose = "(slider, moment) => { slider.value = moment; slider.dispatchEvent(new Event('input')); }"
+            page.locator("#moment").evaluate(choose, moment)
+            page.wait_for_selector(f'body[data-moment="{moment}"]')
+            pictures.append(Image.open(BytesIO(page.screenshot())).convert("RGB"))
+    colours = pictures[0].quantize(96, dither=Image.Dither.NONE)
+    first, *others = [picture.quantize(palette=colours, dither=Image.Dither.NONE) for picture in pictures]
+    first.save(film, save_all=True, append_images=others, duration=1000 // _FRAMES, loop=0, optimize=True)
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--components", type=int, default=100)
     parser.add_argument("--picture", type=Path)
+    parser.add_argument("--recording", type=Path)
     parser.add_argument("--flood", type=float, metavar="SECONDS")
     options = parser.parse_args()
     with sync_playwright() as playwright, tempfile.TemporaryDirectory() as folder:
@@ -177,6 +212,9 @@ def main() -> None:
                 page.get_by_role("button", name="What would help?").first.click()
                 page.get_by_text("The shortest way there:").wait_for()
                 page.screenshot(path=options.picture)
+            return
+        if options.recording is not None:
+            record(browser, Path(folder) / "events.jsonl", options.recording)
             return
         model = Path(folder) / "doors.rscd"
         doors = "\n".join(DOOR.format(number=number) for number in range(options.components))
