@@ -7,13 +7,14 @@ from typing import TYPE_CHECKING
 
 import click
 
-from robosc.cli import CallError, interruption, say
+from robosc.cli import CallError, interruption, put, say
 from robosc.cli.options import Paths, configuration, findings_format, memory, model, paths
 from robosc.cli.progress import progress
 from robosc.cli.reading import read_configuration, read_models, supervise_models
 from robosc.cli.report import Report
 from robosc.configuration import LOCATIONS
 from robosc.diagnostics import Diagnostic, Severity
+from robosc.files.reading import inputs
 from robosc.files.writing import write
 from robosc.m2t.targets import TARGETS, Target, together
 from robosc.metamodel.places import place
@@ -52,6 +53,11 @@ _EPILOG = "\n".join(["\b", "Targets:", *(f"  {target.name:<11} {target.descripti
     type=click.Choice(list(LOCATIONS.values())),
     help="Let the configuration name a folder outside of the model's with this key; may be repeated.",
 )
+@click.option(
+    "--list-inputs",
+    is_flag=True,
+    help="Write nothing: print the files that the model comes from, a line each, for tools that build.",
+)
 @findings_format
 @memory
 @paths
@@ -62,6 +68,7 @@ def command(
     chosen: str | None,
     with_tests: bool,
     confirmed: Sequence[str],
+    list_inputs: bool,
     form: str,
     megabytes: int,
     paths: Paths,
@@ -77,13 +84,14 @@ def command(
       robosc transform line_follower.rscd --to ros1 --with-tests
       robosc transform line_follower.rscd --to cif,supervisor,xmi -o out
       robosc transform out/LineFollower.sct.xmi --to cif
+      robosc transform line_follower.rscd --to ros2 --list-inputs
 
     Exit status: 0 done, 1 errors in the model, 2 a wrong call, 3 no supervisor exists.
     """
     if with_tests and not any(target.tested_ros for target in targets):
         tested = [target.name for target in TARGETS.values() if target.tested_ros]
         raise CallError(f"--with-tests is for {' and '.join(tested)}: the other targets have none")
-    with Report(form) as report:
+    with Report(form, aside=list_inputs) as report:
         models = read_models(model, paths, report, cif=not any(target.needs_graph for target in targets))
         for target in targets:
             if target.needs_graph and models.rosgraph is None:
@@ -91,6 +99,9 @@ def command(
         settings = read_configuration(model, chosen, report)
         copies = _copies(Path(model).parent, targets, settings, confirmed, report)
         report.stop_on_errors()
+        if list_inputs:
+            put("\n".join(sorted(str(Path(name).resolve()) for name in inputs())))
+            return
         supervise_models(models, report, memory=megabytes << 20)
         for target in targets:
             report.add(target.findings(models, settings))

@@ -241,3 +241,39 @@ def test_saved_models_give_the_same_tests(run: Run, door: Path, start: str) -> N
     answer = run("transform", f"out/Door.{start}.xmi", "--to", "ros1", "-o", "again", "--with-tests")
     assert answer.exit_code == 0, answer.output
     assert tree(Path("again")).items() <= tree(Path("out")).items()
+
+
+def test_what_a_package_is_made_of_is_listed(run: Run, tmp_path: Path) -> None:
+    """The model, its libraries, the definitions of ROS types, the configuration; not what was only looked for."""
+    library, types = tmp_path / "libraries", tmp_path / "types" / "door_msgs" / "msg"
+    library.mkdir()
+    types.mkdir(parents=True)
+    (library / "other.rscd").write_text("library Other { }")
+    (library / "bells.rscd").write_text(
+        'library Bells { component Bell { incoming message ring with identifier: "/ring", type: none } }'
+    )
+    (types / "Angle.msg").write_text("float64 degrees\n")
+    (types / "Unused.msg").write_text("float64 degrees\n")
+    (types.parent / "package.xml").write_text("<package><name>door_msgs</name></package>")
+    model = tmp_path / "robot.rscd"
+    model.write_text(
+        "robot R { interface angle use Angle from door_msgs component Bell from Bells import Bell"
+        ' component Door { outgoing message opened with identifier: "/opened", type: door_msgs/Angle'
+        " behaviour { initial marked state only { on response from opened if value.degrees > 1.0 } } } }"
+    )
+    (tmp_path / "controller-config.json").write_text('{"onShutdown": []}')
+    options = ["-I", library, "--interface-path", tmp_path / "types"]
+    answer = run("transform", model, "--to", "ros2", "--list-inputs", *options)
+    assert answer.exit_code == 0, answer.output
+    listed = [Path(line).relative_to(tmp_path.resolve()).as_posix() for line in answer.stdout.splitlines()]
+    own = [name for name in listed if not name.startswith("../")]
+    assert {"robot.rscd", "libraries/bells.rscd", "controller-config.json"} <= set(own)
+    assert any(name.endswith("Angle.msg") for name in own)
+    assert not any("Unused" in name for name in own)
+    assert not Path("build").exists()
+
+
+def test_inputs_of_a_model_with_errors_are_not_listed(run: Run, door: Path) -> None:
+    door.write_text("robot Door {")
+    answer = run("transform", door, "--to", "ros2", "--list-inputs")
+    assert (answer.exit_code, answer.stdout) == (1, "")
