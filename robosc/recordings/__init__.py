@@ -37,6 +37,8 @@ def recorded_texts(path: str) -> Iterator[RecordedText]:
     Of an MCAP file that ends in the middle, as where the power was cut, what is there is read.
     """
     found = Path(path)
+    if found.is_dir() and not (found / "metadata.yaml").is_file():
+        raise RecordingError(f"{path} is a folder without a metadata.yaml: it is no recording")
     # rosbags opens by itself what it reads.
     with nullcontext() if found.is_dir() else opened(path) as file:
         yield from _read(path, _mcap_texts(file) if file is not None and found.suffix == ".mcap" else _bag_texts(found))

@@ -134,6 +134,8 @@ def test_what_is_no_recording_is_named(tmp_path: Path) -> None:
     for name in ("none.db3", "none.mcap", "none.bag"):
         (tmp_path / name).write_bytes(b"nothing of a recording")
     (tmp_path / "folder").mkdir()
+    with pytest.raises(RecordingError, match=r"without a metadata\.yaml"):
+        list(recorded_texts(str(tmp_path / "folder")))
     for name in ("none.db3", "none.mcap", "none.bag", "folder"):
         with pytest.raises(RecordingError, match=name):
             list(recorded_texts(str(tmp_path / name)))

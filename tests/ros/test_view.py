@@ -17,13 +17,13 @@ from robosc.metamodel import sct
 from robosc.simulation import Simulation
 from robosc.simulation.simulation import whole_state
 from tests.chromium import chromium, opened, shown
+from tests.ros.processes import Processes
 from tests.ros.workspaces import middleware
 from tests.view.robots import wholes
 
 if TYPE_CHECKING:
     import subprocess
 
-    from tests.ros.processes import Processes
     from tests.ros.running import Runner
     from tests.ros.workspaces import Workspace
 
@@ -136,6 +136,16 @@ def compare(moments: list[dict[str, Any]], log: list[dict[str, Any]]) -> None:
         assert {name: whole["state"][name] for name in components} == {name: state[name] for name in components}
         verdicts = {command: verdict and verdict["by"] for command, verdict in whole["commands"].items()}
         assert verdicts == {command: by and str(by) for command in verdicts for by in [engine.blocked_by(command)]}
+
+
+def test_without_a_master_it_waits_and_can_be_ended(run_ros1: Runner, tmp_path: Path) -> None:
+    environment = {**run_ros1.environment(), "ROS_MASTER_URI": "http://127.0.0.1:1"}
+    with Processes(environment, tmp_path) as processes:
+        address, viewer = view(processes, run_ros1, tmp_path)
+        with urlopen(f"{address}moments", timeout=60) as stream:  # noqa: S310
+            assert "Waiting for /line_follower_controller" in stream.readline().decode()
+        assert processes.stop(viewer) in (0, 130)
+        assert processes.logs().splitlines()[1:] == [address]
 
 
 @pytest.mark.parametrize("kind", ["run_ros1", "run_ros2"])

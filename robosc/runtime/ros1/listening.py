@@ -6,6 +6,7 @@ import threading
 from typing import TYPE_CHECKING, Any
 
 import rospy
+from rosgraph import Master, MasterException
 from std_msgs.msg import String
 
 from robosc.runtime.core.listening import LOOK, WAITING
@@ -18,24 +19,36 @@ if TYPE_CHECKING:
 
 
 class Ros1Ear:
-    """A node of ROS 1 that only listens."""
+    """A node of ROS 1 that only listens, from when there is a master on."""
 
     def __init__(self, heard: Sequence[tuple[Sequence[str], Listener]]) -> None:
-        start("robosc_view", [], anonymous=True)
-        self._states = [(listener, [_listen(node, listener) for node in nodes]) for nodes, listener in heard]
+        self._heard = heard
         self._closed = threading.Event()
-        threading.Thread(target=self._look, daemon=True).start()
+        threading.Thread(target=self._run, daemon=True).start()
 
     def close(self) -> None:
         """Ends the node."""
         self._closed.set()
-        rospy.signal_shutdown("the page is closed")
+        if rospy.core.is_initialized():
+            rospy.signal_shutdown("the page is closed")
 
-    def _look(self) -> None:
-        while not self._closed.is_set():
-            for listener, states in self._states:
-                listener.heard(sum(state.get_num_connections() for state in states))
-            self._closed.wait(LOOK)
+    def _run(self) -> None:
+        # rospy itself would wait for the master where nothing can interrupt it, and say so each time.
+        while not _has_master():
+            if self._closed.wait(LOOK):
+                return
+        start("robosc_view", [], anonymous=True)
+        states = [(listener, [_listen(node, listener) for node in nodes]) for nodes, listener in self._heard]
+        while not self._closed.wait(LOOK):
+            for listener, subscribers in states:
+                listener.heard(sum(state.get_num_connections() for state in subscribers))
+
+
+def _has_master() -> bool:
+    try:
+        return bool(Master("/robosc_view").getPid())
+    except (OSError, MasterException):
+        return False
 
 
 def _listen(node: str, listener: Listener) -> Any:
