@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robosc.engine.interpreter import Engine
 from robosc.engine.timers import Timers
@@ -44,6 +44,15 @@ class Hooks:
     livelock: Callable[[], None] | None = None
 
 
+class SavedLoop(NamedTuple):
+    """All of a control loop between two calls: what `restore` goes back to, also in another loop of the model."""
+
+    cells: tuple[int, ...]
+    inputs: tuple[int, ...]
+    timers: tuple[int, Mapping[int, int]]
+    rest: tuple[Any, ...]
+
+
 class ControlLoop:
     """Runs a model with its supervisor.
 
@@ -81,6 +90,7 @@ class ControlLoop:
             if event.choice is not None and event.choice.variable is not None
         }
         self._groups = {event.name: event.group for event in executed.events if event.group is not None}
+        self._groups_by_number = list(executed.groups)
         numbers = {source: number for number, source in enumerate(executed.sources, 1)}
         self._sources = {event.name: numbers[event.source] for event in executed.events if event.source is not None}
         self.timers = Timers(self.engine, self.settings.resolution_ms)
@@ -101,6 +111,32 @@ class ControlLoop:
     def state(self) -> State:
         """The current state."""
         return self.engine.state
+
+    @property
+    def saved(self) -> SavedLoop:
+        """What the loop is in, when no call and no batch is under way."""
+        groups = self._groups_by_number
+        rest = (
+            tuple(self._cancels),
+            tuple(self._triggers),
+            tuple(self._reactions),
+            frozenset(self._owed),
+            frozenset(groups.index(group) for group in self._taken),
+            self._next_silent,
+            self._quiescent,
+            self._livelocked,
+            self._ticked,
+        )
+        return SavedLoop(*self.engine.saved, self.timers.saved, rest)
+
+    def restore(self, saved: SavedLoop) -> None:
+        """Goes back to what `saved` was."""
+        self.engine.restore((saved.cells, saved.inputs))
+        self.timers.restore(saved.timers)
+        cancels, triggers, reactions, owed, taken, *counted = saved.rest
+        self._cancels, self._triggers, self._reactions = list(cancels), list(triggers), list(reactions)
+        self._owed, self._taken = set(owed), {self._groups_by_number[number] for number in taken}
+        self._next_silent, self._quiescent, self._livelocked, self._ticked = counted
 
     def enabled(self, event: str) -> bool:
         """Whether the event can happen now."""

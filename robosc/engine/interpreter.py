@@ -50,6 +50,7 @@ class Engine:
         self._inputs = [declared.initial for declared in self.executed.inputs]
         self._compile = Compiler(self.executed)
         positions = {declared: position for position, declared in enumerate(self.executed.inputs)}
+        self._positions = {declared.input: position for declared, position in positions.items()}
         self._carried = {
             event.name: {declared.input.name: positions[declared] for declared in event.inputs}
             for event in self.executed.events
@@ -73,6 +74,15 @@ class Engine:
         if state.layout is not self._layout:
             raise ValueError("the state is another engine's")
         self._cells = state.cells
+
+    @property
+    def saved(self) -> tuple[tuple[int, ...], tuple[int, ...]]:
+        """The cells of the state, and the values of the inputs: `restore` goes back there, also in another engine."""
+        return self._cells, tuple(self._inputs)
+
+    def restore(self, saved: tuple[tuple[int, ...], tuple[int, ...]]) -> None:
+        """Goes back to what `saved` was in an engine of this model."""
+        self._cells, self._inputs[:] = saved
 
     def state_with(self, values: Mapping[sct.Plant | sct.DiscreteVariable, Value]) -> State:
         """The current state, but for the locations of some plants and the values of some variables.
@@ -198,15 +208,21 @@ class Engine:
         return choose
 
     def read(self, reference: ex.Expression) -> object:
-        """What a reference of the sct model stands for in this state."""
+        """What a reference of the sct model stands for in this state, with the inputs that were set last."""
         match reference:
             case sct.LocationReference(location=location):
                 plant: sct.Plant = location.eContainer()
                 return plant.locations[self.location(plant)] is location
             case sct.VariableReference(variable=variable):
-                value = self._cells[self._layout.cells[variable]]
-                if isinstance(variable.type, ex.EnumerationType):
-                    return variable.type.enumeration.literals[value]
-                return bool(value) if isinstance(variable.type, ex.BooleanType) else value
+                return _object(variable.type, self._cells[self._layout.cells[variable]])
+            case sct.InputReference(input=given):
+                return _object(given.type, self._inputs[self._positions[given]])
         assert isinstance(reference, ex.EnumerationLiteralReference)
         return reference.literal
+
+
+def _object(kind: ex.Type, value: int) -> object:
+    """A value of a cell as expressions of the sct model have it."""
+    if isinstance(kind, ex.EnumerationType):
+        return kind.enumeration.literals[value]
+    return bool(value) if isinstance(kind, ex.BooleanType) else value

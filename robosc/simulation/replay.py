@@ -7,18 +7,15 @@ from random import Random
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robosc.engine.timers import Timers
-from robosc.metamodel import expression as ex
-from robosc.metamodel import sct
-from robosc.semantics.edges import edges_by_event, origin
-from robosc.semantics.evaluation import evaluate
-from robosc.semantics.roles import event_name
+from robosc.engine.transitions import Transitions
 from robosc.simulation.script import WAIT
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from robosc.engine import Blocked
-    from robosc.engine.state import State, Value
+    from robosc.engine.state import State
+    from robosc.metamodel import sct
     from robosc.simulation import Simulation, Step
     from robosc.simulation.unreadable import Unreadable
 
@@ -74,15 +71,7 @@ class Replay:
         self._next = 0
         #: Until when time goes by, of a step that waits.
         self._until: int | None = None
-        #: Of each event the transitions that plants may take, each with the location that it leaves, if not any.
-        self._edges = {
-            event_name(event): [
-                (plant, [(edge, origin(edge)) for edge in edges])
-                for plant, edges in taking_part.items()
-                if any(edge.source is not None for edge in edges)
-            ]
-            for event, taking_part in edges_by_event(self.engine.model.plants).items()
-        }
+        self._transitions = Transitions(self.engine)
         self._started = next((step.time for step in steps or () if step.time is not None), 0.0)
 
     @property
@@ -184,8 +173,8 @@ class Replay:
         by = self.engine.blocked_by(event) or self.simulation.data.unreadable(event, data)
         edges: tuple[sct.Edge, ...] = ()
         if by is None:
-            edges = self._taken(event, inputs)
             self.engine.set_inputs(event, inputs)
+            edges = self._transitions.taken(event)
             self.timers.before(event)
             self.simulation.perform(event, data)
         return Moment(event, dict(data), before, self.engine.state, line, by, edges)
@@ -202,33 +191,6 @@ class Replay:
         self._next, self._until = position.next, position.until
         self.timers.restore(position.timers)
 
-    # Transitions
-
-    def _taken(self, event: str, inputs: Mapping[str, Value]) -> tuple[sct.Edge, ...]:
-        """The transitions of components that an enabled event takes in the present state."""
-        found = []
-        for plant, edges in self._edges.get(event, ()):
-            here = plant.locations[self.engine.location(plant)]
-            possible = (edge for edge, left in edges if left is None or left is here)
-            edge = next((one for one in possible if one.guard is None or self._holds(one.guard, inputs)), None)
-            if edge is not None and edge.source is not None:
-                found.append(edge)
-        return tuple(found)
-
-    def _holds(self, guard: ex.Expression, inputs: Mapping[str, Value]) -> bool:
-        def read(reference: ex.Expression) -> object:
-            if isinstance(reference, sct.InputReference):
-                return _object(reference.input.type, inputs[reference.input.name])
-            return self.engine.read(reference)
-
-        return bool(evaluate(guard, read))
-
 
 def _milliseconds(seconds: float) -> int:
     return round(seconds * 1000)
-
-
-def _object(kind: ex.Type, value: Value) -> object:
-    if isinstance(kind, ex.EnumerationType):
-        return next(literal for literal in kind.enumeration.literals if literal.name == value)
-    return value
