@@ -11,7 +11,7 @@ PAGE = Path(__file__).parent.parent / "docs" / "language.md"
 
 def snippet(heading: str, number: int = 0) -> str:
     section = PAGE.read_text(encoding="utf-8").partition(f"\n## {heading}\n")[2].partition("\n## ")[0]
-    return re.findall(r"^```\n(.*?)^```$", section, flags=re.MULTILINE | re.DOTALL)[number]
+    return re.findall(r"^```robosc\n(.*?)^```$", section, flags=re.MULTILINE | re.DOTALL)[number]
 
 
 def test_the_snippets_make_a_model(tmp_path: Path) -> None:
@@ -32,7 +32,7 @@ def test_the_snippets_make_a_model(tmp_path: Path) -> None:
 
 def test_the_snippet_on_time_is_a_behaviour(tmp_path: Path) -> None:
     time = PAGE.read_text(encoding="utf-8").partition("\n### Time\n")[2]
-    behaviour = re.findall(r"^```\n(.*?)^```$", time, flags=re.MULTILINE | re.DOTALL)[0]
+    behaviour = re.findall(r"^```robosc\n(.*?)^```$", time, flags=re.MULTILINE | re.DOTALL)[0]
     heard = "\n".join(f"outgoing message {name} with type: none" for name in ("scan", "bumper"))
     behaviour = behaviour.replace("behaviour {", "behaviour {\n variable turned: boolean", 1)
     path = tmp_path / "turner.rscd"

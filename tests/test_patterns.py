@@ -44,7 +44,7 @@ def test_nothing_is_said_of_it(name: str) -> None:
 
 
 def test_the_page_shows_each_model() -> None:
-    shown = re.findall(r"^```\n(.*?)^```$", PAGE.read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL)
+    shown = re.findall(r"^```robosc\n(.*?)^```$", PAGE.read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL)
     assert sorted(shown) == sorted((PATTERNS / f"{name}.rscd").read_text(encoding="utf-8") for name in NAMES)
     assert len(NAMES) == 12
 

@@ -235,8 +235,8 @@ def test_what_is_seen(session: Client, yard: Path) -> None:
 def test_synthesis_as_the_reason(session: Client, tmp_path: Path) -> None:
     """The porter of docs/explain.md, at the open door."""
     page = (ROOT / "docs" / "explain.md").read_text()
-    (text,) = [part for part in page.split("```") if part.lstrip().startswith("// A porter")]
-    (tmp_path / "porter.rscd").write_text(text)
+    (text,) = [part for part in page.split("```robosc\n") if part.startswith("// A porter")]
+    (tmp_path / "porter.rscd").write_text(text.partition("```")[0])
     session.launch("porter.rscd")
     session.console("open")
     reason = session.scope("Can't happen")["message_enter.c_trigger"]
