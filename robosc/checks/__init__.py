@@ -50,5 +50,7 @@ def _findings(base: rsc.Base, unread: Sequence[Diagnostic], interfaces: RosTypes
         for finding in rule.check(base, interfaces):
             if not finding.can_be_false(unread):
                 span = place(finding.element)[1]
-                hint, edits = finding.said()
-                yield Diagnostic(file, span, rule.severity, rule.id, finding.message, hint, edits, finding.places())
+                hint, edits, is_choice = finding.said()
+                yield Diagnostic(
+                    file, span, rule.severity, rule.id, finding.message, hint, edits, finding.places(), is_choice
+                )

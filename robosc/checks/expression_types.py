@@ -35,7 +35,7 @@ from robosc.semantics.walks import fold, operands
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from robosc.diagnostics import Repair
+    from robosc.checks.rule import Hint
 
 
 class Restriction(Enum):
@@ -166,7 +166,7 @@ class ExpressionCheck:
             return UNKNOWN
         return then if then != UNKNOWN else otherwise
 
-    def report(self, element: ex.Located, message: str, hint: Repair | str) -> None:
+    def report(self, element: ex.Located, message: str, hint: Hint) -> None:
         """Notes a finding."""
         self.findings.append(Finding(element, message, hint))
 

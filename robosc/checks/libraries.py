@@ -15,7 +15,7 @@ from robosc.semantics.instances import Instances, imported, libraries
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
 
-    from robosc.diagnostics import Repair
+    from robosc.checks.rule import Hint
     from robosc.metamodel import expression as ex
     from robosc.semantics.evaluation import Value
     from robosc.semantics.instances import Instance, Resolved
@@ -87,7 +87,7 @@ class Meaning:
             return alone if self.made is None else [None] * len(alone)
         return [constant_value(expression, self.made) for expression in expressions]
 
-    def finding(self, element: ex.Located, message: str, hint: Repair | str) -> Finding:
+    def finding(self, element: ex.Located, message: str, hint: Hint) -> Finding:
         """Found at an element; what the arguments of an instance lead to is found there."""
         if self.made is None:
             return Finding(element, message, hint)

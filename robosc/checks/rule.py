@@ -19,12 +19,70 @@ if TYPE_CHECKING:
 
 
 class Insertion(NamedTuple):
-    """A hint, and the text that does what it says, to be written before an element, or `behind` it."""
+    """A hint, and the text that does what it says, to be written before an element, or `behind` it.
+
+    With `is_choice` it is one way of several: a person chooses.
+    """
 
     hint: str
     text: str
     element: ex.Located
     behind: bool = False
+    is_choice: bool = False
+
+    def edits(self) -> tuple[Edit, ...]:
+        """What does it, in the file of the element."""
+        span = place(self.element)[1]
+        return (Edit(end_of(span) if self.behind else start_of(span), self.text),)
+
+
+class Replacement(NamedTuple):
+    """A hint, and the text that does what it says in place of an element, or of what is before `until` in it."""
+
+    hint: str
+    text: str
+    element: ex.Located
+    is_choice: bool = False
+    until: ex.Located | None = None
+
+    def edits(self) -> tuple[Edit, ...]:
+        """What does it, in the file of the element."""
+        span = place(self.element)[1]
+        if self.until is not None:
+            end = place(self.until)[1]
+            span = Span(span.line, span.column, end.line, end.column)
+        return (Edit(span, self.text),)
+
+
+class Wrapping(NamedTuple):
+    """A hint, and the texts that do what it says, before an element and behind it."""
+
+    hint: str
+    before: str
+    behind: str
+    element: ex.Located
+    is_choice: bool = False
+
+    def edits(self) -> tuple[Edit, ...]:
+        """What does it, in the file of the element."""
+        span = place(self.element)[1]
+        return tuple(
+            Edit(at, text) for at, text in ((start_of(span), self.before), (end_of(span), self.behind)) if text
+        )
+
+
+def start_of(span: Span) -> Span:
+    """The place before a span."""
+    return Span(span.line, span.column, span.line, span.column)
+
+
+def end_of(span: Span) -> Span:
+    """The place behind a span."""
+    return Span(span.end_line, span.end_column, span.end_line, span.end_column)
+
+
+#: How to mend what a rule found: words, the text that takes the place of the element, or what does it elsewhere.
+Hint: TypeAlias = "str | Repair | Insertion | Replacement | Wrapping"
 
 
 @dataclass(frozen=True)
@@ -38,24 +96,22 @@ class Finding:
 
     element: ex.Located
     message: str
-    hint: str | Repair | Insertion
+    hint: Hint
     relies_on: ex.Located | None = None
     relies_on_names: tuple[type[ex.Located], ...] = ()
     related: ex.Located | None = None
 
-    def said(self) -> tuple[str, tuple[Edit, ...]]:
-        """The hint, and the edits that do what it says in the file of the element."""
+    def said(self) -> tuple[str, tuple[Edit, ...], bool]:
+        """The hint, the edits that do what it says in the file of the element, and whether a person is to choose."""
         match self.hint:
             case Repair(said, None) | str(said):
-                return said, ()
+                return said, (), False
             case Repair(said, text):
-                return said, (Edit(place(self.element)[1], str(text)),)
-            case Insertion(said, text, element, behind):
-                file, span = place(element)
-                if file != place(self.element)[0]:
-                    return said, ()
-                at = (span.end_line, span.end_column) if behind else (span.line, span.column)
-                return said, (Edit(Span(*at, *at), text),)
+                return said, (Edit(place(self.element)[1], str(text)),), False
+            case Insertion() | Replacement() | Wrapping() as change:
+                if place(change.element)[0] != place(self.element)[0]:
+                    return change.hint, (), False
+                return change.hint, change.edits(), change.is_choice
         raise TypeError(self.hint)
 
     def places(self) -> tuple[Related, ...]:

@@ -37,6 +37,7 @@ from robosc.semantics.walks import fold, operands
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
+    from robosc.checks.rule import Hint
     from robosc.semantics.cone_of_influence import Assigned, Reading
     from robosc.semantics.inputs import Told
     from robosc.semantics.instances import Instance, Instances, InstanceVariable
@@ -49,7 +50,7 @@ class Fault:
     element: ex.Located
     reason: Reason
     message: str
-    hint: str
+    hint: Hint
 
 
 #: `abs`, `min` and `max` are written out by cases, up to so many parts.
@@ -75,7 +76,8 @@ def supervised_faults(base: rsc.Base, search: Search) -> Iterator[Finding]:
         place = fault.element if unit is base else _reference(base, fault.reason, result)
         if (place, fault.element) not in reported:
             reported.add((place, fault.element))
-            hint = fault.hint if unit is base else f"in library `{unit.name}`, {fault.hint}"
+            said = fault.hint if isinstance(fault.hint, str) else fault.hint.hint
+            hint = fault.hint if unit is base else f"in library `{unit.name}`, {said}"
             yield Finding(place, fault.message, hint)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.checks.definitions import component_of
+from robosc.checks.rule import Replacement, Wrapping
 from robosc.diagnostics import Repair
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
@@ -27,6 +28,8 @@ from robosc.semantics.typing import (
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from robosc.checks.rule import Hint
+
 _COMPARISON: Mapping[Type, str] = {INTEGER: "> 0", DOUBLE: "> 0.0", STRING: '= "…"'}
 _LITERALS: Mapping[Type, str] = {
     BOOLEAN: "`true` or `false`",
@@ -37,7 +40,7 @@ _LITERALS: Mapping[Type, str] = {
 _LITERAL = (ex.IntegerLiteral, ex.DoubleLiteral, ex.StringLiteral)
 
 
-def repair(expression: ex.Expression, found: Type, wanted: Type) -> Repair | str:
+def repair(expression: ex.Expression, found: Type, wanted: Type) -> Hint:
     """How an expression of one type becomes one of the wanted type.
 
     An object value is found as UNKNOWN; where UNKNOWN is wanted, any type will do that can be compared.
@@ -134,7 +137,7 @@ def _part(whole: ex.Expression, found: Type, wanted: Type) -> str:
     )
 
 
-def _conversion(expression: ex.Expression, found: Type, wanted: Type) -> str:
+def _conversion(expression: ex.Expression, found: Type, wanted: Type) -> Hint:
     if wanted == BOOLEAN and isinstance(found, EnumType):
         return (
             f"compare it, such as `{_text(expression)} = {written(_values(found)[0])}`"
@@ -142,17 +145,31 @@ def _conversion(expression: ex.Expression, found: Type, wanted: Type) -> str:
             else "compare it"
         )
     if wanted == BOOLEAN and found in _COMPARISON and not isinstance(expression, _LITERAL):
-        return f"compare it, such as `{_text(expression)} {_COMPARISON[found]}`"
+        hint = f"compare it, such as `{_text(expression)} {_COMPARISON[found]}`"
+        return _around(hint, expression, "", f" {_COMPARISON[found]}") if found != STRING else hint
     if (found, wanted) == (INTEGER, DOUBLE):
-        return f"write `{_text(expression)} * 1.0`"
+        return _around(f"write `{_text(expression)} * 1.0`", expression, "", " * 1.0", is_choice=False)
     if (found, wanted) == (DOUBLE, INTEGER):
         if isinstance(expression, _LITERAL):
             return "write a whole number or declare it double: a double is never rounded"
         why = "`/` always gives a double" if isinstance(expression, ex.Division) else "no double is rounded by itself"
-        return f"write `round({_text(expression).strip('()')})` or declare it double: {why}"
+        hint = f"write `round({_text(expression).strip('()')})` or declare it double: {why}"
+        return Wrapping(hint, "round(", ")", expression, is_choice=True)
     if isinstance(found, EnumType):
         return "compare an enum's values by `=` only"
+    if wanted in _LITERALS and wanted != BOOLEAN:
+        text = "0" if wanted == INTEGER else "0.0"
+        return Replacement(f"write {_LITERALS[wanted]}", text, expression, is_choice=True)
     return f"write {_LITERALS[wanted]}" if wanted in _LITERALS else 'write a string such as `"…"`'
+
+
+def _around(hint: str, expression: ex.Expression, before: str, behind: str, *, is_choice: bool = True) -> Wrapping:
+    """A hint that puts something around an expression, in parentheses unless it is a name."""
+    if isinstance(expression.eContainer(), ex.Expression):
+        before, behind = f"({before}", f"{behind})"
+    if isinstance(expression, rsc.Access):
+        return Wrapping(hint, before, behind, expression, is_choice)
+    return Wrapping(hint, f"{before}(", f"){behind}", expression, is_choice)
 
 
 def _alternatives(enum: EnumType) -> str:

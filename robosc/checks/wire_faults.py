@@ -27,6 +27,8 @@ class Fault:
     message: str
     hint: str
     unknown: bool = False
+    #: What takes the property's place, if the hint says it.
+    text: str | None = None
 
     def is_used(self, uses: Uses) -> bool:
         """Whether it is among the uses of the data; the whole always is."""
@@ -39,6 +41,8 @@ class Unknown:
 
     message: str
     hint: str
+    #: The package and the name of the type that is meant.
+    meant: tuple[str, str] | None = None
 
 
 def faults(data: Carried, interfaces: RosTypes, uses: Uses) -> list[Fault] | Unknown:
@@ -114,7 +118,7 @@ class _Comparison:
                 yield Fault(None, f"{name} has no field for a lone {_text(carried)}: {_listed(fields)}", _lone(fields))
             elif not self._holds(fields[field], carried):
                 message = f"the data is {_text(carried)} here, and {fields[field]} in `{field}` of {name}"
-                yield Fault(None, message, _repair(fields[field], None))
+                yield Fault(None, message, _repair(fields[field], None)[0])
 
     def _object(self, definition: rsc.ObjectDataType, fields: Fields, name: str) -> Iterator[Fault]:
         for owner in definition.properties:
@@ -123,7 +127,10 @@ class _Comparison:
             else:
                 close = get_close_matches(owner.name, fields, n=1)
                 hint = f"did you mean `{close[0]}`?" if close else "write a field that it has, or leave this one out"
-                yield Fault(owner, f"`{owner.name}` is no field of {name}: {_listed(fields)}", hint)
+                fitting = _type_for(fields[close[0]]) if close and isinstance(owner.type, rsc.BasicDataType) else None
+                text = f"{written(close[0])}: {fitting}" if fitting is not None else None
+                message = f"`{owner.name}` is no field of {name}: {_listed(fields)}"
+                yield Fault(owner, message, hint, text=text)
 
     def _property(self, owner: rsc.ObjectProperty, wire: WireType, name: str) -> Iterator[Fault]:
         declared, element = wire_type(owner.type), wire
@@ -132,12 +139,14 @@ class _Comparison:
         definition = declared.type if isinstance(declared, rsc.ComplexDataTypeReference) else None
         if isinstance(declared, rsc.InterfaceTypeReference) and _ros_type(declared) != element:
             message = f"`{owner.name}` is {_text(owner.type)} here, and {wire} in {name}"
-            yield Fault(owner, message, _repair(wire, owner.name))
+            hint, text = _repair(wire, owner.name)
+            yield Fault(owner, message, hint, text=text)
         elif isinstance(definition, rsc.ObjectDataType) and isinstance(element, Nested):
             yield from self._nested(owner, definition, element)
         elif declared is not None and not _is_open(declared) and not self._holds(element, declared):
             message = f"`{owner.name}` is {_text(owner.type)} here, and {wire} in {name}"
-            yield Fault(owner, message, _repair(wire, owner.name))
+            hint, text = _repair(wire, owner.name)
+            yield Fault(owner, message, hint, text=text)
 
     def _nested(self, owner: rsc.ObjectProperty, definition: rsc.ObjectDataType, wire: Nested) -> Iterator[Fault]:
         if (definition, wire) in self._around:
@@ -204,11 +213,13 @@ def _lone(fields: Fields) -> str:
     return "declare an object with the fields that you use" if fields else "write `none`"
 
 
-def _repair(wire: WireType, name: str | None) -> str:
+def _repair(wire: WireType, name: str | None) -> tuple[str, str | None]:
+    """A hint, and the text that does what it says."""
     fitting = _type_for(wire)
     if fitting is None:
-        return f"leave it out: no data type fits {wire}" if name else f"write `none`: no data type fits {wire}"
-    return f"write `{written(name)}: {fitting}`" if name else f"write `{fitting}`"
+        return f"leave it out: no data type fits {wire}" if name else f"write `none`: no data type fits {wire}", None
+    text = f"{written(name)}: {fitting}" if name else fitting
+    return f"write `{text}`", text
 
 
 def _type_for(wire: WireType) -> str | None:

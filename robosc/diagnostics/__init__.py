@@ -68,7 +68,7 @@ class Diagnostic:
     """One finding of one rule at one place.
 
     `hint` says how to mend it. Where that is so simple that a program can do it, `edits` do it in the finding's file.
-    `related` are other places that it speaks of.
+    `related` are other places that it speaks of. With `is_choice` the edits are one way of several: a person chooses.
     """
 
     file: str
@@ -79,6 +79,7 @@ class Diagnostic:
     hint: str | None = None
     edits: tuple[Edit, ...] = ()
     related: tuple[Related, ...] = ()
+    is_choice: bool = False
 
 
 class ModelError(Exception):
@@ -102,14 +103,10 @@ def has_errors(findings: Iterable[Diagnostic]) -> bool:
     return any(finding.severity is Severity.ERROR for finding in findings)
 
 
-#: Rules whose edits are one way of several: a person chooses.
-CHOICES = frozenset({"initial-state", "marked-state"})
-
-
 def certain_edits(findings: Iterable[Diagnostic], file: str) -> list[Edit]:
     """What the hints of findings say to write in a file, where it is not for a person to choose; all at once."""
     return without_overlaps(
-        edit for finding in findings if finding.file == file and finding.rule not in CHOICES for edit in finding.edits
+        edit for finding in findings if finding.file == file and not finding.is_choice for edit in finding.edits
     )
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from lsprotocol import types
 
-from robosc.diagnostics import CHOICES, Severity, certain_edits, in_order
+from robosc.diagnostics import Severity, certain_edits, in_order
 from robosc.diagnostics.rules import address
 from robosc.editor.places import span_range
 
@@ -75,7 +75,7 @@ def code_actions(snapshot: Snapshot, analysis: Analysis, params: types.CodeActio
                         kind=types.CodeActionKind.QuickFix,
                         diagnostics=[diagnostic(snapshot, finding, {text.file: text})],
                         edit=types.WorkspaceEdit({uri: _edits(text, finding.edits)}),
-                        is_preferred=finding.rule not in CHOICES,
+                        is_preferred=not finding.is_choice,
                     )
                 )
     if only is not None and any(kind == _MEND_ALL or _MEND_ALL.startswith(f"{kind}.") for kind in only):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from robosc.diagnostics import Repair
 from robosc.metamodel import robosc as rsc
 from robosc.metamodel.reflection import contents, tree
 from robosc.ros_types import OWN_OBJECT, DefinitionError, Section
@@ -25,14 +26,14 @@ _TYPES = {
 }
 
 
-def declare(reference: rsc.InterfaceTypeReference, interfaces: RosTypes) -> tuple[str, str] | None:
+def declare(reference: rsc.InterfaceTypeReference, interfaces: RosTypes) -> tuple[str, Repair | str] | None:
     """Gives a reference the object that it stands for; a message and a hint where the ROS type is not known."""
     if next(_definitions(reference, interfaces), None) is None:
         part = section_of(reference)
-        message, hint = interfaces.why_unknown(reference.package, reference.rosType, part)
+        message, hint, meant = interfaces.why_unknown(reference.package, reference.rosType, part)
         if part is Section.MESSAGE and interfaces.other_kinds(reference.package, reference.rosType, part.kind):
-            hint = OWN_OBJECT
-        return message, hint
+            return message, OWN_OBJECT
+        return message, Repair(hint, "/".join(meant)) if meant is not None else hint
     reference.definition = rsc.ObjectDataType(name=reference.rosType, source=reference.source)
     reference.type = reference.definition
     return None

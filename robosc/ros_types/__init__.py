@@ -140,27 +140,31 @@ class RosTypes:
             if other != kind and any(name in distribution.names(package, other) for distribution in self.distributions)
         ]
 
-    def why_unknown(self, package: str, name: str, section: Section) -> tuple[str, str]:
-        """A message and a hint about a type of which no distribution gives this section."""
+    def why_unknown(self, package: str, name: str, section: Section) -> tuple[str, str, tuple[str, str] | None]:
+        """A message and a hint about a type of which no distribution gives this section; and the type that is meant.
+
+        That is its package and its name; None: nobody can say.
+        """
         kind = section.kind
         for distribution in self.distributions:
             try:
                 distribution.fields(package, name, section)
             except DefinitionError as fault:
-                return f"the definition of {package}/{name} can't be read: {fault}", REPAIR
+                return f"the definition of {package}/{name} can't be read: {fault}", REPAIR, None
         for other in Section:
             if other.kind != kind and any(known.defines(package, name, other) for known in self.distributions):
                 message = f"{package}/{name} is of kind {other.kind}, expected a type of kind {kind}"
-                return message, f"name a type of kind {kind}"
+                return message, f"name a type of kind {kind}", None
         if not any(known.names(package, other) for known in self.distributions for other in FOLDERS):
             packages = sorted({found for known in self.distributions for found in known.packages()})
             close = get_close_matches(package, packages, n=1, cutoff=0.8)
             hint = f"did you mean `{close[0]}`? Else {MAKE_KNOWN}" if close else MAKE_KNOWN
-            return f"the package `{package}` is unknown", hint
+            return f"the package `{package}` is unknown", hint, (close[0], name) if close else None
         names = sorted({found for known in self.distributions for found in known.names(package, kind)})
         close = get_close_matches(name, names, n=1)
         hint = f"did you mean `{close[0]}`?" if close else MAKE_KNOWN
-        return f"no {kind} type `{name}` of the package `{package}` is known", hint
+        meant = (package, close[0]) if close else None
+        return f"no {kind} type `{name}` of the package `{package}` is known", hint, meant
 
 
 def _environment(variable: str) -> list[Path]:

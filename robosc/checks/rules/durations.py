@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from robosc.checks.definitions import behaviours, common_transitions, of_kind, transitions
 from robosc.checks.libraries import instances, meanings
-from robosc.checks.rule import Finding, rule
+from robosc.checks.rule import Finding, Replacement, rule
 from robosc.metamodel import robosc as rsc
 from robosc.semantics.durations import (
     LONGEST,
@@ -71,5 +71,10 @@ def _set(transition: rsc.TimedTransition, owned: InstanceParameter, meaning: Mea
         yield Finding(
             transition.duration or transition,
             f"parameter `{parameter.name}` has no range, expected one within {_EXPECTED}",
-            f"write a range, such as `parameter {parameter.name}: double(0.5..10.0) = …`",
+            Replacement(
+                f"write a range, such as `parameter {parameter.name}: double(0.5..10.0) = …`",
+                "double(0.5..10.0)",
+                parameter.type,
+                is_choice=True,
+            ),
         )

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from robosc.checks.definitions import of_kind, unit_of
 from robosc.checks.libraries import fact, imports, instances, reachable
-from robosc.checks.rule import Finding, rule
+from robosc.checks.rule import Finding, Insertion, rule
 from robosc.metamodel import robosc as rsc
 
 if TYPE_CHECKING:
@@ -24,7 +24,15 @@ def enum_default(base: rsc.Base) -> Iterator[Finding]:
             yield Finding(
                 enum,
                 f"enum `{enum.name}` has no default rule, expected one for data that no other rule matches",
-                "add a last rule, such as `default -> other`",
+                Insertion(
+                    "add a last rule, such as `default -> other`",
+                    " default -> other",
+                    enum.rules[-1],
+                    behind=True,
+                    is_choice=True,
+                )
+                if enum.rules
+                else "add a last rule, such as `default -> other`",
                 relies_on=enum,
             )
         for other in defaults[1:]:

@@ -15,7 +15,7 @@ from robosc.checks.definitions import (
     variables,
 )
 from robosc.checks.libraries import Meaning, meanings
-from robosc.checks.rule import Finding, rule
+from robosc.checks.rule import Finding, Replacement, rule
 from robosc.checks.supervised import Fault, function_faults, readings, supervised_faults, table_faults
 from robosc.metamodel import robosc as rsc
 from robosc.ros_types.wire import INTEGER_RANGES
@@ -40,6 +40,7 @@ from robosc.semantics.typing import (
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from robosc.checks.rule import Hint
     from robosc.metamodel import expression as ex
     from robosc.semantics.cone_of_influence import Reading
     from robosc.semantics.instances import Instances
@@ -155,7 +156,7 @@ def integer_range(base: rsc.Base) -> Iterator[Finding]:
                 yield meaning.finding(
                     declared,
                     f"the range {low}..{high} is empty, expected the lower bound first",
-                    f"write `integer({high}..{low})`",
+                    Replacement(f"write `integer({high}..{low})`", f"integer({high}..{low})", declared),
                 )
         for count in statements(rsc.CountRequirement, meaning):
             (most,) = meaning.values(count.bound)
@@ -174,7 +175,9 @@ def _parameters(meaning: Meaning) -> Iterator[Finding]:
             yield Finding(
                 parameter.type,
                 f"parameter `{parameter.name}` is an integer without range, expected what may be set",
-                "write a range, such as `integer(0..100)`",
+                Replacement(
+                    "write a range, such as `integer(0..100)`", "integer(0..100)", parameter.type, is_choice=True
+                ),
             )
         elif meaning.made is None and parameter.lowest is not None and declared_type(parameter.type) != DOUBLE:
             message = f"parameter `{parameter.name}` is {declared_type(parameter.type)} and has no range"
@@ -186,7 +189,9 @@ def _parameters(meaning: Meaning) -> Iterator[Finding]:
                 yield meaning.finding(parameter.lowest, message, f"write `double({high}..{low})`")
             elif isinstance(value, float) and parameter.value is not None and not low <= value <= high:
                 message = f"{value} is not in the range {low}..{high} of `{parameter.name}`, expected a value that is"
-                yield meaning.finding(parameter.value, message, f"write `{low if value < low else high}`, or widen it")
+                nearest = low if value < low else high
+                hint = Replacement(f"write `{nearest}`, or widen it", f"{nearest}", parameter.value, is_choice=True)
+                yield meaning.finding(parameter.value, message, hint)
 
 
 def _is_unranged(declared: rsc.DataType) -> bool:
@@ -217,14 +222,19 @@ def _without_range(_: Instances, result: ConeOfInfluence) -> Iterator[Fault]:
                 reason,
                 f"variable `{name}` has no range, and the supervisor needs it, expected one: its states are finitely"
                 " many",
-                f"write a range, such as `variable {owned.variable.name}: integer(0..100)`",
+                Replacement(
+                    f"write a range, such as `variable {owned.variable.name}: integer(0..100)`",
+                    "integer(0..100)",
+                    owned.variable.type,
+                    is_choice=True,
+                ),
             )
     for reading in readings(result):
         told = reading.told
         if not isinstance(told, Computed) or told.type != INTEGER or told.bounds is not None:
             continue
         element: ex.Located = reading.part
-        hint = "compare it with a literal, or assign it as it is to a variable, whose range it takes"
+        hint: Hint = "compare it with a literal, or assign it as it is to a variable, whose range it takes"
         path = property_path(reading.part) if isinstance(reading.part, rsc.Access) else None
         declared = None if path is None else Data(told.port, told.event, path).type
         if _is_unbounded(declared):
@@ -232,7 +242,12 @@ def _without_range(_: Instances, result: ConeOfInfluence) -> Iterator[Fault]:
             field = declared.eContainer()
             element = field if isinstance(field, rsc.ObjectProperty) else declared
             hint = (
-                "write a range, such as `integer(0..100)`: what lies outside becomes the nearest bound"
+                Replacement(
+                    "write a range, such as `integer(0..100)`: what lies outside becomes the nearest bound",
+                    "integer(0..100)",
+                    declared,
+                    is_choice=True,
+                )
                 if not isinstance(field.eContainer().eContainer(), rsc.InterfaceTypeReference)
                 else f"ROS defines it: declare an object in its place, with a `{field.name}: integer(0..100)`"
             )
@@ -301,5 +316,10 @@ def _outside(
         yield meaning.finding(
             constant,
             f"{value} is not in the range {low}..{high} of `{name}`, expected a value that is",
-            f"write `{low if value < low else high}`, or widen the range of `{name}`",
+            Replacement(
+                f"write `{low if value < low else high}`, or widen the range of `{name}`",
+                f"{low if value < low else high}",
+                constant,
+                is_choice=True,
+            ),
         )

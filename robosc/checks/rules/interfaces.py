@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from robosc.checks.definitions import communications, of_kind, unit_of
 from robosc.checks.libraries import imports, instances, reachable
-from robosc.checks.rule import Finding, Insertion, interface_rule, rule
+from robosc.checks.rule import Finding, Insertion, Replacement, interface_rule, rule
 from robosc.checks.wire_data import Carried, UsedData, Uses, carried_data, carries
 from robosc.checks.wire_faults import Fault, Unknown, faults, misfits, wire_type
 from robosc.diagnostics import Severity
@@ -21,6 +21,7 @@ from robosc.semantics.typing import NONE, UNKNOWN, ObjectType, Type, declared_ty
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from robosc.checks.rule import Hint
     from robosc.ros_types import RosTypes
 
 
@@ -100,7 +101,7 @@ def interface_unknown(base: rsc.Base, interfaces: RosTypes) -> Iterator[Finding]
             element = wanted if wanted is not None and unit_of(wanted) is base else other
             if (element, fault.message) not in reported:
                 reported.add((element, fault.message))
-                yield Finding(element, fault.message, fault.hint)
+                yield Finding(element, fault.message, _meant(fault, element))
     for _, reference in tree(base):
         if isinstance(reference, rsc.InterfaceTypeReference) and isinstance(reference.eContainer(), rsc.EnumDataType):
             others = interfaces.other_kinds(reference.package, reference.rosType, "message")
@@ -114,14 +115,23 @@ def interface_unknown(base: rsc.Base, interfaces: RosTypes) -> Iterator[Finding]
                 )
 
 
+def _meant(fault: Fault | Unknown, element: ex.Located | None) -> Hint:
+    """The hint, which names the type that an interface is meant to use where that is known."""
+    if isinstance(fault, Unknown) and fault.meant is not None and isinstance(element, rsc.Interface):
+        package, name = fault.meant
+        text = f"interface {written(element.name)} use {written(name)} from {written(package)}"
+        return Replacement(fault.hint, text, element)
+    return fault.hint
+
+
 def _unknown(data: Carried, interfaces: RosTypes) -> list[Fault] | list[Unknown]:
     found = faults(data, interfaces, {})
     return [found] if isinstance(found, Unknown) else [fault for fault in found if fault.unknown]
 
 
-def _faulty(base: rsc.Base, interfaces: RosTypes) -> Iterator[tuple[ex.Located, str, str, bool]]:
+def _faulty(base: rsc.Base, interfaces: RosTypes) -> Iterator[tuple[ex.Located, str, Hint, bool]]:
     """Where the base's text must change, why, how, and whether the model uses what is faulty there."""
-    found: dict[tuple[ex.Located, str, str], bool] = {}
+    found: dict[tuple[ex.Located, str, Hint], bool] = {}
     units = {unit: list(carried_data(unit)) for unit in [base, *reachable(base, carries)]}
     everything = UsedData([base, *reachable(base)] if any(units.values()) else ())
     for unit, communicated in units.items():
@@ -134,7 +144,10 @@ def _faulty(base: rsc.Base, interfaces: RosTypes) -> Iterator[tuple[ex.Located, 
                     continue  # the library's own matter
                 element = _place(base, data, fault, uses)
                 if element is not None:
-                    key = (element, fault.message, fault.hint)
+                    hint: Hint = fault.hint
+                    if fault.text is not None and fault.property is not None and fault.property is element:
+                        hint = Replacement(fault.hint, fault.text, fault.property)
+                    key = (element, fault.message, hint)
                     found[key] = found.get(key, False) or fault.is_used(uses)
     yield from ((*key, used) for key, used in found.items())
 

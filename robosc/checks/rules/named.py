@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from robosc.checks.definitions import of_kind, statements
 from robosc.checks.expression_types import CONSTANT, ExpressionCheck, Place
 from robosc.checks.libraries import Meaning, instances, meanings
-from robosc.checks.rule import Finding, on_line, rule
+from robosc.checks.rule import Finding, Replacement, on_line, rule
 from robosc.checks.type_repairs import repair
 from robosc.diagnostics import Severity
 from robosc.metamodel import expression as ex
@@ -123,7 +123,7 @@ def _of_type(reference: rsc.ComplexDataTypeReference) -> Iterator[Finding]:
         yield Finding(
             reference.arguments[0],
             f"{what} takes no arguments, expected the type alone",
-            f"write `{named.name}`",
+            Replacement(f"write `{named.name}`", f"{named.name}", reference),
         )
 
 

@@ -16,7 +16,7 @@ from robosc.checks.definitions import (
     transitions,
 )
 from robosc.checks.libraries import instances
-from robosc.checks.rule import Finding, on_line, rule
+from robosc.checks.rule import Finding, Replacement, on_line, rule
 from robosc.metamodel import robosc as rsc
 from robosc.metamodel.reflection import tree
 from robosc.semantics.communication import event_names, meant
@@ -116,7 +116,9 @@ def unknown_events(base: rsc.Base) -> Iterator[Finding]:
                 named,
                 f"{type(communication).__name__.lower()} `{communication.name}` has no {named.resultType}, expected"
                 f" {enumeration(f'`{name}`' for name in allowed)}",
-                f"write `{written(communication.name)}` alone",
+                Replacement(f"write `{written(communication.name)}` alone", written(communication.name), named)
+                if named.communicationType.component is None
+                else f"write `{written(communication.name)}` alone",
             )
 
 

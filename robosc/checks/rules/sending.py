@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.checks.definitions import communication_of, restricted_events, statements
-from robosc.checks.rule import Finding, rule
+from robosc.checks.rule import Finding, Replacement, rule
 from robosc.metamodel import robosc as rsc
 from robosc.semantics.communication import sent
 from robosc.semantics.typing import NONE, provided_data_type
@@ -37,7 +37,7 @@ def data_provisioning(base: rsc.Base) -> Iterator[Finding]:
             yield Finding(
                 statement.data or statement,
                 f"data is provided to `{communication.name}`, expected none: {what} is declared with the type `none`",
-                "leave the provide statement out: there is no data to send along",
+                Replacement("leave the provide statement out: there is no data to send along", "", statement),
             )
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.checks.definitions import behaviours, common_transitions, states
-from robosc.checks.rule import Finding, Insertion, rule
+from robosc.checks.rule import Finding, Insertion, Replacement, rule
 from robosc.checks.rules.requirement_events import initial_states
 from robosc.metamodel import robosc as rsc
 
@@ -31,7 +31,14 @@ def initial_state(base: rsc.Base) -> Iterator[Finding]:
             yield Finding(
                 behaviour,
                 f"the behaviour of `{component.name}` has no state, expected one that is initial",
-                "add a state, such as `initial marked state idle { }`",
+                Replacement(
+                    "add a state, such as `initial marked state idle { }`",
+                    "behaviour { initial marked state idle { } }",
+                    behaviour,
+                    is_choice=True,
+                )
+                if not behaviour.automaton.definitions
+                else "add a state, such as `initial marked state idle { }`",
                 relies_on=behaviour,
             )
         elif not initial:
@@ -42,6 +49,7 @@ def initial_state(base: rsc.Base) -> Iterator[Finding]:
                     f"write `initial` before the state it starts in, such as `initial state {every[0].name}`",
                     "initial ",
                     every[0],
+                    is_choice=True,
                 ),
                 relies_on=behaviour,
             )
@@ -79,6 +87,7 @@ def marked_state(base: rsc.Base) -> Iterator[Finding]:
                         else f"write `marked` before a state of `{component.name}` where it may rest",
                         "marked ",
                         state,
+                        is_choice=True,
                     ),
                     relies_on=behaviour,
                     relies_on_names=(rsc.Transition,),

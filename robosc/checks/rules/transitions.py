@@ -16,7 +16,7 @@ from robosc.checks.definitions import (
     states,
     transitions,
 )
-from robosc.checks.rule import Finding, on_line, rule
+from robosc.checks.rule import Finding, Replacement, on_line, rule
 from robosc.checks.rules.requirement_events import repeated_events, unknown_events
 from robosc.diagnostics import Severity
 from robosc.metamodel import robosc as rsc
@@ -48,7 +48,13 @@ def result_type(base: rsc.Base) -> Iterator[Finding]:
                 transition,
                 f"{direction}{type(communication).__name__.lower()} `{communication.name}` has no {event}, expected"
                 f" {enumeration(f'`{name}`' for name in allowed)}",
-                f"write {enumeration(forms)}",
+                Replacement(
+                    f"write {enumeration(forms)}",
+                    f"on {allowed[0]} {prepositions[allowed[0]]} ",
+                    transition,
+                    is_choice=len(forms) > 1,
+                    until=transition.communicationType,
+                ),
             )
 
 
