@@ -12,6 +12,8 @@ from typing import Any
 import pytest
 from hypothesis import settings
 
+#: Characters of a parameter that stand in the name of a test.
+LONGEST = 80
 ROS, GENERATORS = Path(__file__).parent / "ros", Path(__file__).parent / "m2t"
 
 # Time is measured in benchmarks; a busy machine fails no test.
@@ -23,6 +25,14 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--accept", action="store_true", help="write what the tests produce as the new golden files")
+
+
+def pytest_make_parametrize_id(val: object) -> str | None:
+    """The name of a long text among the parameters of a test: its beginning. pytest numbers those that begin alike."""
+    if not isinstance(val, str | bytes) or len(val) <= LONGEST:
+        return None
+    text = val if isinstance(val, str) else val.decode("latin-1")
+    return text[:LONGEST].encode("unicode_escape").decode("ascii") + "..."
 
 
 @pytest.hookimpl(optionalhook=True)

@@ -107,7 +107,7 @@ LINE = {"time": 1.0, "direction": "in", "event": "e"}
         (LINE | {"data": {}}, '"data" is to be an object with a value'),
         (LINE | {"message": [3]}, '"message" is to be an object'),
     ],
-    ids=str,
+    ids=lambda given: str(given)[:80],
 )
 def test_the_player_says_which_line_is_wrong(tmp_path: Path, line: Any, why: str) -> None:
     path = tmp_path / "trace.jsonl"
