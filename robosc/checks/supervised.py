@@ -20,7 +20,7 @@ from robosc.semantics.cone_of_influence import (
     cone_of_influence,
 )
 from robosc.semantics.inputs import Computed, Data
-from robosc.semantics.operators import COMPARISONS
+from robosc.semantics.operators import COMPARISONS, FUNCTIONS
 from robosc.semantics.typing import (
     BOOLEAN,
     DOUBLE,
@@ -183,7 +183,7 @@ def function_faults(instances: Instances, result: ConeOfInfluence) -> Iterator[F
         fold(_cases, expression, memo=cases)
         for part in _supervised_parts(expression, where):
             read = next(accesses(part), None) if isinstance(part, ex.FunctionCall) else None
-            if read is None or not isinstance(part, ex.FunctionCall) or part.function == "mod":
+            if read is None or not isinstance(part, ex.FunctionCall) or FUNCTIONS[part.function].is_supervised:
                 continue
             reason = Reason(read, where.within, where.variable)
             kinds = {types(access) for access in accesses(part)}

@@ -113,9 +113,10 @@ class SctExpressions(_Expressions):
                     return ex.BooleanLiteral(value=bool(evaluate(original, lambda reference: reference)))
             if isinstance(original, ex.Conditional):
                 return with_operands(original, operands)
-            if operator_of(original) is None:
+            row = operator_of(original)
+            if row is None:
                 return type(original)(value=original.value)  # type: ignore[attr-defined,call-arg]
-            if isinstance(original, ex.FunctionCall) and original.function != "mod":
+            if isinstance(original, ex.FunctionCall) and not row.is_supervised:
                 constant = next(accesses(original), None) is None
                 return literal(evaluate(original, _no_name)) if constant else _by_cases(original.function, operands)
             made = with_operands(original, operands)

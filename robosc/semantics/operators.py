@@ -94,6 +94,11 @@ class Operator:
         """Whether some operands have no value."""
         return self.rule in {Rule.ROUNDING, Rule.ELEMENTS}
 
+    @property
+    def is_supervised(self) -> bool:
+        """Whether sct models have it, so that the supervisor computes it."""
+        return self.interval is not None
+
 
 def as_double(number: Value) -> float:
     """The number as a double; infinite where it is an integer too large to be one."""
