@@ -33,22 +33,22 @@ def check(
     """
     if base is None:
         return []
-    unread: dict[str, list[Diagnostic]] = {}
+    skipped: dict[str, list[Diagnostic]] = {}
     for finding in known:
-        unread.setdefault(finding.file, []).append(finding)
+        skipped.setdefault(finding.file, []).append(finding)
     findings: list[Diagnostic] = []
     interfaces = interfaces or RosTypes()
     with remembering():
-        for each_base in [base, *reachable(base)]:
-            findings += _findings(each_base, unread.get(place(each_base)[0], []), interfaces)
+        for checked in [base, *reachable(base)]:
+            findings += _findings(checked, skipped.get(place(checked)[0], []), interfaces)
     return in_order(findings)
 
 
-def _findings(base: rsc.Base, unread: Sequence[Diagnostic], interfaces: RosTypes) -> Iterator[Diagnostic]:
+def _findings(base: rsc.Base, skipped: Sequence[Diagnostic], interfaces: RosTypes) -> Iterator[Diagnostic]:
     file = place(base)[0]
     for rule in RULES.values():
         for finding in rule.check(base, interfaces):
-            if not finding.can_be_false(unread):
+            if not finding.can_be_false(skipped):
                 span = place(finding.element)[1]
                 hint, edits, is_choice = finding.said()
                 yield Diagnostic(

@@ -141,10 +141,10 @@ def on_line(element: ex.Located) -> str:
     return f" (line {element.source.span.line})" if element.source else ""
 
 
-def _goes_on(expression: Span, unread: Span) -> bool:
+def _goes_on(expression: Span, skipped: Span) -> bool:
     """Whether text that can't be read may belong to an expression, as the point of `1.` does and the `3` of `2 3`."""
-    behind = expression.end_line == unread.line and 0 <= unread.column - expression.end_column <= 1
-    return behind or expression.contains(unread)
+    behind = expression.end_line == skipped.line and 0 <= skipped.column - expression.end_column <= 1
+    return behind or expression.contains(skipped)
 
 
 def _innermost(element: ex.Located, span: Span) -> ex.Located:

@@ -76,8 +76,8 @@ def _require_same(
     analyses = {analysis.path: analysis} | {found.path: found for found in snapshot.analyses_with(word)}
     for found in analyses.values():
         for file in found.reading.files.values():
-            unread = (file.text.content[start:end] for start, end in file.skipped)
-            if any(re.search(rf"\b{re.escape(word)}\b", part) for part in unread):
+            skipped = (file.text.content[start:end] for start, end in file.skipped)
+            if any(re.search(rf"\b{re.escape(word)}\b", part) for part in skipped):
                 raise _refused(f"mend {file.text.file} first: `{word}` stands in what can't be read")
     documents = dict(snapshot.documents)
     for name, changes in edits.items():

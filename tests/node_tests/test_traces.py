@@ -145,7 +145,9 @@ def test_what_can_not_be_played_is_said(case: Case) -> None:
         case.play()
 
 
-@pytest.mark.parametrize("message", [{"no_such_field": 1}, {"ranges": 10**400}, {"ranges": "x"}], ids=lambda message: str(message)[:80])
+@pytest.mark.parametrize(
+    "message", [{"no_such_field": 1}, {"ranges": 10**400}, {"ranges": "x"}], ids=lambda message: str(message)[:80]
+)
 def test_a_message_that_can_not_be_sent_is_said(case: Case, message: dict[str, Any]) -> None:
     number = next(number for number, line in enumerate(case.trace, 1) if line["event"] == "message_scan.u_response")
     case.trace[number - 1]["message"] = message

@@ -14,7 +14,7 @@ from math import prod
 from typing import TYPE_CHECKING
 
 from robosc.analysis.system import GuardedSystem, counted
-from robosc.analysis.verify.differences import different, happening, on_one_side, refuted, where
+from robosc.analysis.verify.differences import different, event_in_words, on_one_side, refuted, where
 from robosc.analysis.verify.loop_walk import LoopWalk
 from robosc.analysis.verify.transitions import AmbiguityError, of_system
 from robosc.analysis.verify.verdict import Outcome, Verdict
@@ -233,7 +233,7 @@ class _Trial:
         )
         state = {domain.element: before.get(domain.element, 0) for domain in self._layout.state}
         way = system.trace(system.path_to(system.encoding.state(state)))
-        step = happening(event, inputs if possible and enabled else {})
+        step = event_in_words(event, inputs if possible and enabled else {})
         if enabled != possible:
             what = on_one_side(step, TEXT, translated=bool(enabled))
         elif performed != possible:

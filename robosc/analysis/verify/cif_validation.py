@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from robosc.analysis.system import GuardedSystem, counted
 from robosc.analysis.verify.cif_reading import CifError, Specification, read
 from robosc.analysis.verify.correspondence import Correspondence
-from robosc.analysis.verify.differences import different, happening, on_one_side, refuted, where
+from robosc.analysis.verify.differences import different, event_in_words, on_one_side, refuted, where
 from robosc.analysis.verify.transitions import (
     AmbiguityError,
     Transition,
@@ -236,7 +236,7 @@ class _Comparison:
             sum((bit & here).satisfiable() << place for place, bit in enumerate(bits))
             for bits in (difference.ours, difference.theirs)
         )
-        step = happening(event, codes)
+        step = event_in_words(event, codes)
         if element is None:
             what = on_one_side(step, self._text, translated=bool(theirs))
         else:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from robosc.synthesis.encoding import Element
 
 
-def happening(event: sct.Event, inputs: Mapping[Element, int]) -> str:
+def event_in_words(event: sct.Event, inputs: Mapping[Element, int]) -> str:
     """The event with those of its inputs whose codes are given."""
     values = {parameter.name: value(parameter, inputs[parameter]) for parameter in event.inputs if parameter in inputs}
     meaning = with_words(event).removeprefix(event_name(event))

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, TypeVar
 from robosc.analysis.system import counted
 from robosc.analysis.verify.loop import ControlLoop, asked_of_the_loop
 from robosc.analysis.verify.response import bounded_response, confluence, finite_response
-from robosc.analysis.verify.verdict import Outcome, Verdict, happening
+from robosc.analysis.verify.verdict import Outcome, Verdict, trace_step
 from robosc.analysis.wording import listed, name, words
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
@@ -251,7 +251,7 @@ def _nowhere(  # noqa: PLR0913 - all parts of a verdict
         return Verdict(question, Outcome.PROVED, evidence)
     path = system.path_to(anywhere)
     violated = next(one for one, states in violations.items() if system.is_in(path.states[-1], states))
-    trace = (*system.trace(path), *([happening(last(violated))] if last else []))
+    trace = (*system.trace(path), *([trace_step(last(violated))] if last else []))
     return Verdict(question, Outcome.REFUTED, evidence, explanation(violated, path), trace)
 
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from robosc.analysis.paths import shortest_path
 from robosc.analysis.system import counted
 from robosc.analysis.verify.loop import asked_of_the_loop
-from robosc.analysis.verify.verdict import Outcome, Verdict, happening
+from robosc.analysis.verify.verdict import Outcome, Verdict, trace_step
 from robosc.synthesis.encoding import pick
 from robosc.synthesis.fixpoint import coreachable
 from robosc.synthesis.relation import steps
@@ -84,7 +84,7 @@ def _lasso(system: GuardedSystem, divergent: Diagram) -> tuple[tuple[TraceStep, 
         events.append(event)
         if after in states:
             start = states.index(after)
-            taken = [happening(event.relation.event) for event in events]
+            taken = [trace_step(event.relation.event) for event in events]
             return (*system.trace(path), *taken[:start]), tuple(taken[start:])
         states.append(after)
 
@@ -106,7 +106,7 @@ def _run(system: GuardedSystem, codes: dict[Element, int], length: int) -> tuple
     taken = []
     for states in reversed(longer):
         event, codes = _next(system, codes, states)
-        taken.append(happening(event.relation.event))
+        taken.append(trace_step(event.relation.event))
     return tuple(taken)
 
 
@@ -134,8 +134,8 @@ def confluence(loop: ControlLoop) -> Verdict:
     Events that have nothing to do with each other can't lead elsewhere by taking turns: they are looked at apart.
     """
     system = loop.system
-    resting = counted(system.encoding.count(loop.quiescent), "of them at rest").removesuffix("s")
-    evidence = f"{counted(system.encoding.count(loop.states), 'state')}, {resting}"
+    quiescent = counted(system.encoding.count(loop.quiescent), "of them at rest").removesuffix("s")
+    evidence = f"{counted(system.encoding.count(loop.states), 'state')}, {quiescent}"
     skipped = False
     for group in independent_groups(system.internal):
         held = {event.relation.event: loop.held(event.relation.event) for event in group}

@@ -55,7 +55,7 @@ class Verdict:
     seconds: float = 0.0
 
 
-def happening(event: sct.Event) -> TraceStep:
+def trace_step(event: sct.Event) -> TraceStep:
     """The event as the end of a trace, where nothing matters that comes with it."""
     return TraceStep(event_name(event))
 

@@ -146,8 +146,8 @@ def variable(model: sct.SupervisoryControlModel, name: str) -> sct.DiscreteVaria
     return next(variable for variable in plant(model, owner).variables if variable.name == called)
 
 
-def edges(model: sct.SupervisoryControlModel, location: str, happening: str) -> list[sct.Edge]:
-    wanted = event(model, happening)
+def edges(model: sct.SupervisoryControlModel, location: str, name: str) -> list[sct.Edge]:
+    wanted = event(model, name)
     return [edge for edge in place(model, location).edges if edge.event is wanted]
 
 
