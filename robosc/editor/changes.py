@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from robosc.language import File
 
 
-def inlay_hints(_: Snapshot, analysis: Analysis, params: types.InlayHintParams) -> list[types.InlayHint]:
-    """The types of `value` and the parameters of arguments, in a range."""
+def inlay_hints(snapshot: Snapshot, analysis: Analysis, params: types.InlayHintParams) -> list[types.InlayHint]:
+    """The types of `value`, the parameters of arguments and the units of data, in a range."""
     text = analysis.text
     start, end = to_offset(text, params.range.start), to_offset(text, params.range.end)
     return [
@@ -30,7 +30,7 @@ def inlay_hints(_: Snapshot, analysis: Analysis, params: types.InlayHintParams) 
             kind=types.InlayHintKind.Type if note.is_type else types.InlayHintKind.Parameter,
             padding_right=not note.is_type,
         )
-        for note in notes(analysis.file)
+        for note in notes(analysis.file, snapshot.ros_types)
         if start <= note.offset <= end
     ]
 

@@ -10,10 +10,11 @@ from lsprotocol import types
 from robosc.editor.places import to_offset, to_range
 from robosc.language import read
 from robosc.language.classifying import what_of
-from robosc.language.completing import proposals
+from robosc.language.completing import proposals, topic_at
 from robosc.language.describing import summary
 from robosc.language.libraries import LibraryPath
 from robosc.language.signatures import signature
+from robosc.metamodel import robosc as rsc
 
 if TYPE_CHECKING:
     from robosc.editor.project import Analysis, Snapshot
@@ -83,6 +84,9 @@ def completion(snapshot: Snapshot, analysis: Analysis, params: types.CompletionP
     """What can stand at a position."""
     text = analysis.text
     offset = to_offset(text, params.position)
+    topic = topic_at(text.content, offset)
+    if topic is not None:
+        return types.CompletionList(is_incomplete=False, items=_topics(snapshot, to_range(text, *topic)))
 
     def reread(content: str) -> Reading:
         document = snapshot.documents.get(analysis.path)
@@ -99,6 +103,22 @@ def completion(snapshot: Snapshot, analysis: Analysis, params: types.CompletionP
     place = to_range(text, start, end)
     items = [item for proposal in found for item in _items(proposal, place)]
     return types.CompletionList(is_incomplete=False, items=items)
+
+
+def _topics(snapshot: Snapshot, place: types.Range) -> list[types.CompletionItem]:
+    """The names that the project and its libraries give to topics, services and actions."""
+    found: dict[str, str] = {}
+    analyses = [analysis for path in snapshot.models() if (analysis := snapshot.analysis(path)) is not None]
+    for file in (file for analysis in analyses for file in analysis.reading.files.values()):
+        for element in file.declared_names:
+            if isinstance(element, rsc.CommunicationType) and element.identifier:
+                found.setdefault(element.identifier, summary(element))
+    return [
+        types.CompletionItem(
+            name, kind=types.CompletionItemKind.Value, detail=found[name], text_edit=types.TextEdit(place, name)
+        )
+        for name in sorted(found)
+    ]
 
 
 def _items(proposal: Proposal, place: types.Range) -> list[types.CompletionItem]:

@@ -9,15 +9,19 @@ from lsprotocol import types
 
 from robosc.diagnostics import Severity, certain_edits, in_order
 from robosc.diagnostics.rules import address
-from robosc.editor.places import span_range
+from robosc.editor.places import span_range, to_range
+from robosc.language.libraries import declared_name
+from robosc.metamodel import robosc as rsc
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from robosc.diagnostics import Diagnostic, Edit
     from robosc.editor.project import Analysis, Snapshot
-    from robosc.language import Text
+    from robosc.language import Reference, Text
 
+#: The command that adds a folder, by its URI, to those in which libraries are looked for.
+ADD_LIBRARY_FOLDER = "robosc.addLibraryFolder"
 _MEND_ALL = "source.fixAll.robosc"
 CODE_ACTION_OPTIONS = types.CodeActionOptions([types.CodeActionKind.QuickFix, _MEND_ALL])
 _SEVERITIES = {
@@ -78,12 +82,34 @@ def code_actions(snapshot: Snapshot, analysis: Analysis, params: types.CodeActio
                         is_preferred=not finding.is_choice,
                     )
                 )
+        found += _library_folders(snapshot, analysis, params.range)
     if only is not None and any(kind == _MEND_ALL or _MEND_ALL.startswith(f"{kind}.") for kind in only):
         edits = certain_edits(own, text.file)
         if edits:
             whole = types.WorkspaceEdit({uri: _edits(text, edits)})
             found.append(types.CodeAction("Do what all hints say", kind=_MEND_ALL, edit=whole))
     return found
+
+
+def _library_folders(snapshot: Snapshot, analysis: Analysis, place: types.Range) -> list[types.CodeAction]:
+    """For each library in a range that is not found the folders of the project that have it."""
+    found = []
+    for name in analysis.file.names:
+        at = to_range(analysis.text, name.start, name.end)
+        missing = isinstance(name.user, rsc.ImportedComponent) and name.feature == "library" and name.target is None
+        if missing and at.start <= place.end and place.start <= at.end:
+            for folder in dict.fromkeys(path.parent for path in snapshot.models() if _declares(snapshot, path, name)):
+                title = f"look for libraries in {folder}, too"
+                command = types.Command(title, command=ADD_LIBRARY_FOLDER, arguments=[snapshot.uri(str(folder))])
+                found.append(types.CodeAction(title, kind=types.CodeActionKind.QuickFix, command=command))
+    return found
+
+
+def _declares(snapshot: Snapshot, path: Path, name: Reference) -> bool:
+    try:
+        return declared_name(snapshot.texts.read(path, is_input=False)) == name.name
+    except OSError:
+        return False
 
 
 def _edits(text: Text, edits: Iterable[Edit]) -> list[types.TextEdit]:

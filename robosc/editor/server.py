@@ -25,7 +25,7 @@ from robosc.editor.answers import Verdict
 from robosc.editor.changes import incoming_calls, inlay_hints, outgoing_calls, prepare_call_hierarchy
 from robosc.editor.colours import LEGEND, semantic_tokens
 from robosc.editor.completion import OPTIONS, SIGNATURE_OPTIONS, completion, signature_help
-from robosc.editor.findings import CODE_ACTION_OPTIONS, code_actions, published
+from robosc.editor.findings import ADD_LIBRARY_FOLDER, CODE_ACTION_OPTIONS, code_actions, published
 from robosc.editor.places import to_offset
 from robosc.editor.project import Project
 from robosc.editor.renaming import prepare_rename, rename
@@ -90,6 +90,8 @@ class Server(LanguageServer):
         self.project = Project(libraries, interfaces)
         self._worker = ThreadPoolExecutor(1, "analysis")
         self._pause = _PAUSE
+        #: Whether the editor has the commands that lenses and quick fixes name.
+        self.has_commands = False
         self._waiting: asyncio.Task[None] | None = None
         self._published: dict[Path, tuple[int | None, list[types.Diagnostic]]] = {}
         self.verdicts = Verdicts(COMMAND, self._refresh_lenses)
@@ -102,13 +104,24 @@ class Server(LanguageServer):
         super().shutdown()  # type: ignore[no-untyped-call]
 
     def configure(self, params: types.InitializeParams) -> None:
-        """Takes the editor's folders and settings: `libraryPaths`, `interfacePaths`, `pause` in milliseconds."""
+        """Takes the editor's folders and settings.
+
+        These are `libraryPaths`, `interfacePaths`, `pause` in milliseconds, and `commands`, which says that the editor
+        has those of the extension for VS Code.
+        """
         options = params.initialization_options
         given: Mapping[str, Any] = options if isinstance(options, dict) else {}
         libraries, interfaces = (_strings(given.get(name)) for name in ("libraryPaths", "interfacePaths"))
         self.project = Project([*libraries, *self.project.libraries], [*interfaces, *self.project.interfaces])
         self._pause = float(given["pause"]) / 1000 if isinstance(given.get("pause"), int | float) else _PAUSE
+        self.has_commands = given.get("commands") is True
         self.take_folders()
+
+    def add_library_folder(self, folder: str) -> None:
+        """Looks for libraries in one folder more."""
+        self.project.libraries = (*self.project.libraries, self.project.path(folder))
+        self.project.forget()
+        self.changed()
 
     def take_folders(self) -> None:
         """Takes the editor's folders."""
@@ -201,6 +214,7 @@ def _strings(value: Any) -> list[str]:
 def _register(server: Server) -> None:
     _register_texts(server)
     _register_answers(server)
+    _register_commands(server)
 
 
 def _register_texts(server: Server) -> None:
@@ -280,19 +294,21 @@ def _register_answers(server: Server) -> None:
     @server.feature(types.TEXT_DOCUMENT_CODE_LENS)
     async def code_lens(params: types.CodeLensParams) -> list[types.CodeLens]:
         asked = await server.answer(params.text_document.uri, question)
-        return [] if asked is None else lenses(asked, server.verdict(asked))
+        if asked is None:
+            return []
+        return lenses(asked, server.verdict(asked), params.text_document.uri, commands=server.has_commands)
 
     @server.feature(types.TEXT_DOCUMENT_HOVER)
     async def hover(params: types.HoverParams) -> types.Hover | None:
-        def job(
-            snapshot: Snapshot, analysis: Analysis
-        ) -> tuple[types.Hover | None, str | None, Path, Mapping[str, str]]:
+        def job(snapshot: Snapshot, analysis: Analysis) -> tuple[types.Hover | None, str | None, Question | None]:
             named = communication_at(analysis, to_offset(analysis.text, params.position))
-            return reading.hover(snapshot, analysis, params), named, analysis.path, analysis.reading.texts
+            asked = question(snapshot, analysis) if named is not None else None
+            return reading.hover(snapshot, analysis, params), named, asked
 
         answer = await server.answer(params.text_document.uri, job)
-        found, named, path, texts = answer or (None, None, None, {})
-        known = server.verdicts.known(path, texts) if path is not None else None
+        found, named, asked = answer or (None, None, None)
+        # Who asks again has it, also in an editor without code lenses.
+        known = server.verdict(asked) if asked is not None else None
         if found is not None and named is not None and isinstance(known, Verdict) and named in known.guards:
             assert isinstance(found.contents, types.MarkupContent)
             guards = "\n".join(f"- {guard}" for guard in known.guards[named])
@@ -302,6 +318,15 @@ def _register_answers(server: Server) -> None:
     @server.feature(types.WORKSPACE_SYMBOL)
     async def workspace_symbols(params: types.WorkspaceSymbolParams) -> list[types.WorkspaceSymbol]:
         return await server.answer_project(partial(reading.workspace_symbols, query=params.query))
+
+
+def _register_commands(server: Server) -> None:
+    @server.command(ADD_LIBRARY_FOLDER)
+    def add_library_folder(folder: str) -> None:
+        server.add_library_folder(folder)
+        said = "until the editor ends; `libraryPaths` or ROBOSC_PATH keeps it"
+        told = f"libraries are looked for in {server.project.path(folder)}, too, {said}"
+        server.window_show_message(types.ShowMessageParams(types.MessageType.Info, told))
 
 
 def _handler(server: Server, job: Callable[[Snapshot, Analysis, Any], Any]) -> Callable[[Any], Awaitable[Any]]:

@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from robosc.language.outlining import Item
 
 COMMAND = (sys.executable, "-m", "robosc.editor.verdict")
+#: What an editor can do with a robot, by what lenses call it.
+COMMANDS = {"simulate": "robosc.debug", "run": "robosc.run", "verify": "robosc.verify"}
 #: So many seconds synthesis has.
 _LONGEST = 120
 _FAILED = "synthesis failed: `robosc synthesize` tells more"
@@ -49,17 +51,23 @@ def question(_: Snapshot, analysis: Analysis) -> Question | None:
     return Question(analysis.path, analysis.reading.texts, places)
 
 
-def lenses(asked: Question, verdict: Verdict | str | None) -> list[types.CodeLens]:
-    """What to show above the robot and its requirements."""
+def lenses(
+    asked: Question, verdict: Verdict | str | None, uri: str = "", *, commands: bool = False
+) -> list[types.CodeLens]:
+    """What to show above the robot and its requirements; with `commands` what can be done with the robot, too.
+
+    The editor itself does that: `uri` is what it calls the robot's text.
+    """
     robot, *_ = asked.places
+    done = [_lens(asked.places[robot], title, command, [uri]) for title, command in COMMANDS.items() if commands]
     if not isinstance(verdict, Verdict):
-        return [_lens(asked.places[robot], verdict or RUNNING)]
+        return [_lens(asked.places[robot], verdict or RUNNING), *done]
     told = {robot: verdict.robot, **{int(line): said for line, said in verdict.requirements.items()}}
-    return [_lens(asked.places[line], said) for line, said in told.items() if line in asked.places]
+    return [*(_lens(asked.places[line], said) for line, said in told.items() if line in asked.places), *done]
 
 
-def _lens(place: types.Range, said: str) -> types.CodeLens:
-    return types.CodeLens(place, types.Command(said, command=""))
+def _lens(place: types.Range, said: str, command: str = "", arguments: Sequence[Any] | None = None) -> types.CodeLens:
+    return types.CodeLens(place, types.Command(said, command=command, arguments=arguments))
 
 
 def communication_at(analysis: Analysis, offset: int) -> str | None:

@@ -1,10 +1,11 @@
-"""What a reader of a text would like to see beside its words: the types of `value`, the parameters of arguments."""
+"""What a reader of a text would like to see beside its words: types of `value`, parameters of arguments, units."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robosc.language.outlining import own_elements, span
+from robosc.language.units import units
 from robosc.metamodel import robosc as rsc
 from robosc.semantics.typing import UNKNOWN, ArrayType, ObjectType, Type, value_type
 
@@ -12,6 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from robosc.language.scopes import File
+    from robosc.ros_types import RosTypes
 
 
 class Note(NamedTuple):
@@ -22,9 +24,10 @@ class Note(NamedTuple):
     is_type: bool
 
 
-def notes(file: File) -> list[Note]:
+def notes(file: File, ros_types: RosTypes) -> list[Note]:
     """The notes to a text, in order."""
-    return sorted(note for element in own_elements(file) for note in _notes(file, element))
+    found = [note for element in own_elements(file) for note in _notes(file, element)]
+    return sorted([*found, *(Note(offset, f" {unit}", is_type=True) for offset, unit in units(file, ros_types))])
 
 
 def _notes(file: File, element: Any) -> Iterator[Note]:

@@ -33,6 +33,8 @@ if TYPE_CHECKING:
 _NAME = "robosc_completes_here"
 _WORD = re.compile(r"\^?\w*\Z")
 _STRING_OR_COMMENT = re.compile(rf"{pattern('Comment')}|{pattern('String')}|/\*[\s\S]*|[\"'][^\n]*")
+#: Where the name of a topic begins: of a communication, or of one that is imported.
+_TOPIC = re.compile(r"""(?:\bidentifier|\bimport\b.*\bwith\s*\{[^}]*)\s*:\s*(["'])([^"']*)\Z""")
 _QUANTIFIERS = ("all", "any", "count")
 #: What to go on with where a definition is not at its end, the best first, and what is written for it.
 _GOING_ON = {
@@ -84,6 +86,15 @@ def proposals(
             found |= dict.fromkeys(_named(read(text), start, ros_types, libraries))
     found |= dict.fromkeys(_ros_names(content, start, ros_types))
     return start, end, list(found)
+
+
+def topic_at(content: str, offset: int) -> tuple[int, int] | None:
+    """The range within the quotes where an offset lies in the name of a topic, service or action; None elsewhere."""
+    before = _TOPIC.search(content[content.rfind("\n", 0, offset) + 1 : offset])
+    if before is None:
+        return None
+    behind = re.match(rf"[^{before[1]}\n]*(?={before[1]})|", content[offset:])
+    return offset - len(before[2]), offset + (behind.end() if behind else 0)
 
 
 def _end(found: re.Match[str]) -> int:

@@ -171,6 +171,7 @@ def _meaning(reading: Reading, file: File, element: Any) -> Iterator[str]:  # no
             )
         case rsc.CommunicationType():
             yield from _communication(file, element)
+            yield from _restricted(reading, element)
         case rsc.Constant():
             value = constant_value(element.value)
             yield "Constant" + ("." if value is None else f", `{_value_text(value)}`.")
@@ -237,6 +238,22 @@ def _communication(file: File, communication: rsc.CommunicationType) -> Iterator
         yield f"ROS name: `{communication.identifier}`."
     elif communication.computedIdentifier is not None:
         yield f"ROS name: `{_source(file, communication.computedIdentifier)}`."
+
+
+def _restricted(reading: Reading, communication: rsc.CommunicationType) -> Iterator[str]:
+    """Which requirements speak of what a communication starts."""
+    found: dict[Any, str] = {}
+    for file, name in _uses(reading, communication):
+        around = name.user
+        while around is not None and not isinstance(around, rsc.Requirement):
+            around = around.eContainer()
+        if around is not None:
+            where = f"line {file.text.span(name.start, name.end).line}"
+            if file is not reading.file and file.base is not None:
+                where += f" of `{file.base.name}`"
+            found.setdefault(around, f"- `{_source(file, around)}`, {where}")
+    if found:
+        yield "Restricted by:\n" + "\n".join(found.values())
 
 
 def _stated(file: File, element: Any) -> str:

@@ -113,6 +113,13 @@ CASES = [
     ),
     ("robot R {\n  component C { behaviour { initial state s { } state t { transition goto |", {"s", "t"}, set()),
     (behind("identifier: ns + ", '"|" + '), set(), {"limit"}),
+    (
+        behind('is Lidar("/front")\n', '  component X { outgoing message m with identifier: "/sp|"'),
+        {"/drive", "/speed"},
+        {"limit"},
+    ),
+    (behind("import Motors", ' with { drive: "|" }'), {"/drive", "/speed"}, {"limit"}),
+    (behind("provide reach with ", '{ x: "|" } '), set(), {"/drive"}),
     (behind("robot Cart {\n", "  // |\n"), set(), {"component"}),
 ]
 

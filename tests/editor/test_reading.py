@@ -10,6 +10,7 @@ from lsprotocol import types
 from pygls.exceptions import JsonRpcException
 
 from robosc.editor.colours import LEGEND
+from robosc.editor.findings import ADD_LIBRARY_FOLDER
 from robosc.language.formatting import format_text
 from robosc.language.text import Text
 from tests.editor.server import (
@@ -194,6 +195,7 @@ async def test_selection_grows(client: Editor, folder: Path) -> None:
         ("Door.open", 1, "Where the cart may go."),
         ("drive needs", 1, "Message to the robot's nodes"),
         ("drive needs", 1, "From library `Wheels`."),
+        ("drive needs", 1, '- `requirement R1 "only through an open door": drive needs Door.open`, line 15'),
         ("R1", 1, "The supervisor lets `drive` start only while `Door.open` holds."),
         ("Motors", 1, "component Motors {"),
     ],
@@ -400,6 +402,61 @@ async def test_inlay_hints(client: Editor, folder: Path) -> None:
         ("ns:", position(text, '"/red"')),
         ("d:", position(text, "0.5")),
     ]
+    close(client, uri)
+
+
+async def test_units_of_what_ros_defines(client: Editor, folder: Path) -> None:
+    text = """robot Rover {
+  datatype object Battery { voltage: double percentage: double }
+  datatype enum Power from Battery to { value.voltage > 11.0 -> full default -> low }
+  interface battery use BatteryState from sensor_msgs
+  component Sensors {
+    outgoing message range with type: sensor_msgs/Range
+    outgoing message power with type: Power links battery
+    incoming message move with type: geometry_msgs/Twist
+    behaviour {
+      variable near: boolean = false
+      initial marked state on { on response from range do near := value.range < 0.5 }
+    }
+  }
+  provide move with { linear: { x: 0.2 }, angular: { z: -0.5 } }
+}
+"""
+    uri, _ = await opened(client, folder / "units_of_ros.rscd", text)
+    whole = types.Range(types.Position(0, 0), types.Position(text.count("\n"), 0))
+    hints = await client.text_document_inlay_hint_async(_about(uri, types.InlayHintParams, range=whole))
+    assert [(hint.label, hint.position) for hint in hints if hint.label.startswith(" ")] == [
+        (" V", position(text, "value.voltage", 13)),
+        (" m", position(text, "value.range", 11)),
+        (" m/s", position(text, "0.2", 3)),
+        (" rad/s", position(text, "-0.5", 4)),
+    ]
+    close(client, uri)
+
+
+async def test_signature_help_over_the_protocol(client: Editor, folder: Path) -> None:
+    text = ROBOT.replace("with 0.5", "with max(0.5, ")
+    uri, _ = await opened(client, folder / "signature.rscd", text)
+    asked = types.SignatureHelpParams(**at(uri, position(text, "max(0.5, ", 9)))
+    found = await client.text_document_signature_help_async(asked)
+    assert (found.signatures[0].label, found.active_parameter) == ("max(a, b)", 1)
+    close(client, uri)
+
+
+async def test_a_library_elsewhere_in_the_project_is_offered(client: Editor, folder: Path) -> None:
+    (folder / "shared").mkdir()
+    (folder / "shared" / "rims.rscd").write_text(LIBRARY.replace("Wheels", "Rims"))
+    text = ROBOT.replace("Wheels", "Rims")
+    uri, found = await opened(client, folder / "elsewhere.rscd", text)
+    (finding,) = [finding for finding in found if "there is no library" in finding.message]
+    (action,) = await client.text_document_code_action_async(
+        _about(uri, types.CodeActionParams, range=finding.range, context=types.CodeActionContext([finding]))
+    )
+    assert action.title == f"look for libraries in {folder / 'shared'}, too"
+    # The client takes a code action with a command for a command.
+    command = types.ExecuteCommandParams(ADD_LIBRARY_FOLDER, [(folder / "shared").as_uri()])
+    await client.workspace_execute_command_async(command)
+    assert await findings(client, uri, 1) == []
     close(client, uri)
 
 

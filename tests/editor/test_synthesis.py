@@ -97,6 +97,15 @@ def test_lenses_stand_at_names() -> None:
     ]
 
 
+def test_what_an_editor_can_do_with_a_robot() -> None:
+    shown = lenses(asked(ROBOT), None, "file:///nowhere/cart.rscd", commands=True)
+    assert [(lens.command.title, lens.command.command, lens.command.arguments) for lens in shown[1:]] == [
+        ("simulate", "robosc.debug", ["file:///nowhere/cart.rscd"]),
+        ("run", "robosc.run", ["file:///nowhere/cart.rscd"]),
+        ("verify", "robosc.verify", ["file:///nowhere/cart.rscd"]),
+    ]
+
+
 @pytest.mark.asyncio
 async def test_over_the_protocol(tmp_path: Path) -> None:
     (tmp_path / "wheels.rscd").write_text(LIBRARY)

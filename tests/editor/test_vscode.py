@@ -13,6 +13,8 @@ import pytest
 import robosc
 from robosc import cli
 from robosc.diagnostics import ModelError, as_text
+from robosc.editor.findings import ADD_LIBRARY_FOLDER
+from robosc.editor.synthesis import COMMANDS
 from robosc.language import formatting
 from robosc.language.text import Text
 from robosc.m2t.targets import TARGETS
@@ -96,6 +98,12 @@ def test_commands_are_those_that_it_registers() -> None:
     assert {
         called for step in steps() for called in re.findall(r"\(command:(robosc\.\w+)\)", step["description"])
     } <= told
+
+
+def test_the_server_names_commands_that_it_registers() -> None:
+    told = {command["command"] for command in MANIFEST["contributes"]["commands"]}
+    assert set(COMMANDS.values()) <= told
+    assert f'command === "{ADD_LIBRARY_FOLDER}"' in SOURCES["extension.ts"]
 
 
 def test_tasks_are_commands_of_the_tool() -> None:

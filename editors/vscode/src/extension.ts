@@ -18,9 +18,11 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
     "robosc.synthesize": () => onModel(context, (tool, file) => start(tool, "synthesize", file)),
     "robosc.verify": () => onModel(context, (tool, file) => start(tool, "verify", file)),
     "robosc.transform": () => onModel(context, transform),
+    "robosc.run": () => onModel(context, run),
     "robosc.explain": () => onModel(context, (tool, file, editor) => explain(tool, file, editor, answers)),
     "robosc.diagram": () => onModel(context, (tool, file) => diagrams.show(tool, file)),
     "robosc.debug": () => onModel(context, (_tool, file) => debug(file)),
+    "robosc.chooseLibraryFolder": () => chooseLibraryFolder(),
     "robosc.setUp": async () => (await setUp(context)) !== null && (await serve(context)),
     "robosc.restart": () => serve(context),
   };
@@ -66,6 +68,14 @@ async function serve(context: vscode.ExtensionContext): Promise<void> {
     initializationOptions: {
       libraryPaths: set.get("libraryPaths", []),
       interfacePaths: set.get("interfacePaths", []),
+      commands: true,
+    },
+    middleware: {
+      // The server would forget the folder when the editor ends: it goes to the settings, which start it anew.
+      executeCommand: (command, parameters, next) =>
+        command === "robosc.addLibraryFolder"
+          ? addLibraryFolder(vscode.Uri.parse(String(parameters[0])))
+          : next(command, parameters),
     },
   };
   client = new LanguageClient("robosc", "RoboSC", { command: tool, args: ["lsp"] }, options);
@@ -99,6 +109,33 @@ async function transform(tool: string, file: vscode.Uri): Promise<void> {
   const chosen = await vscode.window.showQuickPick(targets, { canPickMany: true, title: "What is generated" });
   if (chosen !== undefined && chosen.length > 0) {
     await start(tool, "transform", file, ["--to", chosen.join(",")]);
+  }
+}
+
+/** Runs the controller as a node, until the task is ended. */
+async function run(tool: string, file: vscode.Uri): Promise<void> {
+  const ros = await vscode.window.showQuickPick(["ROS 2", "ROS 1"], { title: "Which ROS the node is for" });
+  if (ros !== undefined) {
+    await start(tool, "run", file, [ros === "ROS 2" ? "--ros2" : "--ros1"]);
+  }
+}
+
+async function addLibraryFolder(folder: vscode.Uri): Promise<void> {
+  const set = vscode.workspace.getConfiguration("robosc");
+  const folders = set.get<string[]>("libraryPaths", []);
+  if (!folders.includes(folder.fsPath)) {
+    const target = vscode.workspace.workspaceFolders
+      ? vscode.ConfigurationTarget.Workspace
+      : vscode.ConfigurationTarget.Global;
+    await set.update("libraryPaths", [...folders, folder.fsPath], target);
+  }
+}
+
+async function chooseLibraryFolder(): Promise<void> {
+  const title = "Where else libraries are looked for";
+  const [folder] = (await vscode.window.showOpenDialog({ canSelectFolders: true, canSelectFiles: false, title })) ?? [];
+  if (folder !== undefined) {
+    await addLibraryFolder(folder);
   }
 }
 

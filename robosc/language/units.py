@@ -1,0 +1,114 @@
+"""The units of the data that a text reads and provides, as ROS defines its types."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from robosc.language.outlining import own_elements, span
+from robosc.metamodel import robosc as rsc
+from robosc.ros_types import DefinitionError, Section
+from robosc.ros_types.units import UNITS
+from robosc.ros_types.wire import PRIMITIVES, Basic, Nested, Sequence
+from robosc.semantics.communication import carried, event, sent
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from robosc.language.scopes import File
+    from robosc.ros_types import RosTypes, WireType
+    from robosc.semantics.communication import PortEvent
+
+
+class _Measured(NamedTuple):
+    """What stands at the end of a path of fields: its type, the section of that, and its unit."""
+
+    wire: WireType
+    section: Section
+    unit: str | None = None
+
+
+def units(file: File, ros_types: RosTypes) -> Iterator[tuple[int, str]]:
+    """The units of what is read of events and provided to them, each with the offset behind it."""
+    objects = _objects(file)
+    for element in own_elements(file):
+        if isinstance(element, rsc.Access) and element.value:
+            found = _read(element, objects)
+            for segment in element.segments:
+                if isinstance(segment, rsc.PropertySegment):
+                    found = _field(found, segment.property, ros_types)
+            yield from _told(file, element, found)
+        elif isinstance(element, rsc.ProvideStatement):
+            reference = element.communicationType
+            communication = reference.communicationType if reference is not None else None
+            data = _data(communication, sent(communication))
+            yield from _provided(file, element.data, data, ros_types)
+
+
+def _provided(file: File, value: Any, found: _Measured | None, ros_types: RosTypes) -> Iterator[tuple[int, str]]:
+    if not isinstance(value, rsc.ObjectValue):
+        yield from _told(file, value, found)
+        return
+    for given in value.properties:
+        yield from _provided(file, given.value, _field(found, given.property, ros_types), ros_types)
+
+
+def _told(file: File, element: Any, found: _Measured | None) -> Iterator[tuple[int, str]]:
+    """The unit of a number."""
+    is_number = found is not None and isinstance(found.wire, Basic) and found.wire.name in PRIMITIVES
+    if found is not None and is_number and found.unit is not None and element is not None:
+        yield span(file, element)[1], found.unit
+
+
+def _objects(file: File) -> Mapping[Any, _Measured]:
+    """The ROS types of the objects that a text declares, as its communications link them."""
+    found: dict[Any, _Measured] = {}
+    for communication in own_elements(file):
+        if isinstance(communication, rsc.CommunicationType):
+            for row, declared in carried(communication):
+                data = _data(communication, row)
+                named = declared.type if isinstance(declared, rsc.ComplexDataTypeReference) else None
+                if isinstance(named, rsc.EnumDataType) and isinstance(named.type, rsc.ComplexDataTypeReference):
+                    named = named.type.type
+                if data is not None and isinstance(named, rsc.ObjectDataType):
+                    found.setdefault(named, data)
+    return found
+
+
+def _data(communication: rsc.CommunicationType | None, row: PortEvent | None) -> _Measured | None:
+    """The data of an event of a communication, whose ROS type is known."""
+    if communication is None or communication.interface is None or row is None or row.section is None:
+        return None
+    return _Measured(Nested(communication.interface.package, communication.interface.type), row.section)
+
+
+def _read(access: rsc.Access, objects: Mapping[Any, _Measured]) -> _Measured | None:
+    """What `value` stands for."""
+    around: Any = access
+    while around is not None:
+        if isinstance(around, rsc.ResultTransition):
+            reference = around.communicationType
+            communication = reference.communicationType if reference is not None else None
+            return _data(communication, event(communication, around.resultType))
+        if isinstance(around, rsc.EnumDataType):
+            if isinstance(around.type, rsc.InterfaceTypeReference):
+                return _Measured(Nested(around.type.package, around.type.rosType), Section.MESSAGE)
+            return objects.get(around.type.type) if isinstance(around.type, rsc.ComplexDataTypeReference) else None
+        around = around.eContainer()
+    return None
+
+
+def _field(found: _Measured | None, field: rsc.ObjectProperty | None, ros_types: RosTypes) -> _Measured | None:
+    if found is None or field is None or not isinstance(found.wire, Nested):
+        return None
+    package, name = found.wire.package, found.wire.name
+    for distribution in ros_types.distributions:
+        try:
+            wire = (distribution.fields(package, name, found.section) or {}).get(field.name)
+        except DefinitionError:
+            continue
+        while isinstance(wire, Sequence):
+            wire = wire.element
+        if wire is not None:
+            unit = UNITS.get((package, name), {}).get(field.name, found.unit)
+            return _Measured(wire, Section.MESSAGE, unit)
+    return None
