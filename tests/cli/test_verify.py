@@ -37,6 +37,28 @@ robot Lock {
 """
 
 
+GATE = """\
+robot Gate {
+  component Leaf {
+    incoming message open with identifier: "/open", type: none
+    incoming message push with identifier: "/push", type: none
+    incoming message pull with identifier: "/pull", type: none
+
+    behaviour {
+      initial marked state closed {
+        on request to open
+        on request to push
+        on request to pull
+      }
+    }
+  }
+
+  requirement closed_first: {open, push} needs Leaf.closed
+  requirement pull needs Leaf.closed
+}
+"""
+
+
 @pytest.fixture
 def lock(tmp_path: Path) -> Path:
     """A robot with a choice between two silent transitions."""
@@ -72,7 +94,7 @@ def test_a_table_and_a_count(run: Run, door: Path) -> None:
     ]
     assert answer.stdout.endswith(
         "\nc-translation: no C compiler is here\n\n"
-        "Trusted, not examined: the reading of the text itself, the control loop around the events, the C compiler, "
+        "Trusted, not examined: the reading of the text itself, the ROS node around the control loop, the C compiler, "
         "RoboSC itself; docs/verify.md says more.\n\n"
         "Door: 11 proved, 1 skipped\n"
     )
@@ -132,6 +154,26 @@ def test_as_junit(run: Run, lock: Path, tmp_path: Path) -> None:
     assert "1. response from `Bolt.seen`" in cases["confluence"].find("failure").text
     assert cases["c-translation"].find("skipped").get("message") == "no C compiler is here"
     assert cases["non-blocking"].find("system-out").text == "3 states, 3 of them marked"
+    assert not list(root.iter("properties"))
+
+
+def test_a_test_case_tells_which_requirement_it_verifies(run: Run, tmp_path: Path) -> None:
+    """By the properties that Eclipse S-CORE reads: fully where it is the one test case of the requirement."""
+    robot = tmp_path / "gate.rscd"
+    robot.write_text(GATE)
+    file = tmp_path / "results.xml"
+    assert run("verify", robot, "--junit", file).exit_code == 0
+    told = {
+        case.get("name"): {one.get("name"): one.get("value") for one in case.iter("property")}
+        for case in ElementTree.fromstring(file.read_text()).iter("testcase")  # noqa: S314
+        if case.find("properties") is not None
+    }
+    how = {"TestType": "requirements-based", "DerivationTechnique": "requirements-analysis"}
+    assert list(told.values()) == [
+        {"PartiallyVerifies": "closed_first", **how},
+        {"PartiallyVerifies": "closed_first", **how},
+        {"FullyVerifies": "gate.rscd:17", **how},
+    ]
 
 
 def test_inputs_are_in_the_traces(run: Run, door: Path, monkeypatch: pytest.MonkeyPatch) -> None:

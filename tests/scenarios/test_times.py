@@ -8,7 +8,7 @@ import pytest
 from jsonschema import Draft202012Validator
 
 import robosc
-from robosc.analysis.verify.c_validation import validate_c
+from robosc.analysis.verify import validate_loop
 from robosc.analysis.verify.verdict import Outcome
 from robosc.analysis.wording import words
 from robosc.configuration import Configuration, ControlLoop
@@ -157,7 +157,7 @@ MUTANTS = [
 @pytest.mark.parametrize("mutant", MUTANTS, ids=range(len(MUTANTS)))
 def test_verify_catches_a_wrong_time_in_c(model: sct.SupervisoryControlModel, mutant: tuple[str, str]) -> None:
     files = engine.generate(model, ControlLoop())
-    assert validate_c(model, files).outcome is not Outcome.REFUTED
+    assert validate_loop(model, files).outcome is not Outcome.REFUTED
     spoiled = {name: text.replace(*mutant) for name, text in files.items()}
     assert spoiled != files
-    assert validate_c(model, spoiled).outcome is Outcome.REFUTED
+    assert validate_loop(model, spoiled).outcome is Outcome.REFUTED

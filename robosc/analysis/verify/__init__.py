@@ -11,22 +11,23 @@ text of the robot anew, and holds the plants that were made of it against that.
 
 from __future__ import annotations
 
-from dataclasses import replace
-from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 from robosc.analysis.system import GuardedSystem
 from robosc.analysis.verify import c_validation, cif_validation
-from robosc.analysis.verify.c_validation import Effort, validate_c
+from robosc.analysis.verify.c_exploration import Effort
+from robosc.analysis.verify.c_validation import validate_c, validate_generated_c, validate_loop
 from robosc.analysis.verify.cif_validation import validate_cif
+from robosc.analysis.verify.loop_exploration import LoopEffort
 from robosc.analysis.verify.model_reading import validate_model
 from robosc.analysis.verify.properties import properties
-from robosc.analysis.verify.verdict import Outcome, Verdict
+from robosc.analysis.verify.verdict import Outcome, Verdict, timed
 from robosc.m2t import cif, supervisor
+from robosc.semantics.roles import is_from_cif
 from robosc.synthesis import MEMORY, encoded
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from robosc.configuration import Configuration
     from robosc.m2t.models import Models
@@ -35,11 +36,13 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Effort",
+    "LoopEffort",
     "Outcome",
     "Verdict",
     "validate",
     "validate_c",
     "validate_cif",
+    "validate_loop",
     "validate_model",
     "verify",
     "verify_system",
@@ -51,7 +54,7 @@ def verify(models: Models, configuration: Configuration) -> list[Verdict]:
 
     Raises ValueError where the model has no supervisor, MemoryError where decision diagrams take more than 4 GB.
     """
-    read = _timed(lambda: validate_model(models.robosc, models.sct))
+    read = timed(validate_model, models.robosc, models.sct)
     return [*verify_system(models.sct), read, *validate(models, configuration)]
 
 
@@ -63,32 +66,26 @@ def verify_system(model: sct.SupervisoryControlModel, *, memory: int = MEMORY) -
     """
 
     def look(encoding: Encoding) -> list[Verdict]:
-        return [_timed(examine) for examine in properties(GuardedSystem(model, encoding))]
+        return [timed(examine) for examine in properties(GuardedSystem(model, encoding))]
 
     return encoded(model, look, memory)
 
 
 def validate(models: Models, configuration: Configuration) -> list[Verdict]:
-    """The verdicts on the C and on the CIF that are generated from a model with its supervisor.
+    """The verdicts on the C, its control loop too, and on the CIF that are generated from a model with its supervisor.
 
     Raises ValueError where the model has no supervisor, MemoryError where decision diagrams take more than 4 GB.
     """
-    targets: list[tuple[str, Any, Callable[..., Verdict]]] = [
-        (c_validation.PROPERTY, supervisor, validate_c),
-        (cif_validation.PROPERTY, cif, validate_cif),
+    targets: list[tuple[Sequence[str], Any, Callable[..., list[Verdict]]]] = [
+        (c_validation.PROPERTIES[: 1 if is_from_cif(models.sct) else None], supervisor, validate_generated_c),
+        ((cif_validation.PROPERTY,), cif, lambda *generated: [timed(validate_cif, *generated)]),
     ]
     verdicts = []
-    for question, target, examine in targets:
+    for questions, target, examine in targets:
         obstacles = target.preconditions(models, configuration)
-        verdicts.append(
-            Verdict(question, Outcome.SKIPPED, "", obstacles[0].message)
+        verdicts += (
+            [Verdict(question, Outcome.SKIPPED, "", obstacles[0].message) for question in questions]
             if obstacles
-            else _timed(lambda: examine(models.sct, target.generate(models, configuration)))  # noqa: B023 - called at once
+            else examine(models.sct, target.generate(models, configuration))
         )
     return verdicts
-
-
-def _timed(examine: Callable[[], Verdict]) -> Verdict:
-    """The verdict with its seconds."""
-    began = perf_counter()
-    return replace(examine(), seconds=perf_counter() - began)

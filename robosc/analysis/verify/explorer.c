@@ -1,12 +1,9 @@
-/* Plays a generated supervisor against what its model says of each event, and tells the first difference. Where there is
- * none, it goes on to tell what the control loop does.
+/* Plays a generated supervisor against what its model says of each event, and tells the first difference.
  *
- *     explorer REFERENCE STATES STEPS WALK SCRIPT
+ *     explorer REFERENCE STATES STEPS WALK
  *
  * REFERENCE is the file with the decision diagrams. It explores all states breadth first; where these are more than
  * STATES, or the events in them with all values of their inputs more than STEPS, it walks WALK random steps instead.
- *
- * SCRIPT has operations of the control loop.
  *
  * A value is told as its code: how far it is from the least value, the position of a location or literal.
  */
@@ -67,7 +64,6 @@ static ENGINE(supervisor) robot, placed;
 
 #define PUT_CELL(number, member, least) robot.state.member = (int64_t)(code[number] + UINT64_C(least));
 #define GET_CELL(number, member, least) code[number] = (uint64_t)(int64_t)robot.state.member - UINT64_C(least);
-#define SET_DURATION(place, member) if (duration == (place)) robot.settings.member = milliseconds;
 #define PUT_INPUT(number, member, least) robot.inputs.member = (int64_t)(chosen[number] + UINT64_C(least));
 
 /* Puts the robot into a state; `placed` keeps it as it is then. */
@@ -433,130 +429,15 @@ static bool begin(void)
     return true;
 }
 
-#ifndef STEPWISE
-/* ---- The control loop ---- */
-
-static bool withheld[ENGINE_EVENTS + 1];
-
-static bool before(void *context, ENGINE(event) event)
-{
-    (void)context;
-    return !withheld[event];
-}
-
-static void after(void *context, ENGINE(event) event)
-{
-    (void)context;
-    unsigned happened = 0U;
-    while (happened < EVENTS && events[happened].number != event) {
-        ++happened;
-    }
-    printf(" %u", happened);
-}
-
-static void livelock(void *context)
-{
-    (void)context;
-    printf(" !");
-}
-
-/* Does what the script says, and tells of each operation what happened, and the state after it. */
-static void follow(void)
-{
-    const ENGINE(hooks) hooks = { NULL, before, after, livelock };
-    char operation;
-    while (fscanf(reference, " %c", &operation) == 1) {
-        uint64_t code[CELLS + 1];
-        bool result = false;
-        ENGINE(event) event;
-        if (operation == 'n') {
-            ENGINE(settings) settings = ENGINE(default_settings);
-            settings.events_per_tick = (uint16_t)number();
-            settings.reactions_per_tick = (uint16_t)number();
-            settings.react_immediately = number() != 0U;
-#ifdef TIMES
-            settings.resolution_ms = 0U;
-            now = 0U;
-#endif
-            ENGINE(init)(&robot, &settings, &hooks NOW);
-            memset(withheld, 0, sizeof withheld);
-            continue;
-        }
-        if (operation == 'i') {
-            const uint64_t input = number();
-            chosen[input] = number();
-            put_inputs();
-            continue;
-        }
-        if (operation == 'w') {
-            event = events[number()].number;
-            withheld[event] = !withheld[event];
-            continue;
-        }
-#ifdef TIMES
-        if (operation == 'c') {
-            now = (uint32_t)number();
-            continue;
-        }
-        if (operation == 'd') {
-            const uint64_t duration = number();
-            const uint32_t milliseconds = (uint32_t)number();
-            FOR_DURATIONS(SET_DURATION)
-            continue;
-        }
-#endif
-        printf("\n%c", operation);
-        switch (operation) {
-        case 'p':
-            event = events[number()].number;
-            result = ENGINE(perform)(&robot, event NOW);
-            break;
-        case 'b':
-            ENGINE(begin)(&robot NOW);
-            break;
-        case 'e':
-            ENGINE(end)(&robot NOW);
-            break;
-        case 't':
-            ENGINE(tick)(&robot NOW);
-            break;
-#ifdef TIMES
-        case 'x':
-            result = ENGINE(expire)(&robot, now);
-            break;
-#endif
-        default:
-            ENGINE(settle)(&robot NOW);
-            break;
-        }
-        printf(" = %d", result);
-#ifdef TIMES
-        printf(" %lu", (unsigned long)ENGINE(wait)(&robot, now));
-#endif
-        get(code);
-        tell(code, CELLS);
-    }
-}
-#endif
-
 int main(int arguments, char **argument)
 {
-    if (arguments != 6 || (reference = fopen(argument[1], "r")) == NULL) {
-        fputs("explorer REFERENCE STATES STEPS WALK SCRIPT\n", stderr);
+    if (arguments != 5 || (reference = fopen(argument[1], "r")) == NULL) {
+        fputs("explorer REFERENCE STATES STEPS WALK\n", stderr);
         return 1;
     }
     load();
-    if (begin()) {
-        if (!explore(strtoull(argument[2], NULL, 10), strtoull(argument[3], NULL, 10))) {
-            walk(strtoull(argument[4], NULL, 10));
-        }
-#ifndef STEPWISE
-        reference = fopen(argument[5], "r");
-        if (reference == NULL) {
-            return 1;
-        }
-        follow();
-#endif
+    if (begin() && !explore(strtoull(argument[2], NULL, 10), strtoull(argument[3], NULL, 10))) {
+        walk(strtoull(argument[4], NULL, 10));
     }
     return 0;
 }

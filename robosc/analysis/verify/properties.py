@@ -5,8 +5,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING, TypeVar
+from pathlib import PurePath
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from robosc.analysis.system import counted
 from robosc.analysis.verify.loop import ControlLoop, asked_of_the_loop
@@ -15,6 +17,7 @@ from robosc.analysis.verify.verdict import Outcome, Verdict, trace_step
 from robosc.analysis.wording import listed, name, words
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
+from robosc.metamodel.places import place
 from robosc.semantics.printing import RobotPrinter
 from robosc.semantics.roles import event_name, is_from_cif, plant_of
 from robosc.semantics.walks import copied
@@ -49,9 +52,9 @@ def properties(system: GuardedSystem) -> list[Callable[[], Verdict]]:
         partial(non_blocking, system),
         partial(controllability, system),
         *([] if stepwise else [partial(input_enabledness, system)]),
-        *(partial(requirement_holds, system, requirement) for requirement in system.model.requirements),
-        *(partial(invariant_holds, system, invariant) for invariant in system.model.invariants),
-        *(partial(claim_holds, system, claimed) for claimed in system.model.properties),
+        *(partial(_stated, requirement_holds, system, stated) for stated in system.model.requirements),
+        *(partial(_stated, invariant_holds, system, stated) for stated in system.model.invariants),
+        *(partial(_stated, claim_holds, system, stated) for stated in system.model.properties),
         *([] if stepwise else [partial(no_dead_events, system)]),
         partial(maximal_permissiveness, system),
         *([] if stepwise else _in_the_loop(system)),
@@ -123,6 +126,19 @@ def input_enabledness(system: GuardedSystem) -> Verdict:
 
     evidence = f"{system.size}, {counted(len(inputs), 'event')}"
     return _nowhere("input-enabledness", system, evidence, blocking, explanation)
+
+
+def _stated(examine: Callable[[GuardedSystem, Any], Verdict], system: GuardedSystem, stated: Any) -> Verdict:
+    """The verdict on what the robot model states, with what that is called."""
+    return replace(examine(system, stated), requirement=requirement_identifier(stated))
+
+
+def requirement_identifier(requirement: sct.StatedRequirement) -> str:
+    """The name of a requirement; where it has none, file and line. Several in the model may come from one of a text."""
+    if requirement.name or requirement.source is None:
+        return requirement.name or ""
+    file, span = place(requirement)
+    return f"{PurePath(file).name}:{span.line}"
 
 
 def requirement_name(requirement: sct.StatedRequirement) -> str:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
-from typing import TYPE_CHECKING, Any
+from time import perf_counter
+from typing import TYPE_CHECKING, Any, ParamSpec
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from robosc.analysis.paths import TraceStep, trace_data
@@ -14,15 +15,21 @@ from robosc.diagnostics.visible import visible, visible_lines
 from robosc.semantics.roles import event_name
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from robosc.metamodel import sct
 
+P = ParamSpec("P")
+
 #: What no verdict is about.
 TRUSTED = (
-    "Trusted, not examined: the reading of the text itself, the control loop around the events, the C compiler, RoboSC "
-    "itself; docs/verify.md says more."
+    "Trusted, not examined: the reading of the text itself, the ROS node around the control loop, the C compiler, "
+    "RoboSC itself; docs/verify.md says more."
 )
+
+
+#: How a requirement is verified, in the words that S-CORE has for test cases.
+_HOW = (("TestType", "requirements-based"), ("DerivationTechnique", "requirements-analysis"))
 
 
 class Outcome(StrEnum):
@@ -41,7 +48,8 @@ class Verdict:
     """The answer to one question, in `seconds`.
 
     `property` is its short name (`non-blocking`), `evidence` what was looked at (`1,234 states`), `explanation` a
-    sentence where it is refuted or skipped. `trace` is then a shortest way from the initial state to the fault,
+    sentence where it is refuted or skipped, `requirement` what the requirement is called that it is about, if any.
+    `trace` is a shortest way from the initial state to the fault,
     `onwards` how it can go on from there, `other` a second way from there, where these are needed to show it.
     """
 
@@ -53,6 +61,13 @@ class Verdict:
     onwards: tuple[TraceStep, ...] = ()
     other: tuple[TraceStep, ...] = ()
     seconds: float = 0.0
+    requirement: str = ""
+
+
+def timed(examine: Callable[P, Verdict], *arguments: P.args, **named: P.kwargs) -> Verdict:
+    """The verdict of an examination with its seconds."""
+    began = perf_counter()
+    return replace(examine(*arguments, **named), seconds=perf_counter() - began)
 
 
 def trace_step(event: sct.Event) -> TraceStep:
@@ -87,7 +102,8 @@ def as_junit(model: sct.SupervisoryControlModel, verdicts: Sequence[Verdict], fi
     """JUnit XML, the form of test results that continuous integration reads: a property is a test case.
 
     The model stands in `file`; what is refuted failed, with its trace as the text. The attributes and elements are
-    those that Jenkins, GitLab and GitHub's test reporters have in common (https://github.com/testmoapp/junitxml).
+    those that Jenkins, GitLab and GitHub's test reporters have in common (https://github.com/testmoapp/junitxml); the
+    properties of what verifies a requirement are those that Eclipse S-CORE links test cases by.
     """
     numbers = {
         "tests": str(len(verdicts)),
@@ -109,6 +125,12 @@ def as_junit(model: sct.SupervisoryControlModel, verdicts: Sequence[Verdict], fi
                 "time": _seconds(verdict.seconds),
             },
         )
+        if verdict.requirement:
+            properties = SubElement(case, "properties")
+            alone = sum(other.requirement == verdict.requirement for other in verdicts) == 1
+            verifies = "FullyVerifies" if alone else "PartiallyVerifies"
+            for key, value in ((verifies, verdict.requirement), *_HOW):
+                SubElement(properties, "property", {"name": key, "value": visible(value)})
         if verdict.outcome is Outcome.REFUTED:
             failure = SubElement(
                 case, "failure", {"message": visible(verdict.explanation), "type": verdict.outcome.value}

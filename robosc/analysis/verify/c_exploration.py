@@ -1,0 +1,168 @@
+"""Plays the generated C against the supervised model, state by state."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import prod
+from typing import TYPE_CHECKING
+
+from robosc.analysis.system import GuardedSystem, counted
+from robosc.analysis.verify.c_program import TEXT, CProgram
+from robosc.analysis.verify.differences import different, event_in_words, on_one_side, refuted, where
+from robosc.analysis.verify.transitions import AmbiguityError, of_system
+from robosc.analysis.verify.verdict import Outcome, Verdict
+from robosc.semantics.roles import event_name
+from robosc.semantics.start import first_state
+from robosc.synthesis import MEMORY
+from robosc.synthesis.bdd import Diagrams, with_enough_memory
+from robosc.synthesis.encoding import Encoding, Layout, domain_size, smallest
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from robosc.metamodel import sct
+    from robosc.synthesis.bdd import Diagram
+    from robosc.synthesis.encoding import Element
+
+PROPERTY = "c-translation"
+
+
+@dataclass(frozen=True)
+class Effort:
+    """How far to go: all states are explored up to so many, with up to so many steps from them, else a walk is taken.
+
+    A step is an event with values of its inputs. `walk` is the number of random steps, always the same ones.
+    """
+
+    states: int = 1_000_000
+    steps: int = 500_000_000
+    walk: int = 1_000_000
+
+
+def explore_events(program: CProgram, effort: Effort | None = None) -> Verdict:
+    """Whether the compiled C does what its model says with its supervisor.
+
+    Raises CompileError where it is no C, MemoryError where the decision diagrams take more than 4 GB.
+    """
+    try:
+        return with_enough_memory(_Trial(program, effort or Effort()).run, MEMORY)
+    except AmbiguityError as open_:
+        return Verdict(PROPERTY, Outcome.SKIPPED, "", f"{open_}, and {TEXT} takes the first")
+
+
+class _Trial:
+    """An explorer of one model's engine."""
+
+    def __init__(self, program: CProgram, effort: Effort) -> None:
+        self._program = program
+        self._model = program.model
+        self._effort = effort
+        self._layout = Layout(program.model)
+        self._cells, self._inputs, self._events = program.cells, program.inputs, program.events
+
+    def run(self, capacity: int) -> Verdict:
+        """What the explorer finds, with so many nodes for the decision diagrams."""
+        encoding = Encoding(self._layout, Diagrams(self._layout.levels, capacity))
+        system = GuardedSystem(self._model, encoding)
+        (self._program.folder / "reference").write_text("\n".join(self._reference(system)), encoding="ascii")
+        effort = self._effort
+        # The supervisor knows how many states there are; the explorer gives up by itself where it should be wrong.
+        known = system.supervisor.controlledStates or 0
+        widest = max((prod(map(domain_size, event.inputs)) for event in self._events), default=1)
+        states = effort.states if known <= effort.states and known * widest <= effort.steps else 0
+        command = [self._program.explorer, "reference", str(states), str(effort.steps), str(effort.walk)]
+        done = self._program.done(command)
+        if done.returncode != 0:
+            return refuted(PROPERTY, f"{TEXT} ends with status {done.returncode}: {done.stderr.strip()}")
+        word, *numbers = done.stdout.split()
+        return self._verdict(system, word, list(map(int, numbers)))
+
+    def _reference(self, system: GuardedSystem) -> Iterator[str]:
+        """What `load` in the explorer reads."""
+        encoding = system.encoding
+        nodes = _Nodes(encoding.diagrams)
+        effects = list(self._effects(system, nodes))
+        yield f"{self._layout.levels} {len(nodes.lines)}"
+        yield from nodes.lines
+        for cell in (*self._cells, *self._inputs):
+            levels = self._layout.domains[cell].levels[::-1]
+            yield " ".join(map(str, (domain_size(cell) - 1, len(levels), *levels)))
+        start = _start(self._model)
+        yield from (str(start[cell]) for cell in self._cells)
+        yield from effects
+
+    def _effects(self, system: GuardedSystem, nodes: _Nodes) -> Iterator[str]:
+        cells = {cell: position for position, cell in enumerate(self._cells)}
+        inputs = {parameter: position for position, parameter in enumerate(self._inputs)}
+        for event, transition in of_system(system).items():
+            changed = [cell for cell in self._cells if cell in transition.after]
+            yield " ".join(map(str, (nodes.number(transition.enabled), len(event.inputs))))
+            yield from (str(inputs[parameter]) for parameter in event.inputs)
+            yield str(len(changed))
+            for element in changed:
+                bits = transition.bits(element, system.encoding)
+                yield " ".join(map(str, (cells[element], *map(nodes.number, bits))))
+
+    def _verdict(self, system: GuardedSystem, word: str, numbers: Sequence[int]) -> Verdict:
+        match word:
+            case "explored":
+                evidence = f"{counted(numbers[0], 'state')}, {counted(numbers[1], 'step')}"
+                return Verdict(PROPERTY, Outcome.PROVED, evidence)
+            case "walked":
+                return Verdict(PROPERTY, Outcome.SAMPLED, counted(numbers[0], "random step"))
+            case "missing":
+                return refuted(PROPERTY, f"{TEXT} has no event `{event_name(self._events[numbers[0]])}`")
+            case "initial":
+                codes = dict(zip(self._cells, numbers, strict=True))
+                return refuted(PROPERTY, f"at the start {different(codes, _start(self._model), TEXT)}")
+        return self._difference(system, numbers)
+
+    def _difference(self, system: GuardedSystem, numbers: Sequence[int]) -> Verdict:
+        event, (possible, enabled, performed) = self._events[numbers[0]], numbers[1:4]
+        told = iter(numbers[4:])
+        before, inputs, after, expected = (
+            dict(zip(elements, told, strict=False))
+            for elements in (self._cells, self._inputs, self._cells, self._cells)
+        )
+        state = {domain.element: before.get(domain.element, 0) for domain in self._layout.state}
+        way = system.trace(system.path_to(system.encoding.state(state)))
+        step = event_in_words(event, inputs if possible and enabled else {})
+        if enabled != possible:
+            what = on_one_side(step, TEXT, translated=bool(enabled))
+        elif performed != possible:
+            what = f"{step} {'is enabled but does not' if possible else 'is not enabled but does'} happen in {TEXT}"
+        else:
+            what = f"after {step}, {'' if possible else 'which can not happen, '}{different(after, expected, TEXT)}"
+        return refuted(PROPERTY, what + where(system, event, state), way)
+
+
+def _start(model: sct.SupervisoryControlModel) -> dict[Element, int]:
+    """The code of each element at the start."""
+    return {cell: value - smallest(cell) for cell, value in first_state(model).items()}
+
+
+class _Nodes:
+    """The nodes of decision diagrams, numbered: false is 0, true 1, and of each other the children come first."""
+
+    def __init__(self, diagrams: Diagrams) -> None:
+        self.lines: list[str] = []
+        self._numbers = {diagrams.false: 0, diagrams.true: 1}
+
+    def number(self, diagram: Diagram) -> int:
+        """The number of a diagram's root."""
+        pending = [diagram]
+        while pending:
+            top = pending[-1]
+            if top in self._numbers:
+                pending.pop()
+                continue
+            children = top.cofactors()
+            assert children is not None
+            missing = [child for child in children if child not in self._numbers]
+            if missing:
+                pending += missing
+            else:
+                high, low = (self._numbers[child] for child in children)
+                self._numbers[top] = len(self.lines) + 2
+                self.lines.append(f"{top.node_level()} {high} {low}")
+        return self._numbers[diagram]

@@ -1,0 +1,146 @@
+"""A generated C engine, compiled with a program that tries it."""
+
+from __future__ import annotations
+
+import errno
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+from contextlib import contextmanager
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from robosc.files.resources import locate
+from robosc.m2t.c.comments import string_literal
+from robosc.m2t.c.names import CNames
+from robosc.semantics.roles import event_name, is_from_cif
+from robosc.synthesis.encoding import smallest
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+    from pathlib import Path
+
+    from robosc.metamodel import sct
+    from robosc.synthesis.encoding import Element
+
+TEXT = "the generated C"
+COMPILERS = ("cc", "gcc", "clang")
+#: What a compiler says that lacks room, and not an understanding of its text.
+_SHORTAGE = re.compile(
+    "|".join([*map(os.strerror, (errno.ENOSPC, errno.EDQUOT, errno.ENOMEM)), "Killed signal", "memory exhausted"])
+)
+
+
+def c_compiler() -> str | None:
+    """The C compiler that is found."""
+    return next(filter(shutil.which, COMPILERS), None)
+
+
+class CompileError(Exception):
+    """The generated text is no C, as its message says."""
+
+
+class CProgram:
+    """A model's engine in a folder, and what it is made of, in the order in which programs speak of it.
+
+    Raises CompileError where the text is none, OSError where it can't be compiled for another reason.
+    """
+
+    def __init__(
+        self, model: sct.SupervisoryControlModel, folder: Path, compiler: str, files: Mapping[str, str]
+    ) -> None:
+        self.model = model
+        self.folder = folder
+        self._compiler = compiler
+        #: What the engine's state holds, and then its inputs.
+        self.cells: list[Element] = []
+        for plant in model.plants:
+            self.cells += [*([plant] if len(plant.locations) > 1 else []), *plant.variables]
+        self.inputs: list[Element] = [parameter for plant in model.plants for parameter in plant.inputs]
+        self.events = [event for plant in model.plants for event in plant.events]
+        for path, text in files.items():
+            (folder / path).write_text(text, encoding="utf-8")
+        names = CNames(model)
+        (folder / "model.h").write_text(self._header(names), encoding="utf-8")
+        self._compile("-c", f"{names.prefix}_supervisor.c", "-o", "engine.o")
+
+    @cached_property
+    def explorer(self) -> str:
+        """The command that compares the events of the engine with their decision diagrams."""
+        return self._linked("explorer")
+
+    @cached_property
+    def follower(self) -> str:
+        """The command that runs the engine's control loop."""
+        return self._linked("follower")
+
+    def _linked(self, name: str) -> str:
+        shutil.copy(locate(f"analysis/verify/{name}.c"), self.folder)
+        self._compile(f"{name}.c", "engine.o", "-o", name)
+        return f"./{name}"
+
+    def _compile(self, *arguments: str) -> None:
+        done = self.done([self._compiler, "-std=c99", "-O1", "-w", *arguments])
+        if done.returncode == 0:
+            return
+        short = next((line for line in done.stderr.splitlines() if _SHORTAGE.search(line)), None)
+        if short is not None or done.returncode < 0:
+            raise OSError(short or f"{self._compiler} was ended by signal {-done.returncode}")
+        first = next((line for line in done.stderr.splitlines() if "error" in line), done.stderr.strip())
+        raise CompileError(f"{self._compiler} does not compile {TEXT}: {first}")
+
+    def done(self, command: Sequence[str]) -> subprocess.CompletedProcess[str]:
+        """As `subprocess.run` in the folder; but where that is interrupted, what the command has begun ends, too."""
+        with self.running(command) as process:
+            output, errors = process.communicate()
+        return subprocess.CompletedProcess(command, process.returncode, output, errors)
+
+    @contextmanager
+    def running(self, command: Sequence[str]) -> Iterator[subprocess.Popen[str]]:
+        """The command, begun in the folder; where it is not waited for to the end, it ends with what it has begun."""
+        with subprocess.Popen(  # noqa: S603
+            command,
+            cwd=self.folder,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            errors="replace",
+            env={**os.environ, "LC_ALL": "C"},
+            process_group=0,
+        ) as process:
+            try:
+                yield process
+            except BaseException:
+                if sys.platform == "win32":
+                    process.kill()
+                else:
+                    os.killpg(process.pid, signal.SIGKILL)
+                raise
+
+    def _header(self, names: CNames) -> str:
+        """What of `explorer.c` the model decides; `explorer.c` says what each macro is."""
+
+        def for_all(elements: Sequence[Element]) -> str:
+            told = (
+                f"DO({number}, {names.member(one)}, {smallest(one) % 2**64})" for number, one in enumerate(elements)
+            )
+            return " ".join(told)
+
+        durations = (f"DO({number}, {names.setting(one)})" for number, one in enumerate(self.model.durations))
+        events = " ".join(f"{string_literal(event_name(event))}," for event in self.events)
+        return (
+            f'#include "{names.prefix}_supervisor.h"\n'
+            f"enum {{ CELLS = {len(self.cells)}, INPUTS = {len(self.inputs)}, EVENTS = {len(self.events)} }};\n"
+            f"#define EVENT_NAMES {events}\n"
+            f"#define FOR_CELLS(DO) {for_all(self.cells)}\n"
+            f"#define FOR_INPUTS(DO) {for_all(self.inputs)}\n"
+            f"#define ENGINE(name) {names.prefix}_##name\n"
+            f"#define ENGINE_EVENTS {names.macro}_EVENT_COUNT\n"
+            f"#define FOR_DURATIONS(DO) {' '.join(durations)}\n"
+            + ("#define TIMES\n" if any(event.timer for event in self.events) else "")
+            + ("#define STEPWISE\n" if is_from_cif(self.model) else "")
+        )

@@ -1,0 +1,198 @@
+"""The control loop in Python and the generated one, doing the same things one after the other."""
+
+from __future__ import annotations
+
+import signal
+import sys
+from typing import TYPE_CHECKING, Any
+
+from robosc.analysis.paths import TraceStep
+from robosc.analysis.verify.c_program import TEXT
+from robosc.engine import ControlLoop, Hooks
+from robosc.engine.state import Domain
+from robosc.semantics.roles import event_name
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from subprocess import Popen
+
+    from robosc.engine import Settings
+    from robosc.engine.control_loop import SavedLoop
+    from robosc.metamodel import sct
+
+#: What an operation is called by the follower, and by us.
+OPERATIONS = {
+    "p": "an event",
+    "b": "the start of a batch",
+    "e": "the end of a batch",
+    "t": "a tick",
+    "s": "settling",
+    "x": "the end of a time",
+    "r": "starting times anew",
+}
+#: Where the clock starts: it soon wraps from its largest value to 0.
+_START = 2**32 - 20_000
+_NEVER = 2**32 - 1
+
+
+class DifferenceError(Exception):
+    """The loops did different things, as the message says; `way` is what happened before."""
+
+    way: Sequence[TraceStep] = ()
+
+
+class Lockstep:
+    """Both loops of one model. Events are told by their number, in the order of the model, data by codes.
+
+    `operate`, `perform`, `withhold`, `pass_time` and the like are done by the Python loop at once. `compare` lets the
+    generated one do them, too, raises DifferenceError where it did something else, and says under which number it kept
+    how it is then.
+    """
+
+    def __init__(self, model: sct.SupervisoryControlModel, follower: Popen[str]) -> None:
+        self.model = model
+        self.names = [event_name(event) for plant in model.plants for event in plant.events]
+        self.events = [event for plant in model.plants for event in plant.events]
+        inputs = [parameter for plant in model.plants for parameter in plant.inputs]
+        self._inputs = {parameter: (number, Domain(parameter.type)) for number, parameter in enumerate(inputs)}
+        self._numbers = {name: number for number, name in enumerate(self.names)}
+        self._follower = follower
+        self._script: list[str] = []
+        self._said: list[str] = []
+        self._happened: list[str] = []
+        self._withheld: set[str] = set()
+        #: What happened in the operations since the last comparison.
+        self.seen: list[TraceStep] = []
+        #: The event that is performed, and with which data.
+        self._performed: tuple[str, Mapping[str, Any]] = ("", {})
+
+    def begin(self, settings: Settings) -> None:
+        """Both begin anew."""
+        self._withheld.clear()
+        hooks = Hooks(lambda event: event not in self._withheld, self._after, lambda: self._happened.append("!"))
+        self.loop = ControlLoop(self.model, settings, hooks)
+        self.loop.timers.at(_START)
+        self.loop.timers.restart()
+        numbers = (settings.events_per_tick, settings.reactions_per_tick, int(settings.react_immediately))
+        self._script.append(f"n {' '.join(map(str, numbers))} {settings.resolution_ms} {_START}")
+
+    def _after(self, event: str) -> None:
+        self._happened.append(str(self._numbers[event]))
+        performed, data = self._performed
+        self.seen.append(TraceStep(event, data if event == performed else {}))
+
+    def operate(self, operation: str) -> None:
+        """One of the operations that take nothing."""
+        self._script.append(operation)
+        result = False
+        match operation:
+            case "b":
+                self.loop.begin()
+            case "e":
+                self.loop.end()
+            case "t":
+                self.loop.tick()
+            case "s":
+                self.loop.settle()
+            case "x":
+                result = self.loop.expire() is not None
+            case "r":
+                self.loop.timers.restart()
+        self._say(operation, result)
+
+    def sizes(self, number: int) -> list[int]:
+        """How many values each input of an event has."""
+        return [domain.high - domain.low + 1 for domain in self._domains(number)]
+
+    def _domains(self, number: int) -> list[Domain]:
+        return [self._inputs[parameter][1] for parameter in self.events[number].inputs]
+
+    def perform(self, number: int, codes: tuple[int, ...]) -> None:
+        """Performs an event, with a code for each of its inputs."""
+        data = {}
+        for parameter, code in zip(self.events[number].inputs, codes, strict=True):
+            place, domain = self._inputs[parameter]
+            data[parameter.name] = domain.shown(domain.low + code)
+            self._script.append(f"i {place} {code}")
+        self._script.append(f"p {number}")
+        self._performed = self.names[number], data
+        result = self.loop.perform(self.names[number], data)
+        self._performed = "", {}
+        self._say("p", result)
+
+    def withhold(self, number: int) -> None:
+        """Withholds an event, or, where it is withheld, no longer."""
+        self._withheld ^= {self.names[number]}
+        self._script.append(f"w {number}")
+
+    @property
+    def withheld(self) -> list[int]:
+        """The numbers of the events that are withheld."""
+        return sorted(self._numbers[name] for name in self._withheld)
+
+    def set_duration(self, number: int, milliseconds: int) -> None:
+        """How long a time lasts that is set on the robot."""
+        self.loop.timers.set_duration(self.model.durations[number], milliseconds)
+        self._script.append(f"d {number} {milliseconds}")
+
+    def pass_time(self, milliseconds: int) -> None:
+        """Lets so much time go by, or go back."""
+        timers = self.loop.timers
+        timers.at(timers.now + milliseconds)
+        self._script.append(f"c {timers.now % 2**32}")
+
+    def go_back(self, number: int, saved: SavedLoop) -> None:
+        """Both are as they were when this was kept."""
+        self.loop.restore(saved)
+        self._script.append(f"g {number}")
+
+    def compare(self, *, always: bool = False) -> int:
+        """Lets the generated loop do what the Python one did; keeps how it is, or, if not `always`, finds it kept."""
+        pipe, answers = self._follower.stdin, self._follower.stdout
+        assert pipe is not None
+        assert answers is not None
+        try:
+            pipe.write("\n".join([*self._script, "K" if always else "k", ""]))
+            pipe.flush()
+            answer = answers.readline()
+        except BrokenPipeError:
+            answer = ""
+        if not answer:
+            raise DifferenceError(self._end())
+        *theirs, number = answer.split(";")
+        for ours, told in zip(self._said, theirs, strict=True):
+            if ours != told:
+                raise DifferenceError(self._difference(ours, told))
+        self._script.clear()
+        self._said.clear()
+        return int(number)
+
+    def _say(self, operation: str, result: bool) -> None:
+        state = self.loop.state
+        codes = (value - domain.low for value, domain in zip(state.cells, state.layout.domains, strict=True))
+        timers = self.loop.timers
+        wait = [_NEVER if timers.wait is None else timers.wait] * timers.exist
+        self._said.append(" ".join(map(str, (operation, *self._happened, "=", int(result), *wait, *codes))))
+        self._happened.clear()
+
+    def _difference(self, ours: str, theirs: str) -> str:
+        events = [", ".join(self._told(line)) or "nothing happens" for line in (theirs, ours)]
+        if events[0] == events[1]:
+            events = ["the state is another one, or the time of the next call", "not"]
+        where = OPERATIONS.get(ours[0], "")
+        return f"in the control loop of {TEXT}, at {where}: {events[0]}; in that of the model: {events[1]}"
+
+    def _told(self, line: str) -> list[str]:
+        words = line.partition("=")[0].split()[1:]
+        known = (word.isdigit() and int(word) < len(self.names) for word in words)
+        return [
+            f"`{self.names[int(word)]}`" if is_event else "a livelock" if word == "!" else "an event of another number"
+            for word, is_event in zip(words, known, strict=True)
+        ]
+
+    def _end(self) -> str:
+        status = self._follower.wait()
+        endless = sys.platform != "win32" and status == -signal.SIGALRM
+        how = "does not come to an end" if endless else f"ends with status {status}"
+        where = ", ".join(OPERATIONS[line[0]] for line in self._said) or "the start"
+        return f"the control loop of {TEXT} {how}, at one of these: {where}"
