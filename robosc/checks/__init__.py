@@ -45,11 +45,10 @@ def check(
 
 
 def _findings(base: rsc.Base, skipped: Sequence[Diagnostic], interfaces: RosTypes) -> Iterator[Diagnostic]:
-    file = place(base)[0]
     for rule in RULES.values():
         for finding in rule.check(base, interfaces):
             if not finding.can_be_false(skipped):
-                span = place(finding.element)[1]
+                file, span = place(finding.element)
                 hint, edits, is_choice = finding.said()
                 yield Diagnostic(
                     file, span, rule.severity, rule.id, finding.message, hint, edits, finding.places(), is_choice

@@ -118,7 +118,10 @@ class _Comparison:
                 yield Fault(None, f"{name} has no field for a lone {_text(carried)}: {_listed(fields)}", _lone(fields))
             elif not self._holds(fields[field], carried):
                 message = f"the data is {_text(carried)} here, and {fields[field]} in `{field}` of {name}"
-                yield Fault(None, message, _repair(fields[field], None)[0])
+                # An array and what has fields of its own stand in objects only.
+                lone = isinstance(fields[field], Basic)
+                repair = _repair(fields[field], None if lone else field)[0]
+                yield Fault(None, message, repair if lone else f"declare an object: {repair}")
 
     def _object(self, definition: rsc.ObjectDataType, fields: Fields, name: str) -> Iterator[Fault]:
         for owner in definition.properties:

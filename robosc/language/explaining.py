@@ -175,6 +175,8 @@ def _statement_hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Bl
     token, before, starter = tokens[index], tokens[index - 1], tokens[block.first]
     if starter.is_keyword("after"):
         return _timed_hint(token, before, wanted)
+    if starter.is_keyword("incoming", "outgoing", "service", "action"):
+        return _order_hint(tokens, index, wanted)
     if starter.is_keyword("provide") and token.text == ":":
         return "the properties of an object stand in braces"
     if starter.is_keyword("requirement", "property"):
@@ -183,6 +185,20 @@ def _statement_hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Bl
         return _TEMPLATE
     if starter.is_keyword("function") and token.text == "{" and {"=", "=(?!>)"} & set(wanted):
         return "write `=` and one expression instead of braces"
+    return None
+
+
+def _order_hint(tokens: Tokens, index: int, wanted: Sequence[str]) -> str | None:
+    """What a communication has stands in one order."""
+    token = tokens[index]
+    if token.text == "," and tokens[index - 2].is_keyword("links"):
+        return "`links` stands behind all else"
+    if token.text == "send" and "type" in wanted:
+        return "`send: change` stands behind the type"
+    if token.text == "identifier" and token.text not in wanted:
+        return "`identifier` stands before all else"
+    if "change" in wanted:
+        return "write `send: change`, or leave `send` out: it is sent with every tick then"
     return None
 
 

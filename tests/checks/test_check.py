@@ -93,6 +93,36 @@ def test_what_a_library_repeats_is_its_own_matter(tmp_path: Path) -> None:
     ]
 
 
+def test_what_only_an_instance_of_a_librarys_template_shows_stands_in_the_library(tmp_path: Path) -> None:
+    """The robot's text has nothing there, and its own lines may be fewer."""
+    robot = """
+        robot House {
+          component Front from Doors import Door("/front")
+          component Rear from Doors import Door("/rear")
+        }
+    """
+    doors = """
+        library Doors {
+          component Door(topic: string) {
+            outgoing message poses with identifier: topic + "/poses", type: geometry_msgs/PoseArray
+            incoming message lamp with identifier: topic + "/lamp", type: boolean
+            provide lamp with true if size(kept) > 0
+            behaviour {
+              variable kept: array(geometry_msgs/Pose)
+              variable times: integer(0..3)
+              initial marked state shut {
+                on response from poses if size(value.poses) > times do kept := value.poses
+              }
+            }
+          }
+        }
+    """
+    assert places(found(tmp_path, robot, doors=doors)) == [
+        ("doors.rscd", 5, "variable-type"),
+        ("doors.rscd", 10, "integer-range"),
+    ]
+
+
 def test_a_librarys_component_mentions_itself_only(tmp_path: Path) -> None:
     robot = """
         robot House {

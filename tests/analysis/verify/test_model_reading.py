@@ -519,6 +519,31 @@ def test_of_too_many_values_it_tries_some(models: tuple[rsc.Base, sct.Supervisor
     assert validate_model(*models, Effort(states=10_000, inputs=2, values=0, random=3000)).outcome is Outcome.REFUTED
 
 
+def test_arguments_are_the_values_of_what_is_given(tmp_path: Path) -> None:
+    """The supervisor is told of data compared with them."""
+    text = """robot R {
+        constant pi: double = 3.5
+        datatype enum Level from integer to { value > 2 -> high default -> low }
+        component Zone(a: double, b: integer, c: string, d: Level, e: boolean = 1 > 2, f: double = -pi * 2) {
+            outgoing message scan with type: sensor_msgs/JointState
+            outgoing message level with type: Level
+            behaviour {
+                variable near: boolean
+                initial marked state s {
+                    on response from scan if any r in value.position[0..b]: r < a or e and r < f do near := true
+                    on response from scan if value.name[b] = c do near := false
+                    on response from level if value = d goto t
+                }
+                state t { transition goto s }
+            }
+        }
+        component One is Zone(pi * 2, 1 + 1, "a" + "b", Level.high)
+        component Two is Zone(-0.5, 0, d: low, c: "", e: !(1 > 2))
+        requirement never One.t and Two.t
+    }"""
+    assert agrees(tmp_path / "robot.rscd", text)
+
+
 def test_a_model_without_its_text_is_skipped(models: tuple[rsc.Base, sct.SupervisoryControlModel]) -> None:
     found = validate_model(None, models[1])
     assert (found.outcome, found.explanation) == (Outcome.SKIPPED, "the model was not read from its text")

@@ -187,8 +187,9 @@ class Names:
             case None | robosc.ArrayElement():
                 return (yield from self._data(access, place))
             case robosc.FormalParameter():
-                given = yield place.bound[item]
-                return cast("ex.Expression", given)
+                given: ex.Expression = yield place.bound[item]
+                # What an instance is given is constant; what a function is called with may be anything.
+                return self._folded(given) if isinstance(item.eContainer(), robosc.Component) else given
             case robosc.EnumValue():
                 return self.leaf(Literal(item.name))
             case robosc.Parameter():
@@ -209,9 +210,11 @@ class Names:
         if not isinstance(item, robosc.Constant | robosc.Condition):
             raise NotReadError(item)
         value: ex.Expression = yield item.value, self._inside(item, instance)
-        if not isinstance(item, robosc.Constant):
-            return value
-        folded = evaluate(value, self._meanings.__getitem__)
+        return self._folded(value) if isinstance(item, robosc.Constant) else value
+
+    def _folded(self, constant: ex.Expression) -> ex.Expression:
+        """The value of a constant expression that is written out, as an expression."""
+        folded = evaluate(constant, self._meanings.__getitem__)
         return self.leaf(folded) if isinstance(folded, Literal) else literal(folded)
 
     def _inside(self, named: robosc.NamedExpression, owner: Instance | None) -> Environment:
