@@ -184,13 +184,20 @@ def to_engine(model: SupervisoryControlModel) -> EngineModel:
 
 
 def generate(
-    target: str, models: Models, configuration: Configuration | None = None, *, with_tests: bool = False
+    target: str,
+    models: Models,
+    configuration: Configuration | None = None,
+    *,
+    with_tests: bool = False,
+    into: str | None = None,
 ) -> dict[str, str]:
     """The files of a target (`cif`, `supervisor`, `ros1`, `ros2`, `xmi`): POSIX path in the target's folder to text.
 
     Without a configuration all settings have their defaults. `with_tests` adds a test and a Dockerfile to the packages
-    of `ros1` and `ros2`. Raises ModelError where the models or the configuration
-    don't meet the target's preconditions, ValueError where the target is unknown or a model that it reads is missing.
+    of `ros1` and `ros2`. `into` names a package, or for `supervisor` a target of CMake, of your own that the code
+    becomes part of: `fragment.cmake` is what that includes. Raises ModelError where the models or the configuration
+    don't meet the target's preconditions, ValueError where the target is unknown, or can't be included, or a model that
+    it reads is missing.
     """
     from robosc.configuration import Configuration
     from robosc.diagnostics import ModelError, has_errors
@@ -202,8 +209,10 @@ def generate(
         raise ValueError("the sct model has no supervisor yet: synthesize gives it one")
     if TARGETS[target].needs_graph and models.rosgraph is None:
         raise ValueError(f"{target} needs the ROS graph")
+    if into is not None and not TARGETS[target].can_be_included:
+        raise ValueError(f"{target} is no code that could become part of {into}")
     configuration = configuration or Configuration()
     findings = TARGETS[target].findings(models, configuration)
     if has_errors(findings):
         raise ModelError(findings)
-    return TARGETS[target].files(models, configuration, with_tests=with_tests)
+    return TARGETS[target].files(models, configuration, with_tests=with_tests, into=into)

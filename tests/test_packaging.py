@@ -39,6 +39,7 @@ def files(folder: Path) -> dict[str, bytes]:
 def test_what_is_in_the_wheel(wheel: Path) -> None:
     inside = set(zipfile.ZipFile(wheel).namelist())
     shipped = {
+        "cmake": ("*", "robosc/cmake"),
         "grammar": ("*.tx", "robosc/grammar"),
         "metamodel": ("*.ecore", "robosc/metamodel"),
         "docs/rules": ("*.md", "robosc/docs/rules"),
@@ -71,6 +72,9 @@ def test_the_installed_wheel_generates_the_same(wheel: Path, tmp_path: Path) -> 
     assert Path(where).is_relative_to(tmp_path)
     run(programs / "robosc", "transform", "line_follower.rscd", "--to", TARGETS, "-o", "out", cwd=model)
     run(programs / "robosc", "rule", "marked-state", cwd=model)
+    packages = Path(run(programs / "robosc", "--cmake-dir", cwd=model).strip())
+    assert packages.is_relative_to(tmp_path)
+    assert (packages / "robosc" / "robosc-config.cmake").exists()
     here = tmp_path / "here"
     run(
         sys.executable, "-m", "robosc", "transform", MODEL / "line_follower.rscd", "--to", TARGETS, "-o", here, cwd=ROOT

@@ -17,6 +17,7 @@ from robosc import __version__
 from robosc.cli import interruption
 from robosc.diagnostics.visible import visible, visible_lines
 from robosc.files.reading import noting
+from robosc.files.resources import locate
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -144,8 +145,22 @@ def _told(error: Exception, *, show: bool) -> click.ClickException:
     return _InternalError(f"a fault of robosc itself, please report it: {type(error).__name__}: {error}{hint}")
 
 
+def _cmake_dir(context: click.Context, _parameter: click.Parameter, asked: bool) -> None:
+    if asked:
+        put(str(locate("cmake")))
+        context.exit()
+
+
 @click.command(cls=_Commands, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(__version__, prog_name="robosc")
+@click.option(
+    "--cmake-dir",
+    is_flag=True,
+    is_eager=True,
+    expose_value=False,
+    callback=_cmake_dir,
+    help="Say where the tool's CMake packages are, for CMAKE_PREFIX_PATH, and exit.",
+)
 @click.option("--traceback", is_flag=True, envvar="ROBOSC_TRACEBACK", help="Show where a fault of robosc itself is.")
 def main(**_: Any) -> None:
     """Make a ROS controller that provably does only what a model of the robot allows.

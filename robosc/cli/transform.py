@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
@@ -27,12 +28,22 @@ if TYPE_CHECKING:
     from robosc.m2t.models import Models
 
 
+#: What a package of ROS, or a target of CMake, may be called here.
+_INCLUDING = re.compile(r"[A-Za-z][\w.-]*", re.ASCII)
+
+
 def _targets(_context: click.Context, _parameter: click.Parameter, values: Sequence[str]) -> list[Target]:
     names = [name.strip() for value in values for name in value.split(",")]
     for name in names:
         if name not in TARGETS:
             raise click.BadParameter(f"{name!r} is none of {', '.join(TARGETS)}")
     return [TARGETS[name] for name in dict.fromkeys(names)]
+
+
+def _into(_context: click.Context, _parameter: click.Parameter, name: str | None) -> str | None:
+    if name is not None and not _INCLUDING.fullmatch(name):
+        raise click.BadParameter(f"{name!r} names neither a package nor a target of CMake: letters, digits, _, - and .")
+    return name
 
 
 _EPILOG = "\n".join(["\b", "Targets:", *(f"  {target.name:<11} {target.description}" for target in TARGETS.values())])
@@ -45,6 +56,13 @@ _EPILOG = "\n".join(["\b", "Targets:", *(f"  {target.name:<11} {target.descripti
 @configuration
 @click.option(
     "--with-tests", is_flag=True, help="Add a test that plays event traces against the node, and a Dockerfile."
+)
+@click.option(
+    "--into",
+    metavar="NAME",
+    callback=_into,
+    help="Make no package of its own, but what the package NAME of yours includes with CMake (of `supervisor`: the"
+    " target NAME): the code, fragment.cmake, and the files that it comes from in inputs.txt.",
 )
 @click.option(
     "--confirm",
@@ -67,6 +85,7 @@ def command(
     output: str | None,
     chosen: str | None,
     with_tests: bool,
+    into: str | None,
     confirmed: Sequence[str],
     list_inputs: bool,
     form: str,
@@ -85,22 +104,23 @@ def command(
       robosc transform line_follower.rscd --to cif,supervisor,xmi -o out
       robosc transform out/LineFollower.sct.xmi --to cif
       robosc transform line_follower.rscd --to ros2 --list-inputs
+      robosc transform line_follower.rscd --to ros2 --into my_robot -o generated
 
     Exit status: 0 done, 1 errors in the model, 2 a wrong call, 3 no supervisor exists.
     """
-    if with_tests and not any(target.tested_ros for target in targets):
-        tested = [target.name for target in TARGETS.values() if target.tested_ros]
-        raise CallError(f"--with-tests is for {' and '.join(tested)}: the other targets have none")
+    _refuse_what_does_not_fit(targets, with_tests, into)
     with Report(form, aside=list_inputs) as report:
         models = read_models(model, paths, report, cif=not any(target.needs_graph for target in targets))
         for target in targets:
             if target.needs_graph and models.rosgraph is None:
                 raise CallError(f"{model} has no ROS graph, which {target.name} needs: give its .rosgraph.xmi or .rscd")
         settings = read_configuration(model, chosen, report)
-        copies = _copies(Path(model).parent, targets, settings, confirmed, report)
+        # What a build makes stays where it is built.
+        copied = [] if into else targets
+        copies = _copies(Path(model).parent, copied, settings, confirmed, report)
         report.stop_on_errors()
         if list_inputs:
-            put("\n".join(sorted(str(Path(name).resolve()) for name in inputs())))
+            put("\n".join(_inputs()))
             return
         supervise_models(models, report, memory=megabytes << 20)
         for target in targets:
@@ -114,15 +134,33 @@ def command(
             for target in targets:
                 with progress(f"generating {target.name}"):
                     files[target] = target.files(
-                        models, settings, with_tests=with_tests, interface_paths=paths.interfaces
+                        models, settings, with_tests=with_tests, interface_paths=paths.interfaces, into=into
                     )
-        trees = _trees(folder, files, copies, models, settings)
+        if into is None:
+            trees = _trees(folder, files, copies, models, settings)
+        else:
+            (made,) = files.values()
+            trees = {folder: {**made, "inputs.txt": "".join(f"{name}\n" for name in _inputs())}}
         interruption.check()
         with progress(f"writing to {folder}"):  # it may wait for another run
             changed = set(write(trees))
     for written, texts in trees.items():
         resolved = written.resolve()
         say(f"{written}: {len(texts)} files, {sum(resolved / name in changed for name in texts)} written", err=True)
+
+
+def _refuse_what_does_not_fit(targets: Sequence[Target], with_tests: bool, into: str | None) -> None:
+    if with_tests and not any(target.tested_ros for target in targets):
+        tested = [target.name for target in TARGETS.values() if target.tested_ros]
+        raise CallError(f"--with-tests is for {' and '.join(tested)}: the other targets have none")
+    if into is not None and not (len(targets) == 1 and targets[0].can_be_included):
+        included = [target.name for target in TARGETS.values() if target.can_be_included]
+        raise CallError(f"--into is for one of {', '.join(included)}")
+
+
+def _inputs() -> list[str]:
+    """The files that were read, by their own paths."""
+    return sorted(str(Path(name).resolve()) for name in inputs())
 
 
 def _untested(models: Models) -> Iterator[Diagnostic]:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from importlib import import_module
-from typing import TYPE_CHECKING, Literal, Protocol, cast
+from typing import TYPE_CHECKING, Literal, Protocol, TypedDict, cast
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from contextlib import AbstractContextManager
+    from typing import Unpack
 
     from robosc.configuration import Configuration
     from robosc.diagnostics import Diagnostic
@@ -25,11 +26,20 @@ class Generator(Protocol):
         """Files: POSIX path in the target's folder to text. The models have a supervisor; the preconditions hold."""
 
 
-class TestedGenerator(Protocol):
-    """What the module of a target offers whose packages can have tests."""
+class Options(TypedDict, total=False):
+    """What else some generators are told."""
 
-    def generate(self, models: Models, configuration: Configuration, tests: TraceTest) -> dict[str, str]:
-        """The files that it generates without tests, with these tests."""
+    #: What a package of theirs is tested with.
+    tests: TraceTest
+    #: The package, or the target of CMake, of the user's own that their code becomes part of.
+    into: str
+
+
+class OptionalGenerator(Protocol):
+    """What the module of a target offers that knows options."""
+
+    def generate(self, models: Models, configuration: Configuration, **options: Unpack[Options]) -> dict[str, str]:
+        """The files that it generates without options, but as these ask for."""
 
 
 @dataclass(frozen=True)
@@ -45,6 +55,11 @@ class Target:
     ros: int | None = None
     #: The setting in the configuration's `output` that names a folder for a copy.
     location: str | None = None
+
+    @property
+    def can_be_included(self) -> bool:
+        """Whether it is code that can become part of a package, or of a project of CMake, of the user's own."""
+        return bool(self._folder)
 
     @property
     def needs_graph(self) -> bool:
@@ -84,16 +99,21 @@ class Target:
         *,
         with_tests: bool = False,
         interface_paths: Sequence[str] = (),
+        into: str | None = None,
     ) -> dict[str, str]:
         """What it generates; with tests where they are asked for and its packages can have any.
 
-        `interface_paths` are folders in which the tests look for ROS types, as `robosc.ros_types` does.
+        `interface_paths` are folders in which the tests look for ROS types, as `robosc.ros_types` does. `into` names
+        what of the user's own the code becomes part of, where it can be included: a package, or a target of CMake. Then
+        there is a `fragment.cmake`, and neither `CMakeLists.txt` nor `package.xml`.
         """
-        if not with_tests or self.tested_ros is None:
-            return self.generator().generate(models, configuration)
-        made = import_module("robosc.node_tests.trace_test").trace_test
-        tests: TraceTest = made(models.rosgraph, configuration, self.tested_ros, interface_paths)
-        return cast("TestedGenerator", self.generator()).generate(models, configuration, tests)
+        options: Options = {}
+        if with_tests and self.tested_ros is not None:
+            made = import_module("robosc.node_tests.trace_test").trace_test
+            options["tests"] = made(models.rosgraph, configuration, self.tested_ros, interface_paths)
+        if into is not None:
+            options["into"] = into
+        return cast("OptionalGenerator", self.generator()).generate(models, configuration, **options)
 
     def generator(self) -> Generator:
         """What generates it: a module of its name, or a target of the room for ROS; loaded when it is asked for."""

@@ -86,8 +86,14 @@ class Workspace(Share):
         return packages
 
     def _found(self) -> Iterator[tuple[str, Path]]:
-        for folder, below, names in os.walk(self._folder):
+        seen = set()
+        for folder, below, names in os.walk(self._folder, followlinks=True):  # as ROS's own tools do
             root = Path(folder)
+            place = os.path.realpath(folder)
+            if place in seen:  # a link to what is around it
+                below.clear()
+                continue
+            seen.add(place)
             if _IGNORED.intersection(names):
                 below.clear()
             elif "package.xml" in names:

@@ -277,3 +277,34 @@ def test_inputs_of_a_model_with_errors_are_not_listed(run: Run, door: Path) -> N
     door.write_text("robot Door {")
     answer = run("transform", door, "--to", "ros2", "--list-inputs")
     assert (answer.exit_code, answer.stdout) == (1, "")
+
+
+def test_what_a_package_includes(run: Run, door: Path, tmp_path: Path) -> None:
+    """The code, without a folder of its own; where it comes from; no copy elsewhere."""
+    (tmp_path / "controller-config.json").write_text(
+        '{"onShutdown": [], "output": {"ros2ControllerNodeLocation": "copy"}}'
+    )
+    answer = run("transform", door, "--to", "ros2", "--into", "my_robot", "-o", "out")
+    assert answer.exit_code == 0, answer.output
+    made = tree(tmp_path / "out")
+    assert {"fragment.cmake", "src/door_controller_node.cpp", "launch/door_controller.launch.py"} <= made.keys()
+    assert not {"package.xml", "CMakeLists.txt"} & made.keys()
+    listed = run("transform", door, "--to", "ros2", "--list-inputs").stdout
+    assert (tmp_path / "out" / "inputs.txt").read_text() == listed
+    assert str(tmp_path.resolve() / "controller-config.json") in listed.splitlines()
+    assert not (tmp_path / "copy").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--to", "cif", "--into", "x"], "--into is for one of supervisor, ros1, ros2"),
+        (["--to", "ros1,ros2", "--into", "x"], "--into is for one of supervisor, ros1, ros2"),
+        (["--to", "ros1", "--into", "x)"], "names neither a package nor a target"),
+    ],
+)
+def test_what_nothing_can_include(run: Run, door: Path, arguments: list[str], said: str) -> None:
+    answer = run("transform", door, *arguments)
+    assert answer.exit_code == 2
+    assert said in " ".join(answer.output.split())
+    assert not Path("build").exists()

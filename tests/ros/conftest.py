@@ -22,7 +22,18 @@ __all__ = ["ros1_build", "ros1_workspace", "ros2_workspace", "run_ros1", "run_ro
 
 HERE = Path(__file__).parent
 #: Fixtures that run nodes for several tests, and the parameters that say of which kind they are.
-RUNS = ("drive", "courier", "trial", "run", "under_way", "with_patience", "with_guard", "simulated", "graph")
+RUNS = (
+    "drive",
+    "courier",
+    "trial",
+    "run",
+    "under_way",
+    "with_patience",
+    "with_guard",
+    "simulated",
+    "graph",
+    "model_workspace",
+)
 KINDS = ("nodes", "controller", "kind", "name")
 SIMULATOR = HERE.parents[1] / "examples" / "simulator"
 
@@ -82,9 +93,14 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
             groups.setdefault(group(item), len(groups))
             item.add_marker(pytest.mark.xdist_group(group(item)))
             item.add_marker(pytest.mark.ros)
-            if "ros1_workspace" in getattr(item, "fixturenames", ()) or "ros1" in parameters(item).values():
+            if needs_ros1_workspace(item) or "model_workspace" in getattr(item, "fixturenames", ()):
                 item.add_marker(pytest.mark.build)
     items.sort(key=lambda item: groups.get(group(item), 0))
+
+
+def needs_ros1_workspace(item: pytest.Item) -> bool:
+    """Whether a test runs what is compiled in the workspace of ROS 1."""
+    return "ros1_workspace" in getattr(item, "fixturenames", ()) or "ros1" in parameters(item).values()
 
 
 def group(item: pytest.Item) -> str:
@@ -146,7 +162,7 @@ def pytest_runtest_teardown(item: pytest.Item, nextitem: pytest.Item | None) -> 
 @pytest.fixture(scope="session", autouse=True)
 def ros1_build_begins(request: pytest.FixtureRequest) -> None:
     """Has `ros1_workspace` built from the first test on, if it is needed at all."""
-    if any(item.get_closest_marker("build") for item in request.session.items) and find_ros1().ros is not None:
+    if any(map(needs_ros1_workspace, request.session.items)) and find_ros1().ros is not None:
         request.getfixturevalue("ros1_build")
 
 

@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 
     Values = Mapping[str, Any]
 
+#: What makes a package of its own: path to template.
+_PACKAGE = {"package.xml": "package.xml.j2", "CMakeLists.txt": "CMakeLists.txt.j2"}
 #: Types of geometry_msgs that hold numbers only: no header, no quaternion.
 _PLAIN = frozenset(["Accel", "Inertia", "Point", "Point32", "Polygon", "Twist", "Vector3", "Wrench"])
 _INCLUDED = re.compile(r'^#include "(robosc[^"]*)"$', re.MULTILINE)
@@ -87,16 +89,25 @@ class RosTarget:
         """What keeps these models from becoming such a node, and settings that have no effect."""
         return preconditions.preconditions(models, configuration, self.kind, self.ros.version)
 
-    def generate(self, models: Models, configuration: Configuration, tests: TraceTest | None = None) -> dict[str, str]:
-        """The files of the package, by their path in it. `preconditions` must have found nothing."""
+    def generate(
+        self,
+        models: Models,
+        configuration: Configuration,
+        tests: TraceTest | None = None,
+        into: str | None = None,
+    ) -> dict[str, str]:
+        """The files of the package, by their path in it. `preconditions` must have found nothing.
+
+        `into` names a package of the user's own that the node becomes part of: `fragment.cmake` is what that includes.
+        """
         graph = models.rosgraph
         assert graph is not None
         if self.kind == "layer":
             layer = LayerNode(graph)
             name = configuration.layer_name(graph)
-            return self._files(graph, name, configuration, layer.node, layer, None)
+            return self._files(graph, name, configuration, layer.node, layer, None, into)
         node = Node(graph, configuration.on_shutdown, configuration.on_withheld)
-        return self._files(graph, configuration.package_name(graph), configuration, node, None, tests)
+        return self._files(graph, configuration.package_name(graph), configuration, node, None, tests, into)
 
     def _files(  # noqa: PLR0913, PLR0917
         self,
@@ -106,18 +117,18 @@ class RosTarget:
         node: Node,
         layer: LayerNode | None,
         tests: TraceTest | None,
+        into: str | None,
     ) -> dict[str, str]:
         kind, ros = self.kind, self.ros
         included = self._included(node, layer)
         source, definition = f"src/{name}_node.cpp", f"include/{name}/definition.hpp"
         files = {
-            "package.xml": "package.xml.j2",
-            "CMakeLists.txt": "CMakeLists.txt.j2",
+            **({"fragment.cmake": "fragment.cmake.j2"} if into else _PACKAGE),
             f"launch/{name}{ros.launch_file}": f"{kind}_launch.j2",
             source: f"{kind}_node.cpp.j2",
             **({f"config/{name}.yaml": "parameters.yaml.j2"} if kind == "controller" else {}),
             **({definition: "definition.hpp.j2"} if configuration.publish_state_information else {}),
-            **(ros.test_files if tests else {}),
+            **(_test_files(ros, name, into) if tests else {}),
         }
         reports = {"std_msgs"} if configuration.publish_state_information or (layer and layer.gates) else set()
         types = {interface.package for interface in node.interfaces} | reports
@@ -130,6 +141,10 @@ class RosTarget:
             "layer": layer,
             "tests": tests,
             "package": name,
+            # The package in which the node is found: its own, or that of which it is a part.
+            "ros_package": into or name,
+            "has_own_types": into in types,
+            "player": _player(name, into),
             "about": configuration.package,
             "description": configuration.package.description or text,
             "included": sorted([*own, *(f"{header}.hpp" for header in included)]),
@@ -144,9 +159,9 @@ class RosTarget:
             "frame": lambda topic: configuration.frame_id.get(topic.removeprefix("/"), ""),
             "controller": configuration.supervisor.controller,
             **(
-                ros.layer(layer, configuration, types)
+                ros.layer(layer, configuration, types - {into})
                 if layer
-                else ros.controller(node, configuration, types, tests=tests is not None)
+                else ros.controller(node, configuration, types - {into}, tests=tests is not None)
             ),
         }
         templates = node_environment(f"robosc.m2t.ros.ros{ros.version}")
@@ -154,7 +169,9 @@ class RosTarget:
         texts[source] = fold(texts[source])
         texts |= {f"include/{header}.hpp": text for header, text in shipped(included).items()}
         supervisor = engine.generate(graph.model, configuration.control_loop)
-        texts |= {f"src/{file}": text for file, text in supervisor.items()}
+        # The header of the engine is for others, too, where they can find it.
+        places = {".h": f"include/{name}" if into else "src", ".c": "src"}
+        texts |= {f"{places[file[-2:]]}/{file}": text for file, text in supervisor.items()}
         return texts | ({f"test/{path}": text for path, text in tests.files.items()} if tests else {})
 
     def _included(self, node: Node, layer: LayerNode | None) -> list[str]:
@@ -175,6 +192,19 @@ class RosTarget:
         }
         features = {feature for feature, is_there in present.items() if is_there}
         return [name.format(ros=self.ros.version) for name, needed in _HEADERS.items() if needed <= features]
+
+
+def _test_files(ros: Middleware, name: str, into: str | None) -> dict[str, str]:
+    """Path to template. In a package of the user's own there is another Dockerfile, if any, and may be more nodes."""
+    if not into:
+        return dict(ros.test_files)
+    own = {path: template for path, template in ros.test_files.items() if path != "Dockerfile"}
+    return {path.replace("play_trace.py", _player(name, into)): template for path, template in own.items()}
+
+
+def _player(name: str, into: str | None) -> str:
+    """The file of the program that plays traces: ROS 1 finds it by this name in the whole package."""
+    return f"{name}_play_trace.py" if into else "play_trace.py"
 
 
 def _groups(declared: Iterable[Parameter]) -> dict[str, dict[str, Parameter]]:

@@ -20,11 +20,15 @@ def preconditions(models: Models, configuration: Configuration) -> list[Diagnost
     return c_preconditions.preconditions(models.sct)
 
 
-def generate(models: Models, configuration: Configuration) -> dict[str, str]:
-    """Header, source and `CMakeLists.txt` of a model with its supervisor: relative path to text."""
+def generate(models: Models, configuration: Configuration, into: str | None = None) -> dict[str, str]:
+    """Header, source and `CMakeLists.txt` of a model with its supervisor: relative path to text.
+
+    `into` names a target of CMake: a `fragment.cmake` makes that, in place of `CMakeLists.txt`.
+    """
     names = CNames(models.sct)
-    build = environment("robosc.m2t.supervisor").get_template("CMakeLists.txt.j2")
+    build = "CMakeLists.txt" if into is None else "fragment.cmake"
+    template = environment("robosc.m2t.supervisor").get_template(f"{build}.j2")
     return {
         **engine.generate(models.sct, configuration.control_loop),
-        "CMakeLists.txt": build.render(p=names.prefix, u=names.macro, version=configuration.package.version),
+        build: template.render(p=names.prefix, u=names.macro, version=configuration.package.version, into=into),
     }

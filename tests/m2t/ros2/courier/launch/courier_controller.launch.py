@@ -8,6 +8,7 @@ from launch_ros.parameter_descriptions import ParameterValue
 from launch_ros.substitutions import FindPackageShare
 
 PACKAGE = "courier_controller"
+NAME = "courier_controller"
 
 
 def start(context):
@@ -18,7 +19,7 @@ def start(context):
         parameters.append({"use_sim_time": ParameterValue(LaunchConfiguration("use_sim_time"), value_type=bool)})
     node = Node(
         package=PACKAGE,
-        executable=PACKAGE,
+        executable=NAME,
         name=LaunchConfiguration("name"),
         namespace=LaunchConfiguration("namespace"),
         parameters=parameters,
@@ -30,10 +31,10 @@ def start(context):
 
 
 def generate_launch_description():
-    parameters = PathJoinSubstitution([FindPackageShare(PACKAGE), "config", f"{PACKAGE}.yaml"])
+    parameters = PathJoinSubstitution([FindPackageShare(PACKAGE), "config", f"{NAME}.yaml"])
     return LaunchDescription(
         [
-            DeclareLaunchArgument("name", default_value=PACKAGE, description="Name of the node"),
+            DeclareLaunchArgument("name", default_value=NAME, description="Name of the node"),
             DeclareLaunchArgument("namespace", default_value="", description="Namespace of the node"),
             DeclareLaunchArgument("params_file", default_value=parameters, description="Parameters, as YAML"),
             DeclareLaunchArgument("log_level", default_value="info", description="debug, info, warn, error or fatal"),

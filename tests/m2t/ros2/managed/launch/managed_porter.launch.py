@@ -12,6 +12,7 @@ from launch_ros.substitutions import FindPackageShare
 from lifecycle_msgs.msg import Transition
 
 PACKAGE = "managed_porter"
+NAME = "managed_porter"
 
 
 def start(context):
@@ -22,7 +23,7 @@ def start(context):
         parameters.append({"use_sim_time": ParameterValue(LaunchConfiguration("use_sim_time"), value_type=bool)})
     node = LifecycleNode(
         package=PACKAGE,
-        executable=PACKAGE,
+        executable=NAME,
         name=LaunchConfiguration("name"),
         namespace=LaunchConfiguration("namespace"),
         parameters=parameters,
@@ -45,10 +46,10 @@ def start(context):
 
 
 def generate_launch_description():
-    parameters = PathJoinSubstitution([FindPackageShare(PACKAGE), "config", f"{PACKAGE}.yaml"])
+    parameters = PathJoinSubstitution([FindPackageShare(PACKAGE), "config", f"{NAME}.yaml"])
     return LaunchDescription(
         [
-            DeclareLaunchArgument("name", default_value=PACKAGE, description="Name of the node"),
+            DeclareLaunchArgument("name", default_value=NAME, description="Name of the node"),
             DeclareLaunchArgument("namespace", default_value="", description="Namespace of the node"),
             DeclareLaunchArgument("params_file", default_value=parameters, description="Parameters, as YAML"),
             DeclareLaunchArgument("log_level", default_value="info", description="debug, info, warn, error or fatal"),

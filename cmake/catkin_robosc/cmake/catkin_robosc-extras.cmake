@@ -1,0 +1,32 @@
+include(${CMAKE_CURRENT_LIST_DIR}/find-robosc.cmake)
+
+# robosc_generate_controller(<model> [CONFIG <file>] [LAYER] [LIBRARY_PATH <folder>...] [INTERFACE_PATH <folder>...]
+#                            [TESTS])
+#
+# Makes the node that controls the robot of a model, or with LAYER its supervisory layer, a part of this package:
+# executable, launch file, parameters. Before catkin_package(), which exports its engine, and after generate_messages()
+# of types of this package that the model uses.
+#
+# @public
+macro(robosc_generate_controller)
+  if(${PROJECT_NAME}_CATKIN_PACKAGE)
+    message(FATAL_ERROR
+      "robosc_generate_controller() must be called before catkin_package() in project '${PROJECT_NAME}'")
+  endif()
+  if(NOT _CATKIN_CURRENT_PACKAGE)
+    catkin_package_xml()
+  endif()
+  catkin_destinations()
+  _robosc_generate_controller(${ARGV})
+endmacro()
+
+# A function, so that what it finds is not what the package has found for itself.
+function(_robosc_generate_controller)
+  # The definitions in this package count before others, then those of a workspace that catkin_make builds as one project.
+  robosc_generate(fragment ros1 ${PROJECT_NAME} ${ARGV} INTERFACE_PATH
+    "${CMAKE_CURRENT_SOURCE_DIR}" "${CMAKE_SOURCE_DIR}")
+  include("${fragment}")
+  foreach(kind INCLUDE_DIRS LIBRARIES)
+    set(${PROJECT_NAME}_${kind} ${${PROJECT_NAME}_${kind}} PARENT_SCOPE)
+  endforeach()
+endfunction()

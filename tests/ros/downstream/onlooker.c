@@ -1,0 +1,13 @@
+/* Another package asks the engine of the follower what it allows before anything has happened. */
+#include <stdio.h>
+
+#include "person_follower_controller/person_follower_supervisor.h"
+
+int main(void)
+{
+    person_follower_supervisor robot;
+    person_follower_init(&robot, NULL, NULL);
+    printf("%d", person_follower_enabled(&robot, person_follower_message_move_c_trigger));
+    printf("%d\n", person_follower_enabled(&robot, person_follower_message_halt_c_trigger));
+    return 0;
+}
