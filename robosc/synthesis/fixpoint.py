@@ -13,22 +13,20 @@ from __future__ import annotations
 
 import sys
 from dataclasses import dataclass, replace
-from itertools import count, groupby
+from itertools import groupby
 from typing import TYPE_CHECKING
 
-from robosc.semantics.walks import walk
 from robosc.synthesis.acceleration import Acceleration
 from robosc.synthesis.bdd import Diagram, Diagrams, split
 
 if TYPE_CHECKING:
-    from collections.abc import Generator, Sequence
+    from collections.abc import Sequence
 
     from robosc.synthesis.encoding import Element, Encoding
     from robosc.synthesis.relation import Move, Step
 
     #: States, the bound that they stay within, and the number of the first group of steps that they are closed under.
     Part = tuple[Diagram, Diagram, int]
-    Closing = Generator[Part, Diagram, Diagram]
 
 _PAIR = 2
 #: The nodes up to which a relation of present and next values costs no more than two steps without next values.
@@ -50,6 +48,31 @@ class SupervisedStates:
     controlled: Diagram
 
 
+class _Halves:
+    """The closing of some states half by half: where the variable of a level is true, then where it is false."""
+
+    __slots__ = ("below", "high", "level", "part")
+
+    def __init__(self, part: Part, level: int, below: Part) -> None:
+        """`below` is the second half, `high` the first one, once it is closed."""
+        self.part = part
+        self.level = level
+        self.below = below
+        self.high: Diagram | None = None
+
+
+class _Firing:
+    """The closing of some states under a group of steps: all that lies below is closed before each turn of these."""
+
+    __slots__ = ("idle", "part", "states", "turn")
+
+    def __init__(self, part: Part) -> None:
+        """`idle` is what was done without need to be done again, one after the other: closings below, and steps."""
+        self.part = part
+        self.states = part[0]
+        self.idle = self.turn = 0
+
+
 class _Saturation:
     """The closure of a state set under steps, forwards or backwards, within a bounding set."""
 
@@ -58,62 +81,86 @@ class _Saturation:
         self._forwards = forwards
         self._acceleration = Acceleration(steps, forwards=forwards)
         by_level = sorted(_merged(steps), key=lambda step: step.level)
-        self._groups = [(level, list(group)) for level, group in groupby(by_level, key=lambda step: step.level)]
-        self._known: dict[Part, Diagram] = {}
+        groups = [(level, list(group)) for level, group in groupby(by_level, key=lambda step: step.level)]
+        self._levels = [level for level, _ in groups]
+        self._groups = [group for _, group in groups]
 
     def closure(self, states: Diagram, within: Diagram) -> Diagram:
-        """The least set that holds `states` and whatever the steps add within the bound."""
+        """The least set that holds `states` and whatever the steps add within the bound.
+
+        The search is a loop with a stack of its own: this is where synthesis spends its time, and diagrams are deep.
+        """
+        levels, last = self._levels, len(self._levels)
+        known: dict[Part, Diagram] = {}
+        waiting: list[_Halves | _Firing] = []
         part = states, within, 0
-        return states if self._is_closed(part) else walk(self._close, part, self._known)
-
-    def _is_closed(self, part: Part) -> bool:
-        """Whether the steps add nothing, at a glance."""
-        states, within, group = part
-        return group == len(self._groups) or states == within or not states.satisfiable()
-
-    def _close(self, part: Part) -> Closing:
-        """The closure of some states, within a bound, under the steps from a group on."""
-        states, within, group = part
-        level = min(_level(states), _level(within))
-        if level >= self._groups[group][0]:
-            closed = yield from self._fire_all(states, within, group)
-        else:
-            halves = []
-            for half, half_within in zip(split(states, level), split(within, level), strict=True):
-                inner = half, half_within, group
-                halves.append(half if self._is_closed(inner) else (yield inner))
-            closed = self._diagrams.node(level, *halves)
-        # What is closed stays as it is: it comes again as a part of what has grown elsewhere.
-        self._known[closed, within, group] = closed
-        return closed
-
-    def _fire_all(self, states: Diagram, within: Diagram, group: int) -> Closing:
-        here = self._groups[group][1]
-        # What was done without need to be done again, one after the other: the closing below, and each step.
-        idle, turns = 0, len(here) + 1
-        for turn in count(1):
-            inner = states, within, group + 1
-            closed = states if self._is_closed(inner) else (yield inner)
-            idle = idle + 1 if closed == states else 1
-            states = closed
-            if idle >= turns:
-                return states
-            for step in here:
-                further = states | self._fire(step, states) & within
-                if further == states:
-                    idle += 1
+        while True:
+            # Down to what is closed already, or at a glance.
+            while True:
+                states, within, group = part
+                is_closed = group == last or states == within or not states.satisfiable()
+                closed = states if is_closed else known.get(part)
+                if closed is not None:
+                    break
+                level = min(_level(states), _level(within))
+                if level >= levels[group]:
+                    waiting.append(_Firing(part))
+                    part = states, within, group + 1
                 else:
-                    states = further
-                    idle = 1 if step.apart else 0
-                if idle >= turns:
-                    return states
-            if self._acceleration.due(turn):
-                below = [step for _, steps in self._groups[group + 1 :] for step in steps]
-                for accelerated in self._acceleration.over(here, below, turn, within):
-                    further = states | self._fire(accelerated, states)
-                    if further != states:
-                        states, idle = further, 0
-        raise AssertionError
+                    high, low = split(states, level)
+                    high_within, low_within = split(within, level)
+                    waiting.append(_Halves(part, level, (low, low_within, group)))
+                    part = high, high_within, group
+            # Up to what has more to be closed.
+            while waiting:
+                upper = waiting[-1]
+                if type(upper) is _Halves:
+                    if upper.high is None:
+                        upper.high, part = closed, upper.below
+                        break
+                    closed = self._diagrams.node(upper.level, upper.high, closed)
+                elif type(upper) is _Firing:
+                    _, within, group = upper.part
+                    if not self._is_closed_after_turn(upper, closed):
+                        part = upper.states, within, group + 1
+                        break
+                    closed = upper.states
+                waiting.pop()
+                _, within, group = upper.part
+                # What is closed stays as it is: it comes again as a part of what has grown elsewhere.
+                known[upper.part] = known[closed, within, group] = closed
+            else:
+                return closed
+
+    def _is_closed_after_turn(self, firing: _Firing, closed: Diagram) -> bool:
+        """Fires the steps of a group, once each, at states that are closed below: whether it has all that it wants."""
+        _, within, group = firing.part
+        here = self._groups[group]
+        turns = len(here) + 1
+        states = closed
+        idle = firing.idle + 1 if closed == firing.states else 1
+        for step in here:
+            if idle >= turns:
+                break
+            further = states | self._fire(step, states) & within
+            if further == states:
+                idle += 1
+            else:
+                states = further
+                idle = 1 if step.apart else 0
+        firing.states = states
+        if idle >= turns:
+            return True
+        firing.turn += 1
+        if self._acceleration.due(firing.turn):
+            below = [step for steps in self._groups[group + 1 :] for step in steps]
+            for accelerated in self._acceleration.over(here, below, firing.turn, within):
+                further = states | self._fire(accelerated, states)
+                if further != states:
+                    states, idle = further, 0
+            firing.states = states
+        firing.idle = idle
+        return False
 
     def _fire(self, step: Step, states: Diagram) -> Diagram:
         self._diagrams.statistics.operations += 1

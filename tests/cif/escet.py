@@ -63,7 +63,8 @@ class Tools:
         """Calls a tool."""
         assert self._java.stdin is not None
         assert self._java.stdout is not None
-        self._java.stdin.write("\t".join([tool, *arguments]) + "\n")
+        # Of a display that it can't open, a tool waits for ever the second time.
+        self._java.stdin.write("\t".join([tool, *arguments, "--gui=off"]) + "\n")
         self._java.stdin.flush()
         lines: list[str] = []
         for line in self._java.stdout:
