@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -14,20 +14,30 @@ PAGES = sorted(
     if "node_modules" not in path.parts
 )
 _BLOCK = re.compile(
-    r"(?:^<!-- (?P<marker>[^\n]*?) -->\n\n?)?^(?P<indent> *)```(?P<kind>[^\n`]*)\n(?P<text>.*?)^(?P=indent)```$",
+    r"(?:^<!-- (?P<marks>[^\n]*?) -->\n\n?)?^(?P<indent> *)```(?P<kind>[^\n`]*)\n(?P<text>.*?)^(?P=indent)```$",
     re.MULTILINE | re.DOTALL,
 )
+#: What a comment right before a block may say of it, as `<!-- in: examples/line_follower; status: 1 -->`.
+MARKS = {
+    "not run": "why nothing runs it",
+    "tested by": "the test that does, of the repository; it names the page",
+    "in": "the folder that it runs in, of the repository",
+    "status": "the exit status that it ends with",
+    "file": "where the text is written to, for the blocks that follow",
+    "fragment": "what a part of a model stands in, where that can't be told from its text",
+}
+_BETWEEN_MARKS = re.compile(rf"; (?=(?:{'|'.join(MARKS)}): )")
 
 
 @dataclass(frozen=True)
 class Block:
-    """A fenced block: what stands behind its fence, its text, its line, and the comment right before it."""
+    """A fenced block: what stands behind its fence, its text, its line, and what the comment right before it says."""
 
     page: Path
     line: int
     kind: str
     text: str
-    marker: str | None
+    marks: dict[str, str] = field(default_factory=dict)
 
     @property
     def name(self) -> str:
@@ -40,11 +50,11 @@ def blocks(page: Path) -> list[Block]:
     text = page.read_text(encoding="utf-8")
     found = []
     for match in _BLOCK.finditer(text):
-        indent = match["indent"]
         lines = match["text"].splitlines(keepends=True)
-        inner = "".join(line.removeprefix(indent) for line in lines)
+        inner = "".join(line.removeprefix(match["indent"]) for line in lines)
         line = text.count("\n", 0, match.start("kind")) + 1
-        found.append(Block(page, line, match["kind"].strip(), inner, match["marker"]))
+        said = (mark.partition(": ") for mark in _BETWEEN_MARKS.split(match["marks"] or "") if mark)
+        found.append(Block(page, line, match["kind"].strip(), inner, {name.strip(): value for name, _, value in said}))
     return found
 
 
