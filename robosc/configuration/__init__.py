@@ -159,6 +159,12 @@ class Configuration(_Settings):
 
     publish_state_information: bool = Field(default=True, description="Whether the node publishes its state.")
     write_events_to_log: bool = Field(default=False, description="Whether the node writes an event log.")
+    diagnostics_ms: int = Field(
+        default=1000,
+        ge=0,
+        le=24 * 3600 * 1000,
+        description="From one report on /diagnostics to the next; 0: the node does not know this topic.",
+    )
     output: Output = Output()
     supervisor: Supervisor = Supervisor()
     control_loop: ControlLoop = ControlLoop()

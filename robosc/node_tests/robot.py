@@ -11,9 +11,10 @@ from robosc.ros_types import Section
 from robosc.runtime.core.port import Outcome
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
     from robosc.ros_types import RosDistribution
+    from robosc.runtime.core.component_status import ComponentStatus
     from robosc.runtime.core.port import CallHandlers, Endpoint, GoalHandlers, Message
 
 
@@ -108,6 +109,13 @@ class Robot:
     def report_listeners(self, name: str) -> int:
         """Nobody listens to reports."""
         del name
+        return 0
+
+    def publish_statuses(self, statuses: Sequence[ComponentStatus]) -> None:
+        """Nobody listens to statuses."""
+
+    def status_listeners(self) -> int:
+        """Nobody listens to statuses."""
         return 0
 
     def endpoints(self) -> dict[rosgraph.Subscription | rosgraph.Publisher, list[Endpoint]]:

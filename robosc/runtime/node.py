@@ -68,6 +68,8 @@ def _run(
             raise StartError(f"the event log {error.filename} can't be written: {error.strerror}") from None
         reports = ["state", "definition"] if configuration.publish_state_information else []
         node.open_reports([*reports, "blocked"] if isinstance(handler, Layer) else reports)
+        if settings.parameters.get("diagnostics_ms"):
+            node.open_diagnostics()
         node.connect(handler, settings)
     except StartError:
         node.close()

@@ -66,6 +66,7 @@ def controller_parameters(graph: rosgraph.RosGraph, configuration: Configuration
             )
             for subscription in graph.subscriptions
         ),
+        *_diagnostics(configuration),
         _event_log(log),
         *model_parameters(graph).values(),
     ]
@@ -108,6 +109,7 @@ def layer_parameters(graph: rosgraph.RosGraph, configuration: Configuration, log
     return [
         Parameter("period_ms", period, "Time from one report of the state to the next.", (1, _DAY)),
         *_timeouts(graph, configuration),
+        *_diagnostics(configuration),
         _event_log(log),
         *model_parameters(graph).values(),
     ]
@@ -123,6 +125,12 @@ def _timeouts(graph: rosgraph.RosGraph, configuration: Configuration) -> list[Pa
         meaning = "After this time without acceptance a goal has failed."
         found.append(Parameter("action_timeout_ms", actions, meaning, (1, _DAY)))
     return found
+
+
+def _diagnostics(configuration: Configuration) -> list[Parameter]:
+    meaning = "From one report on /diagnostics to the next; 0: none."
+    period = configuration.diagnostics_ms
+    return [Parameter("diagnostics_ms", period, meaning, (0, _DAY))] if period else []
 
 
 def _event_log(log: str) -> Parameter:

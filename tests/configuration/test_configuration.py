@@ -15,6 +15,7 @@ from robosc.files.resources import locate
 EVERYTHING = {
     "publishStateInformation": False,
     "writeEventsToLog": True,
+    "diagnosticsMs": 500,
     "output": {
         "ros1ControllerNodeLocation": "one",
         "ros2ControllerNodeLocation": "two",

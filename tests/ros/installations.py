@@ -62,6 +62,7 @@ def find_ros1() -> Found:
         python = shutil.which("python3", path=environment["PATH"]) or "python3"
     needed = [
         "actionlib",
+        "diagnostic_msgs",
         "geometry_msgs",
         "message_generation",
         "nav_msgs",

@@ -1,4 +1,6 @@
-"""Writes what a node says about itself (`~/state`, `~/definition`) to a file, a line of JSON each, until interrupted.
+"""Writes what a node says about itself (`~/state`, `~/definition`, `/diagnostics`) to a file, until interrupted.
+
+Each is a line of JSON.
 
 python3 reports.py 1|2 NODE FILE
 """
@@ -10,19 +12,39 @@ from pathlib import Path
 from topics import connect
 
 
+def array(message):
+    """What an array of diagnostics says, as nested dicts; its time in seconds."""
+    stamp = message.header.stamp
+    time = stamp.to_sec() if hasattr(stamp, "to_sec") else stamp.sec + stamp.nanosec / 1e9
+    return {
+        "time": time,
+        "status": [
+            {
+                "level": status.level if isinstance(status.level, int) else ord(status.level),
+                "name": status.name,
+                "message": status.message,
+                "hardware_id": status.hardware_id,
+                "values": [[value.key, value.value] for value in status.values],
+            }
+            for status in message.status
+        ],
+    }
+
+
 def main(version, node, path):
     topics = connect(version, "reports")
     with Path(path).open("w", encoding="utf-8") as file:
 
-        def note(topic):
+        def note(topic, read=lambda message: json.loads(message.data)):
             def write(message):
-                file.write(json.dumps({"topic": topic, "data": json.loads(message.data)}) + "\n")
+                file.write(json.dumps({"topic": topic, "data": read(message)}) + "\n")
                 file.flush()
 
             return write
 
         topics.listen(f"/{node}/state", "std_msgs/String", note("state"))
         topics.listen(f"/{node}/definition", "std_msgs/String", note("definition"), latched=True)
+        topics.listen("/diagnostics", "diagnostic_msgs/DiagnosticArray", note("diagnostics", array))
         while True:
             topics.receive(1.0)
 

@@ -28,11 +28,12 @@ FAILED = {"ros1": "failed", "ros2": False}
 
 @dataclass(frozen=True)
 class Trial:
-    """What reached whom in each step, what was blocked, and in which states the layer was; its event log."""
+    """What reached whom in each step, what was blocked, and in which states the layer was; what it told and printed."""
 
     ros: str
     steps: dict[str, Any]
     log: list[dict[str, Any]]
+    reports: list[dict[str, Any]]
     output: str
 
     def robot(self, step: str) -> list[Any]:
@@ -57,9 +58,12 @@ def trial(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
     nodes: Workspace | Runner
     nodes = request.getfixturevalue(kind.replace("-", "_") if kind.startswith("run") else f"{kind}_workspace")
     folder = tmp_path_factory.mktemp("layer") / "run"
-    results, log = folder / "results.json", folder / "events.jsonl"
+    results, log, reports = folder / "results.json", folder / "events.jsonl", folder / "reports.jsonl"
     version, python = nodes.ros.version, nodes.ros.python
     with middleware(nodes, folder) as processes:
+        listener = [python, HERE / "reports.py", str(version), "usher_layer", reports]
+        listening = processes.start("reports", listener)
+        processes.wait_until(reports.exists, "somebody listens to the layer's reports")
         layer = processes.start("layer", command(nodes, f"event_log:={log}"))
         if kind != "ros1":  # whose launch file has started it
             processes.start("driver", [python, DRIVER / "driver.py", *remapped(version)])
@@ -67,8 +71,11 @@ def trial(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
         processes.wait_until(lambda: script.poll() is not None, "all steps are done", seconds=900)
         assert script.returncode == 0, processes.logs()
         assert processes.stop(layer) == 0
-    lines = [json.loads(line) for line in log.read_text(encoding="utf-8").splitlines()]
-    return Trial(f"ros{version}", json.loads(results.read_text()), lines, (folder / "layer.log").read_text())
+        processes.stop(listening)
+    lines, told = (
+        [json.loads(line) for line in file.read_text(encoding="utf-8").splitlines()] for file in (log, reports)
+    )
+    return Trial(f"ros{version}", json.loads(results.read_text()), lines, told, (folder / "layer.log").read_text())
 
 
 def command(nodes: Workspace | Runner, *parameters: str) -> Sequence[str | Path]:

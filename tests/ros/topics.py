@@ -31,6 +31,10 @@ def plain(value):
     if hasattr(value, "__slots__"):
         names = (slot.lstrip("_") for slot in value.__slots__ if slot != "_check_fields")
         return {name: plain(getattr(value, name)) for name in names}
+    if isinstance(value, list):
+        return [plain(element) for element in value]
+    if isinstance(value, bytes):  # what ROS 2 calls a byte
+        return int.from_bytes(value, "little")
     return value if isinstance(value, (bool, int, float, str)) else str(value)
 
 

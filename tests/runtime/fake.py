@@ -13,10 +13,11 @@ from robosc.runtime.core.settings import SafeMessages, Settings
 from robosc.semantics.parameters import controller_parameters
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
     from pathlib import Path
 
     from robosc.metamodel import rosgraph
+    from robosc.runtime.core.component_status import ComponentStatus
     from robosc.runtime.core.port import CallHandlers, Endpoint, GoalHandlers
 
 
@@ -70,6 +71,7 @@ class FakePort:
     calls: list[CallHandlers] = field(default_factory=list)
     goals: list[FakeGoal] = field(default_factory=list)
     told: list[tuple[str, str]] = field(default_factory=list)
+    statuses: list[list[ComponentStatus]] = field(default_factory=list)
     said: list[str] = field(default_factory=list)
     others: dict[Any, list[Endpoint]] = field(default_factory=dict)
     hearing: int = 1
@@ -115,6 +117,12 @@ class FakePort:
         self.told.append((name, text))
 
     def report_listeners(self, name: str) -> int:
+        return self.hearing
+
+    def publish_statuses(self, statuses: Sequence[ComponentStatus]) -> None:
+        self.statuses.append(list(statuses))
+
+    def status_listeners(self) -> int:
         return self.hearing
 
     def endpoints(self) -> dict[Any, list[Endpoint]]:

@@ -287,6 +287,12 @@ class Node:
         return [*self.services, *self.actions]
 
     @property
+    def may_withhold(self) -> bool:
+        """Whether there may be a command whose data can't be sent."""
+        messages = [message for publisher in self.publishers for message in publisher.messages]
+        return any(message.may_fail for message in [*messages, *(client.request for client in self.clients)])
+
+    @property
     def hands_on(self) -> bool:
         """Whether it sends objects as they came."""
         messages = [message for publisher in self.publishers for message in publisher.messages]

@@ -10,19 +10,22 @@ from robosc.configuration import NO_STOP, NO_STOP_ON_SILENCE
 from robosc.files.resources import locate
 from robosc.m2t.c import engine
 from robosc.m2t.ros import preconditions
+from robosc.m2t.ros.gates import gates
 from robosc.m2t.ros.layer import LayerNode
 from robosc.m2t.ros.node import Node
 from robosc.m2t.ros.rendering import fold, node_environment
+from robosc.m2t.ros.statuses import statuses
+from robosc.metamodel import rosgraph
 from robosc.semantics.definition import definition_text
 from robosc.semantics.parameters import controller_parameters, layer_parameters
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Mapping, Sequence, Set
 
     from robosc.configuration import Configuration
     from robosc.diagnostics import Diagnostic
     from robosc.m2t.models import Models, TraceTest
-    from robosc.metamodel import rosgraph
+    from robosc.m2t.ros.statuses import Status
     from robosc.semantics.parameters import Parameter
 
     Values = Mapping[str, Any]
@@ -37,6 +40,7 @@ _INCLUDED = re.compile(r'^#include "(robosc[^"]*)"$', re.MULTILINE)
 #: `{ros}` is the version of ROS.
 _HEADERS = {
     "robosc/block_reasons": {"gates"},
+    "robosc/component_status": {"statuses"},
     "robosc/callback_guard": {"ros2"},
     "robosc/data": set(),
     "robosc/event_log": set(),
@@ -60,6 +64,19 @@ _HEADERS = {
     "robosc_ros{ros}/shutdown_hook": {"controller", "ros2"},
 }
 
+_MESSAGE = rosgraph.InterfaceKind.message
+#: What reports are made of: JSON, and statuses of components.
+_TEXT = rosgraph.Interface(package="std_msgs", type="String", kind=_MESSAGE)
+_STATUSES = rosgraph.Interface(package="diagnostic_msgs", type="DiagnosticArray", kind=_MESSAGE)
+
+
+@dataclass(frozen=True)
+class Used:
+    """The packages whose types a node uses, and the types of what it tells about itself."""
+
+    types: Set[str]
+    reports: Sequence[rosgraph.Interface]
+
 
 class Middleware(Protocol):
     """What differs between ROS 1 and ROS 2; a room of its name beside this file has its templates."""
@@ -71,11 +88,11 @@ class Middleware(Protocol):
     #: What `--with-tests` adds to a controller: path to template.
     test_files: ClassVar[Mapping[str, str]]
 
-    def controller(self, node: Node, configuration: Configuration, types: set[str], *, tests: bool) -> Values:
-        """What only the templates of a controller read; `types` are the packages of the types that it uses."""
+    def controller(self, node: Node, configuration: Configuration, used: Used, *, tests: bool) -> Values:
+        """What only the templates of a controller read."""
 
-    def layer(self, layer: LayerNode, configuration: Configuration, types: set[str]) -> Values:
-        """What only the templates of a layer read; `types` likewise."""
+    def layer(self, layer: LayerNode, configuration: Configuration, used: Used) -> Values:
+        """What only the templates of a layer read."""
 
 
 @dataclass(frozen=True)
@@ -120,7 +137,9 @@ class RosTarget:
         into: str | None,
     ) -> dict[str, str]:
         kind, ros = self.kind, self.ros
-        included = self._included(node, layer)
+        commands = gates(graph, node)
+        told = statuses(graph, node, commands) if configuration.diagnostics_ms else []
+        included = self._included(node, layer, told, tells_commands=any(status.commands for status in told))
         source, definition = f"src/{name}_node.cpp", f"include/{name}/definition.hpp"
         files = {
             **({"fragment.cmake": "fragment.cmake.j2"} if into else _PACKAGE),
@@ -130,8 +149,10 @@ class RosTarget:
             **({definition: "definition.hpp.j2"} if configuration.publish_state_information else {}),
             **(_test_files(ros, name, into) if tests else {}),
         }
-        reports = {"std_msgs"} if configuration.publish_state_information or (layer and layer.gates) else set()
-        types = {interface.package for interface in node.interfaces} | reports
+        texts_told = configuration.publish_state_information or (layer and layer.gates)
+        reports = [*([_TEXT] if texts_told else []), *([_STATUSES] if told else [])]
+        types = {interface.package for interface in [*node.interfaces, *reports]}
+        used = Used({package for package in types if package != into}, reports)
         own = [definition.removeprefix("include/")] if configuration.publish_state_information else []
         declared = (layer_parameters if layer else controller_parameters)(graph, configuration, "")
         text = f"The {'supervisory controller' if kind == 'controller' else 'supervisory layer'} of {graph.name}."
@@ -152,6 +173,9 @@ class RosTarget:
             "parameters": {parameter.name: parameter for parameter in declared},
             "parameter_groups": _groups(declared),
             "publishes_state": configuration.publish_state_information,
+            "statuses": told,
+            "remembers": bool(node.may_withhold and (told or node.instead)),
+            "gates": list(commands.values()) if told else list(layer.gates.values()) if layer else [],
             "writes_log": configuration.write_events_to_log,
             "definition": definition_text(graph),
             "no_stop": _no_stop(node, configuration),
@@ -159,9 +183,9 @@ class RosTarget:
             "frame": lambda topic: configuration.frame_id.get(topic.removeprefix("/"), ""),
             "controller": configuration.supervisor.controller,
             **(
-                ros.layer(layer, configuration, types - {into})
+                ros.layer(layer, configuration, used)
                 if layer
-                else ros.controller(node, configuration, types - {into}, tests=tests is not None)
+                else ros.controller(node, configuration, used, tests=tests is not None)
             ),
         }
         templates = node_environment(f"robosc.m2t.ros.ros{ros.version}")
@@ -174,7 +198,9 @@ class RosTarget:
         texts |= {f"{places[file[-2:]]}/{file}": text for file, text in supervisor.items()}
         return texts | ({f"test/{path}": text for path, text in tests.files.items()} if tests else {})
 
-    def _included(self, node: Node, layer: LayerNode | None) -> list[str]:
+    def _included(
+        self, node: Node, layer: LayerNode | None, told: Sequence[Status], *, tells_commands: bool
+    ) -> list[str]:
         """The headers of `include` that the node includes, without their ending."""
         sent = [publisher.interface for publisher in node.publishers] + [client.interface for client in node.clients]
         present = {
@@ -182,9 +208,10 @@ class RosTarget:
             f"ros{self.ros.version}": True,
             "actions": node.actions,
             "defaults": any(has_defaults(interface) for interface in sent),
-            "gates": layer and layer.gates,
+            "gates": (layer and layer.gates) or tells_commands,
             "hands_on": node.hands_on,
             "services": node.services,
+            "statuses": told,
             "subscriptions": node.subscriptions,
             "timed": node.at,
             "topics": node.subscriptions or node.publishers,

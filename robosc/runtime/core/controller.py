@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from robosc.runtime.core.json_text import Json
     from robosc.runtime.core.port import Client, ControllerPort, Message
     from robosc.runtime.core.settings import Settings
+    from robosc.semantics.component_parts import Parts
 
 #: Seconds that the end of the node waits for goals which it has cancelled.
 _FAREWELL = 0.5
@@ -165,6 +166,7 @@ class Controller(EventHandler):
         with self._times:
             self._control.tick()
         self._reports.publish_state(self._port.now())
+        self._statuses.publish()
 
     def stop(self) -> None:
         """Stops the robot, before the node ends and while it can still send. Nothing more starts."""
@@ -269,6 +271,24 @@ class Controller(EventHandler):
 
     def _may_wait(self, event: sct.Event) -> bool:
         return event not in self._cancels
+
+    def _held_back(self, event: sct.Event) -> str | None:
+        if self._halted:
+            return "the node is not active" if self._stopping else "a topic is silent"
+        client = self._senders[event].client
+        if client is not None and client.busy:
+            return "its last goal has not ended"
+        return "its data can't be sent" if event_name(event) in self._withheld else None
+
+    def _faults(self, parts: Parts) -> list[str]:
+        silent = [topic for topic in parts.topics if topic in self._watchdogs and self._watchdogs[topic].tripped]
+        failed = [(client.identifier, self._failures[client].why) for client in parts.clients]
+        withheld = [sending.name for sending in parts.commands if event_name(sending.event) in self._withheld]
+        return [
+            *(f"{topic.topic} is silent" for topic in silent),
+            *(f"{name}: {why}" for name, why in failed if why),
+            *(f"{name} is withheld" for name in withheld),
+        ]
 
     def _prepare(self, sender: _Sender) -> bool:
         """Makes the data of a trigger; False where it can't be sent."""

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 from robosc.engine import ControlLoop, Hooks
 from robosc.metamodel import engine
+from robosc.runtime.core.blocking import Blocking
+from robosc.runtime.core.component_status import Own, StatusReporter
 from robosc.runtime.core.event_log import EventLog, ReceivedData
 from robosc.runtime.core.node_data import NodeData
 from robosc.runtime.core.reports import StateReporter, Throttle
@@ -26,6 +28,7 @@ if TYPE_CHECKING:
     from robosc.runtime.core.json_text import Json
     from robosc.runtime.core.port import Client, Message, Port
     from robosc.runtime.core.settings import Settings
+    from robosc.semantics.component_parts import Parts
     from robosc.semantics.parameters import Value
 
 
@@ -55,6 +58,11 @@ class EventHandler:
         self.set_parameters(settings.parameters)
         self._times = Times(self._control.timers, event_loop, self._expire)
         self._reports = StateReporter(graph, self._control.engine, self._data, port, settings.configuration)
+        self._blocking = Blocking(graph, self._control.engine, self._data)
+        own = Own(self._held_back, self._faults)
+        self._statuses = StatusReporter(graph, port, self._blocking, own)
+        if "diagnostics_ms" in settings.parameters:
+            self._statuses.open(settings.number("diagnostics_ms"), settings.number("period_ms"))
         self._warn = Throttle(port.warn, event_loop.clock)
         self._events = {event_name(event): event for plant in graph.model.plants for event in plant.events}
         self._incoming = self._of_role(engine.Role.incoming)
@@ -246,6 +254,16 @@ class EventHandler:
         source, message = self._received
         data = self._logged[source].read(self._data, message) if source in self._logged else None
         return data if source is event else data or {"value": {}}
+
+    # What `/diagnostics` tells
+
+    def _held_back(self, event: sct.Event) -> str | None:  # noqa: ARG002  # a layer hands on what is allowed
+        """Why a command is not sent that the supervisor allows; None where it can be."""
+        return None
+
+    def _faults(self, parts: Parts) -> list[str]:
+        """What is wrong with a component."""
+        raise NotImplementedError
 
     def _report_livelock(self) -> None:
         self._port.error("internal transitions follow each other without end")

@@ -9,16 +9,16 @@ from robosc.metamodel import engine
 from robosc.runtime.core.event_handler import EventHandler
 from robosc.runtime.core.json_text import Json, json_text
 from robosc.runtime.core.times import RESOLUTION_MS
-from robosc.semantics.edges import edges_from, edges_of
 from robosc.semantics.roles import event_name, plant_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
     from robosc.metamodel import rosgraph, sct
     from robosc.runtime.core.event_loop import EventLoop
     from robosc.runtime.core.port import Port
     from robosc.runtime.core.settings import Settings
+    from robosc.semantics.component_parts import Parts
 
 
 class Layer(EventHandler):
@@ -34,9 +34,8 @@ class Layer(EventHandler):
         self._period = settings.seconds("period_ms")
         self._outgoing = self._of_role(engine.Role.trigger, engine.Role.cancel)
         self._data_events = self._of_role(engine.Role.data)
-        assert graph.model.supervisor is not None
-        guards = graph.model.supervisor.guards
-        self._explained = {guard.event: [guard.explanation] for guard in guards if guard.explanation}
+        #: What was blocked since the last report on `/diagnostics`.
+        self._blocked: set[sct.Event] = set()
         self.cancels: dict[sct.Event, Callable[[], None]] = {}
 
     def start(self) -> None:
@@ -49,6 +48,8 @@ class Layer(EventHandler):
 
     def _publish_state(self) -> None:
         self._reports.publish_state(self._port.now())
+        if self._statuses.publish():
+            self._blocked.clear()
         self._event_loop.call_later(self._period, self._publish_state)
 
     # From the controller
@@ -59,32 +60,16 @@ class Layer(EventHandler):
             if self._control.perform(event_name(sending.event)):
                 self._control.settle()
                 return True
-        reason, because = self._reason(sending.event)
-        self._report_blocked(sending.event, reason, because)
+        reason = self._blocking.reason(sending.event)
+        self._report_blocked(sending.event, reason.kind, reason.because)
         return False
 
     def reject(self, sending: rosgraph.Sending) -> None:
         """A call or goal is rejected because another one has not ended."""
         self._report_blocked(sending.event, "busy", [])
 
-    def _reason(self, event: sct.Event) -> tuple[str, list[str]]:
-        failing = self._control.engine.failing(event_name(event))
-        if failing:
-            return "requirement", [requirement.text or "a requirement" for requirement in failing]
-        missing = [place for plant in self._graph.model.plants for place in self._missing(plant, event)]
-        return ("state", missing) if missing else ("synthesis", self._explained.get(event, []))
-
-    def _missing(self, plant: sct.Plant, event: sct.Event) -> list[str]:
-        """The location of a plant that takes part in the event, where it has no transition for it."""
-        if not any(edge.event == event for edge in edges_of(plant)):
-            return []
-        here = next(location for location in plant.locations if self._data.is_in(location))
-        possible = any(
-            edge.event == event and (edge.guard is None or self._data.value(edge.guard)) for edge in edges_from(here)
-        )
-        return [] if possible else [f"{plant.origin or plant.name}.{here.name}"]
-
-    def _report_blocked(self, event: sct.Event, reason: str, because: list[str]) -> None:
+    def _report_blocked(self, event: sct.Event, reason: str, because: Sequence[str]) -> None:
+        self._blocked.add(event)
         plant = plant_of(event)
         name = plant.origin or plant.name
         report: dict[str, Json] = {
@@ -99,6 +84,9 @@ class Layer(EventHandler):
         self._port.publish_report("blocked", json_text(report))
         self._log.write(self._port.now(), "blocked", event_name(event))
         self._port.warn(f"{name} is blocked: {reason} {json_text(because)}")
+
+    def _faults(self, parts: Parts) -> list[str]:
+        return [f"{sending.name} was blocked" for sending in parts.commands if sending.event in self._blocked]
 
     # What happens
 

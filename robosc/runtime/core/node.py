@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from robosc.metamodel import rosgraph
+    from robosc.runtime.core.component_status import ComponentStatus
     from robosc.runtime.core.controller import Controller
     from robosc.runtime.core.event_handler import EventHandler
     from robosc.runtime.core.event_loop import EventLoop
@@ -31,6 +32,8 @@ if TYPE_CHECKING:
 #: Seconds that a node waits at most before it looks whether it was interrupted, and for what it sent at its end.
 LONGEST_WAIT = 0.1
 FAREWELL = 0.5
+#: Where monitors of robots listen.
+DIAGNOSTICS = "/diagnostics"
 
 
 class StartError(Exception):
@@ -60,6 +63,7 @@ class Node(ControllerPort, ABC):
         self._graph = graph
         self._types = {interface: self._load_type(interface) for interface in graph.interfaces}
         self._reports: dict[str, Any] = {}
+        self._statuses: Any = None
         self._changing: dict[str, Parameter] = {}
         self._publishers: dict[rosgraph.Publisher, Any] = {}
         self._clients: dict[Client, Any] = {}
@@ -167,6 +171,10 @@ class Node(ControllerPort, ABC):
         """Makes what `publish_report` publishes on; the definition is kept for those who come later."""
 
     @abstractmethod
+    def _diagnostics_publisher(self, kind: Any) -> Any:
+        """Publishes arrays of statuses."""
+
+    @abstractmethod
     def close(self) -> None:
         """Nothing more is sent or received."""
 
@@ -239,6 +247,36 @@ class Node(ControllerPort, ABC):
         if hasattr(header, "stamp"):
             header.stamp = self._stamp_now()
             header.frame_id = frame
+
+    def open_diagnostics(self) -> None:
+        """Makes what `publish_statuses` publishes on; where its types are not there, a warning says so."""
+        try:
+            self._statuses = import_module("diagnostic_msgs.msg")
+        except ImportError as error:
+            self.warn(f"nothing is published on {DIAGNOSTICS}: {error}. {self.type_hint}; or set diagnostics_ms to 0")
+        else:
+            self._reports["diagnostics"] = self._diagnostics_publisher(self._statuses.DiagnosticArray)
+
+    def publish_statuses(self, statuses: Sequence[ComponentStatus]) -> None:
+        """Publishes statuses on `/diagnostics`, named by the node and the component."""
+        kinds = self._statuses
+        report = kinds.DiagnosticArray()
+        report.header.stamp = self._stamp_now()
+        report.status = [
+            kinds.DiagnosticStatus(
+                level=kinds.DiagnosticStatus.WARN if status.warns else kinds.DiagnosticStatus.OK,
+                name=f"{self.full_name.removeprefix('/')}: {status.component}",
+                message=status.message,
+                hardware_id=self._graph.name,
+                values=[kinds.KeyValue(key=key, value=value) for key, value in status.values],
+            )
+            for status in statuses
+        ]
+        self._reports["diagnostics"].publish(report)
+
+    def status_listeners(self) -> int:
+        """How many subscriptions there are to it."""
+        return self.report_listeners("diagnostics") if "diagnostics" in self._reports else 0
 
     def publish(self, publisher: rosgraph.Publisher, message: Message) -> None:
         """Sends a message."""

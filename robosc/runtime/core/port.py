@@ -7,10 +7,11 @@ from enum import StrEnum
 from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
     from robosc.metamodel import rosgraph
     from robosc.ros_types import Section
+    from robosc.runtime.core.component_status import ComponentStatus
 
 #: Data of ROS: an object with fields as attributes; arrays can be indexed and have a length.
 Message: TypeAlias = Any
@@ -68,6 +69,12 @@ class Port(Protocol):
 
     def report_listeners(self, name: str) -> int:
         """How many subscriptions there are to one of these."""
+
+    def publish_statuses(self, statuses: Sequence[ComponentStatus]) -> None:
+        """Publishes statuses on `/diagnostics`."""
+
+    def status_listeners(self) -> int:
+        """How many subscriptions there are to it."""
 
     def info(self, text: str) -> None:
         """Logs a text."""

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from robosc.metamodel import rosgraph
 from robosc.ros_types import Section
 from robosc.runtime.core.event_loop import EventLoop
-from robosc.runtime.core.node import FAREWELL, LONGEST_WAIT, Node, StartError
+from robosc.runtime.core.node import DIAGNOSTICS, FAREWELL, LONGEST_WAIT, Node, StartError
 from robosc.runtime.core.port import CallHandlers, Endpoint, GoalHandlers
 from robosc.semantics.communication import QUEUE_DEPTH
 from robosc.semantics.naming import below_layer
@@ -84,6 +84,9 @@ class Ros1Node(Node):
         for name in names:
             kept = name == "definition"
             self._reports[name] = rospy.Publisher(f"~{name}", String, queue_size=1 if kept else QUEUE_DEPTH, latch=kept)
+
+    def _diagnostics_publisher(self, kind: Any) -> Any:
+        return rospy.Publisher(DIAGNOSTICS, kind, queue_size=QUEUE_DEPTH)
 
     def close(self) -> None:
         rospy.signal_shutdown("the controller has ended")

@@ -11,7 +11,7 @@ from robosc.metamodel import rosgraph
 from robosc.ros_types import Section
 from robosc.runtime.core.clients import POLL
 from robosc.runtime.core.event_loop import EventLoop
-from robosc.runtime.core.node import FAREWELL, LONGEST_WAIT, Node, StartError
+from robosc.runtime.core.node import DIAGNOSTICS, FAREWELL, LONGEST_WAIT, Node, StartError
 from robosc.runtime.core.port import CallHandlers, Endpoint, GoalHandlers
 from robosc.runtime.core.settings import check
 from robosc.semantics.communication import QUEUE_DEPTH, is_sensor_data
@@ -113,6 +113,9 @@ class Ros2Node(Node):
             kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
             quality = kept if name == "definition" else QoSProfile(depth=QUEUE_DEPTH)
             self._reports[name] = self.node.create_publisher(String, f"~/{name}", quality)
+
+    def _diagnostics_publisher(self, kind: Any) -> Any:
+        return self.node.create_publisher(kind, DIAGNOSTICS, QoSProfile(depth=QUEUE_DEPTH))
 
     def close(self) -> None:
         self._executor.shutdown()

@@ -58,7 +58,7 @@ def test_every_file(
 
 
 def test_packages_list_what_is_used(usher: robosc.Models, settings: Configuration) -> None:
-    messages = {"nav2_msgs", "sensor_msgs", "std_msgs", "std_srvs"}
+    messages = {"diagnostic_msgs", "nav2_msgs", "sensor_msgs", "std_msgs", "std_srvs"}
     ros1 = parse_package_string(robosc.generate("ros1-layer", usher, settings)["package.xml"])
     ros1.validate()
     assert ros1.name == "usher_layer"
@@ -169,11 +169,14 @@ def test_leaves_out_what_is_not_asked_for(usher: robosc.Models, tmp_path: Path) 
     ear = tmp_path / "ear.rscd"
     ear.write_text("robot Ear { component One { outgoing message heard with type: none } }", encoding="utf-8")
     for target in LAYERS:
-        silent = robosc.generate(target, usher, Configuration(publish_state_information=False))
+        silent = robosc.generate(target, usher, Configuration(publish_state_information=False, diagnostics_ms=0))
+        assert "diagnostic_msgs" not in "".join(silent.values())
+        assert "timer_" not in silent["src/usher_layer_node.cpp"]
         assert "include/usher_layer/definition.hpp" not in silent
         assert "state_report_" not in silent["src/usher_layer_node.cpp"]
-        assert "Threads" not in robosc.generate(target, models_of(ear))["CMakeLists.txt"]
-        headers = {path for path in robosc.generate(target, models_of(ear)) if path.startswith("include")}
+        files = robosc.generate(target, models_of(ear), Configuration(diagnostics_ms=0))
+        assert "Threads" not in files["CMakeLists.txt"]
+        headers = {path for path in files if path.startswith("include")}
         ros = f"robosc_{target.removesuffix('-layer')}"
         names = {"robosc/data", "robosc/event_log", "robosc/json", f"{ros}/message_relay", f"{ros}/parameters"}
         names |= {"robosc/callback_guard", "robosc/hangup", f"{ros}/arrivals"} if target == "ros2-layer" else set()

@@ -44,7 +44,7 @@ def test_package_lists_what_is_used(files: dict[str, str]) -> None:
     package = parse_package_string(files["package.xml"])
     package.validate()
     assert [buildtool_depend.name for buildtool_depend in package.buildtool_depends] == ["catkin"]
-    used = {"geometry_msgs", "rosconsole", "roscpp", "sensor_msgs", "std_msgs", "xmlrpcpp"}
+    used = {"diagnostic_msgs", "geometry_msgs", "rosconsole", "roscpp", "sensor_msgs", "std_msgs", "xmlrpcpp"}
     assert {build_depend.name for build_depend in package.build_depends} == used
     assert {exec_depend.name for exec_depend in package.exec_depends} == used
     described = ElementTree.fromstring(files["package.xml"]).findtext("description")  # noqa: S314  # our own text
@@ -54,7 +54,7 @@ def test_package_lists_what_is_used(files: dict[str, str]) -> None:
 
 def test_package_lists_what_services_and_actions_need(porter_files: dict[str, str]) -> None:
     package = parse_package_string(porter_files["package.xml"])
-    messages = {"geometry_msgs", "nav2_msgs", "std_msgs", "std_srvs"}
+    messages = {"diagnostic_msgs", "geometry_msgs", "nav2_msgs", "std_msgs", "std_srvs"}
     used = {"actionlib", "rosconsole", "roscpp", "xmlrpcpp"} | messages
     assert {build_depend.name for build_depend in package.build_depends} == used
     assert {exec_depend.name for exec_depend in package.exec_depends} == used

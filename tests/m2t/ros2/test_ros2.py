@@ -71,7 +71,7 @@ def test_package_lists_what_is_used(files: dict[str, str]) -> None:
     package = parse_package_string(files["package.xml"])
     package.validate()
     assert [buildtool_depend.name for buildtool_depend in package.buildtool_depends] == ["ament_cmake"]
-    used = {"geometry_msgs", "rclcpp", "rclcpp_components", "sensor_msgs", "std_msgs"}
+    used = {"diagnostic_msgs", "geometry_msgs", "rclcpp", "rclcpp_components", "sensor_msgs", "std_msgs"}
     assert {build_depend.name for build_depend in package.build_depends} == used
     assert {exec_depend.name for exec_depend in package.exec_depends} == used | {"launch", "launch_ros"}
     described = ElementTree.fromstring(files["package.xml"]).findtext("description")  # noqa: S314  # our own text
@@ -82,7 +82,7 @@ def test_package_lists_what_is_used(files: dict[str, str]) -> None:
 def test_package_lists_what_services_actions_and_managed_nodes_need(
     porter_files: dict[str, str], managed_files: dict[str, str]
 ) -> None:
-    messages = {"action_msgs", "geometry_msgs", "nav2_msgs", "std_msgs", "std_srvs"}
+    messages = {"action_msgs", "diagnostic_msgs", "geometry_msgs", "nav2_msgs", "std_msgs", "std_srvs"}
     used = {"rclcpp", "rclcpp_action", "rclcpp_components"} | messages
     package = parse_package_string(porter_files["package.xml"])
     assert {build_depend.name for build_depend in package.build_depends} == used
@@ -148,6 +148,7 @@ def test_parameters_of_the_file_are_those_of_the_node(porter_files: dict[str, st
         "action_timeout_ms": 2000,
         "retry_ms": 500,
         "watchdog_stops": True,
+        "diagnostics_ms": 1000,
         "watchdog_ms": {"order": 0, "stop": 400},
     }
     node = " ".join(porter_files["src/porter_controller_node.cpp"].split())

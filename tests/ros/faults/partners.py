@@ -22,7 +22,12 @@ HERE = Path(__file__).parent
 DOCUMENTATION = HERE.parents[2] / "docs" / "faults.md"
 STATE = "/scout_controller/state"
 #: What the world hears of the node, and what it sends: all but /bumper.
-HEARD = {"/cmd_vel": "geometry_msgs/Twist", STATE: "std_msgs/String"}
+DIAGNOSTICS = "/diagnostics"
+HEARD = {
+    "/cmd_vel": "geometry_msgs/Twist",
+    STATE: "std_msgs/String",
+    DIAGNOSTICS: "diagnostic_msgs/DiagnosticArray",
+}
 SENT = {
     "/light": "std_msgs/Bool",
     "/travel_order": "std_msgs/Bool",
@@ -254,6 +259,22 @@ class Scout:
     def _last_report(self) -> Any:
         last = next(entry for entry in reversed(self.world.said) if entry.get("heard") == STATE)
         return json.loads(last["data"]["data"])
+
+    def until_diagnosed(self, component: str, message: str, **values: str) -> None:
+        """Waits until a monitor of robots is told this of a component; `request_to_x` stands for `request to x`."""
+        expected = {name.replace("_to_", " to "): value for name, value in values.items()}
+
+        def told() -> bool:
+            heard = [entry["data"]["status"] for entry in self.world.said if entry.get("heard") == DIAGNOSTICS]
+            name = f"scout_controller: {component}"
+            for status in heard[-1] if heard else ():
+                if status["name"] == name and status["message"] == message:
+                    assert status["level"] == (";" in message)
+                    found = {value["key"]: value["value"] for value in status["values"]}
+                    return expected.items() <= found.items()
+            return False
+
+        self.until(told, f"{component} is diagnosed: {message} {expected}")
 
     @staticmethod
     def nothing(seconds: float) -> None:

@@ -110,6 +110,9 @@ def test_no_number_is_sent(scout: Scout) -> None:
         assert scout.speeds(since) == []
         assert scout.events(since, "message_move.c_trigger") == []
     scout.until_says(before, "move is withheld: its linear.x would not be finite")
+    scout.until_diagnosed(
+        "Platform", "has no states; move is withheld", request_to_move="held back: its data can't be sent"
+    )
     # In its place what the configuration names, once, though no requirement allows it.
     assert [entry["event"] for entry in scout.log(before) if entry["direction"] == "outside"] == [
         "message_halt.c_trigger"

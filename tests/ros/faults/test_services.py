@@ -23,9 +23,11 @@ def test_absent_at_start(scout: Scout) -> None:
     # Once for one reason, however often it is tried.
     assert scout.says(since, "/lamp: no server within 1000 ms") == 1
     assert scout.ticked_between(since, TRIGGER, ERROR)
+    scout.until_diagnosed("Lamp", "dark; /lamp: no server within 1000 ms")
     server = scout.serve()
     server.do("answer_at_once", fields=LIT)
     scout.until_state("Lamp", "lit")
+    scout.until_diagnosed("Lamp", "lit", request_to_lamp="not possible in Lamp.lit")
     assert scout.variable("Lamp", "answer") == "lit"
     steps = [entry for entry in scout.log(since) if entry["event"].startswith("service_lamp")]
     assert [step["event"] for step in steps[:4]] == [TRIGGER, ERROR, "service_lamp.c_reset", TRIGGER]

@@ -26,6 +26,8 @@ def test_silent_with_watchdog(scout: Scout) -> None:
     scout.nothing(0.7)
     scout.until(lambda: len(scout.speeds(still)) > 5, "the robot drives on")
     assert set(scout.speeds(still)) == {PACE}
+    scout.until_diagnosed("Lidar", "looking; /scan is silent")
+    scout.until_diagnosed("Platform", "has no states", request_to_move="allowed")
     scout.world.do("repeat", topic="/scan", fields={"ranges": [1.0, PACE]}, hz=20)
     scout.until_says(since, "/scan: speaks again")
     assert scout.says(since, "/scan: silent for 500 ms") == 1
@@ -57,6 +59,7 @@ def test_silent_with_watchdog_that_stops(guarded: Scout) -> None:
     scout.nothing(0.7)
     assert [entry["event"] for entry in scout.log(tripped) if entry["direction"] == "out"] == []
     assert scout.speeds(halted) == []
+    scout.until_diagnosed("Platform", "has no states", request_to_move="held back: a topic is silent")
     scout.send("/light", data=False)
     scout.send("/travel_order", data=False)
     again = scout.now()

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from robosc.configuration import Configuration
     from robosc.m2t.ros.layer import LayerNode
     from robosc.m2t.ros.node import Node
+    from robosc.m2t.ros.packages import Used
 
 #: The topics of an action: what ROS 1 re-maps is these, not the action's own name.
 _ACTION = ("goal", "cancel", "status", "feedback", "result")
@@ -36,24 +37,23 @@ class Ros1:
         action = "Action" if interface.kind == rosgraph.InterfaceKind.action else ""
         return f"{interface.package}/{interface.type}{action}.h"
 
-    def controller(self, node: Node, configuration: Configuration, types: set[str], *, tests: bool) -> dict[str, Any]:
-        """What only the templates of a controller read; `types` are the packages of the types that it uses."""
+    def controller(self, node: Node, configuration: Configuration, used: Used, *, tests: bool) -> dict[str, Any]:  # noqa: ARG002
+        """What only the templates of a controller read; see `Middleware`."""
         libraries = {"rosconsole", "roscpp", "xmlrpcpp", *(["actionlib"] if node.actions else [])}
         return {
-            "headers": self._headers(node, {"ros/callback_queue.h"}, strings=configuration.publish_state_information),
-            **_build(libraries | types, set(), ["rosgraph_msgs", "rospy", "rostest"] if tests else []),
+            "headers": self._headers(node, {"ros/callback_queue.h"}, used.reports),
+            **_build({*libraries, *used.types}, set(), ["rosgraph_msgs", "rospy", "rostest"] if tests else []),
             "threads": True,
             "names": list(_names(node)),
         }
 
-    def layer(self, layer: LayerNode, configuration: Configuration, types: set[str]) -> dict[str, Any]:
-        """What only the templates of a layer read; `types` are the packages of the types that it uses."""
-        dependencies = {"rosconsole", "roscpp", *types, *(["actionlib_msgs"] if layer.node.actions else [])}
-        strings = bool(layer.gates) or configuration.publish_state_information
+    def layer(self, layer: LayerNode, configuration: Configuration, used: Used) -> dict[str, Any]:
+        """What only the templates of a layer read; see `Middleware`."""
+        dependencies = {"rosconsole", "roscpp", *used.types, *(["actionlib_msgs"] if layer.node.actions else [])}
         run = configuration.supervisor.controller.run
         return {
             "headers": self._headers(
-                layer.node, {"ros/callback_queue.h"} if layer.node.services else set(), strings=strings
+                layer.node, {"ros/callback_queue.h"} if layer.node.services else set(), used.reports
             ),
             **_build(dependencies, controller_package(configuration) - dependencies),
             "threads": bool(layer.node.services),
@@ -64,9 +64,8 @@ class Ros1:
             "controller_side": lambda name: f"/{below_layer(name)}",
         }
 
-    def _headers(self, node: Node, own: set[str], *, strings: bool) -> list[str]:
-        reports = {"std_msgs/String.h"} if strings else set()
-        return sorted({self.header(interface) for interface in node.interfaces} | reports | own | {"ros/ros.h"})
+    def _headers(self, node: Node, own: set[str], reports: Sequence[rosgraph.Interface]) -> list[str]:
+        return sorted({self.header(interface) for interface in [*node.interfaces, *reports]} | own | {"ros/ros.h"})
 
 
 def _build(dependencies: set[str], started: set[str], tested: Sequence[str] = ()) -> dict[str, Any]:

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from robosc.configuration import Configuration
     from robosc.m2t.ros.layer import LayerNode
     from robosc.m2t.ros.node import Client, Node, Publisher, Subscription
+    from robosc.m2t.ros.packages import Used
     from robosc.metamodel import rosgraph
 
 _FOLDERS = {"message": "msg", "service": "srv", "action": "action"}
@@ -42,13 +43,14 @@ class Ros2:
         name = re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", words).lower()
         return f"{interface.package}/{_FOLDERS[interface.kind.name]}/{name}.hpp"
 
-    def controller(self, node: Node, configuration: Configuration, types: set[str], *, tests: bool) -> dict[str, Any]:
-        """What only the templates of a controller read; `types` are the packages of the types that it uses."""
+    def controller(self, node: Node, configuration: Configuration, used: Used, *, tests: bool) -> dict[str, Any]:
+        """What only the templates of a controller read; see `Middleware`."""
         headers: set[str] = set()
+        types = set(used.types)
         libraries, started = ["rclcpp"], ["launch", "launch_ros"]
         if node.actions:
             libraries.append("rclcpp_action")
-            types = types | {"action_msgs"}
+            types.add("action_msgs")
         if node.hands_on:
             libraries.append("rosidl_typesupport_introspection_cpp")
         if configuration.lifecycle:
@@ -56,19 +58,18 @@ class Ros2:
             started.append("lifecycle_msgs")
             headers = {"rclcpp_lifecycle/lifecycle_node.hpp", "rclcpp_lifecycle/lifecycle_publisher.hpp"}
         return {
-            "headers": self._headers(node, headers, strings=configuration.publish_state_information),
+            "headers": self._headers(node, headers, used.reports),
             **_build(libraries, types, started, _TESTED if tests else []),
             "subscription_qos": lambda topic: _quality(_usual(topic), topic.topic, configuration),
             "publisher_qos": lambda topic: _quality(_sent(topic), topic.topic, configuration),
             "client_qos": lambda client: _quality(_client(client), client.name, configuration),
         }
 
-    def layer(self, layer: LayerNode, configuration: Configuration, types: set[str]) -> dict[str, Any]:
-        """What only the templates of a layer read; `types` are the packages of the types that it uses."""
-        types = types | ({"action_msgs"} if layer.node.actions else set())
-        strings = bool(layer.gates) or configuration.publish_state_information
+    def layer(self, layer: LayerNode, configuration: Configuration, used: Used) -> dict[str, Any]:
+        """What only the templates of a layer read; see `Middleware`."""
+        types = {*used.types, *(["action_msgs"] if layer.node.actions else [])}
         return {
-            "headers": self._headers(layer.node, set(), strings=strings),
+            "headers": self._headers(layer.node, set(), used.reports),
             **_build(["rclcpp"], types, {"launch", "launch_ros", *controller_package(configuration)}),
             "names": layer.remapped(_ACTION),
             "launch_path": launch_path(configuration),
@@ -79,10 +80,9 @@ class Ros2:
             "client_qos": lambda call: _quality(_client(call), call.name, configuration),
         }
 
-    def _headers(self, node: Node, own: set[str], *, strings: bool) -> list[str]:
+    def _headers(self, node: Node, own: set[str], reports: Sequence[rosgraph.Interface]) -> list[str]:
         always = {"rclcpp/rclcpp.hpp", "rclcpp_components/register_node_macro.hpp"}
-        reports = {"std_msgs/msg/string.hpp"} if strings else set()
-        return sorted({self.header(interface) for interface in node.interfaces} | reports | own | always)
+        return sorted({self.header(interface) for interface in [*node.interfaces, *reports]} | own | always)
 
 
 def _build(

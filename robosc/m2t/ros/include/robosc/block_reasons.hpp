@@ -3,6 +3,7 @@
 #define ROBOSC_BLOCK_REASONS_HPP_
 
 #include <string>
+#include <vector>
 
 #include "robosc/json.hpp"
 
@@ -19,30 +20,44 @@ class BlockReasons {
     return reasons;
   }
 
-  void add_requirement(const std::string& text) {
-    requirements_.add(text);
-    fails_ = true;
+  void add_requirement(const std::string& text) { requirements_.push_back(text); }
+
+  void add_state(const std::string& text) { states_.push_back(text); }
+
+  void add_consequence(const std::string& text) { consequences_.push_back(text); }
+
+  const char* kind() const {
+    return busy_ ? "busy" : !requirements_.empty() ? "requirement" : !states_.empty() ? "state" : "synthesis";
   }
-
-  void add_state(const std::string& text) {
-    states_.add(text);
-    missing_ = true;
-  }
-
-  void add_consequence(const std::string& text) { consequences_.add(text); }
-
-  const char* kind() const { return busy_ ? "busy" : fails_ ? "requirement" : missing_ ? "state" : "synthesis"; }
 
   /// The texts of that kind.
-  const Json& texts() const { return fails_ ? requirements_ : missing_ ? states_ : consequences_; }
+  Json texts() const {
+    Json list = Json::array();
+    for (const std::string& text : told()) list.add(text);
+    return list;
+  }
+
+  /// All of it in a sentence.
+  std::string sentence() const {
+    const bool possible = states_.empty() || !requirements_.empty();
+    std::string said = !possible ? "not possible" : requirements_.empty() ? "forbidden by synthesis" : "forbidden";
+    const char* joint = possible ? ": " : " in ";
+    for (const std::string& text : told()) {
+      said += joint + text;
+      joint = possible ? "; " : ", ";
+    }
+    return said;
+  }
 
  private:
+  const std::vector<std::string>& told() const {
+    return !requirements_.empty() ? requirements_ : !states_.empty() ? states_ : consequences_;
+  }
+
   bool busy_ = false;
-  bool fails_ = false;
-  bool missing_ = false;
-  Json requirements_ = Json::array();
-  Json states_ = Json::array();
-  Json consequences_ = Json::array();
+  std::vector<std::string> requirements_;
+  std::vector<std::string> states_;
+  std::vector<std::string> consequences_;
 };
 
 }  // namespace v1

@@ -12,8 +12,10 @@
 #include <cstdint>
 #include <deque>
 #include <memory>
+#include <set>
 #include <string>
 
+#include <diagnostic_msgs/msg/diagnostic_array.hpp>
 #include <nav2_msgs/action/navigate_to_pose.hpp>
 #include <rclcpp/rclcpp.hpp>
 #include <rclcpp_components/register_node_macro.hpp>
@@ -26,6 +28,7 @@
 
 #include "robosc/block_reasons.hpp"
 #include "robosc/callback_guard.hpp"
+#include "robosc/component_status.hpp"
 #include "robosc/data.hpp"
 #include "robosc/event_log.hpp"
 #include "robosc/hangup.hpp"
@@ -88,6 +91,12 @@ class Layer : public rclcpp::Node {
     std_msgs::msg::String definition;
     definition.data = kDefinition;
     definition_report_->publish(definition);
+    const auto report_period =
+        std::chrono::milliseconds(parameter(*this, "diagnostics_ms", 1000, 0, 86400000,
+        "From one report on /diagnostics to the next; 0: none."));
+    report_pace_.open(report_period, period);
+    if (report_period.count() > 0) diagnostics_report_ =
+        create_publisher<diagnostic_msgs::msg::DiagnosticArray>("/diagnostics", 10);
 
     usher_hooks hooks = {};
     hooks.context = this;
@@ -136,7 +145,7 @@ class Layer : public rclcpp::Node {
     go_to_proxy_ = std::make_unique<ActionProxy<nav2_msgs::action::NavigateToPose>>(
         *this, guard_, "~/controller/go_to", "/go_to",
         rclcpp::QoS(10).keep_last(20).best_effort(), action_timeout, go_to_handlers);
-    timer_ = create_wall_timer(period, guard_([this] { publish_state(); }));
+    timer_ = create_wall_timer(period, guard_([this] { report(); }));
   }
 
   Layer(const Layer&) = delete;
@@ -234,14 +243,7 @@ class Layer : public rclcpp::Node {
       usher_settle(&supervisor_);
       return true;
     }
-    BlockReasons reasons;
-    if (!(supervisor_.state.component_Guard == usher_component_Guard_clear)) {
-      reasons.add_requirement("requirement speed needs Guard.clear");
-    }
-    if (!(Integer(supervisor_.state.component_Guard_charge) > 20)) {
-      reasons.add_requirement("requirement speed needs Guard.charge > 20");
-    }
-    block(usher_message_speed_c_trigger, "Drive.speed", reasons);
+    block(usher_message_speed_c_trigger, "Drive.speed", against_speed());
     return false;
   }
 
@@ -250,8 +252,7 @@ class Layer : public rclcpp::Node {
       usher_settle(&supervisor_);
       return true;
     }
-    BlockReasons reasons;
-    block(usher_message_label_c_trigger, "Drive.label", reasons);
+    block(usher_message_label_c_trigger, "Drive.label", BlockReasons());
     return false;
   }
 
@@ -261,15 +262,7 @@ class Layer : public rclcpp::Node {
       usher_settle(&supervisor_);
       return true;
     }
-    BlockReasons reasons;
-    if (!(supervisor_.state.component_Guard == usher_component_Guard_clear)) {
-      reasons.add_requirement("requirement light needs Guard.clear");
-    }
-    if (!(supervisor_.state.service_light == usher_service_light_idle)) {
-      reasons.add_state(std::string("Lamp.light.") +
-          usher_location_name_service_light(supervisor_.state.service_light));
-    }
-    block(usher_service_light_c_trigger, "Lamp.light", reasons);
+    block(usher_service_light_c_trigger, "Lamp.light", against_light());
     return false;
   }
 
@@ -279,19 +272,7 @@ class Layer : public rclcpp::Node {
       usher_settle(&supervisor_);
       return true;
     }
-    BlockReasons reasons;
-    if (!(supervisor_.state.component_Guard == usher_component_Guard_clear)) {
-      reasons.add_requirement("requirement go_to needs Guard.clear");
-    }
-    if (!(supervisor_.state.action_go_to == usher_action_go_to_idle)) {
-      reasons.add_state(std::string("Navigation.go_to.") +
-          usher_location_name_action_go_to(supervisor_.state.action_go_to));
-    }
-    if (!(supervisor_.state.component_Navigation == usher_component_Navigation_resting)) {
-      reasons.add_state(std::string("Navigation.") +
-          usher_location_name_component_Navigation(supervisor_.state.component_Navigation));
-    }
-    block(usher_action_go_to_c_trigger, "Navigation.go_to", reasons);
+    block(usher_action_go_to_c_trigger, "Navigation.go_to", against_go_to());
     return false;
   }
 
@@ -306,8 +287,15 @@ class Layer : public rclcpp::Node {
                               .add("because", reasons.texts())
                               .add("components", components()));
     blocked_report_->publish(report);
+    blocked_.insert(event);
     log_.write(seconds(), "blocked", usher_event_name(event));
     RCLCPP_WARN(get_logger(), "%s is blocked: %s %s", name, reasons.kind(), to_json(reasons.texts()).c_str());
+  }
+
+  // A period is over.
+  void report() {
+    publish_state();
+    publish_diagnostics();
   }
 
   // After an event: what happened is noted, and a goal cancelled whose requirement has fallen.
@@ -389,6 +377,117 @@ class Layer : public rclcpp::Node {
     return components;
   }
 
+  // Why the supervisor does not allow it.
+  BlockReasons against_speed() const {
+    BlockReasons reasons;
+    if (!(supervisor_.state.component_Guard == usher_component_Guard_clear)) {
+      reasons.add_requirement("requirement speed needs Guard.clear");
+    }
+    if (!(Integer(supervisor_.state.component_Guard_charge) > 20)) {
+      reasons.add_requirement("requirement speed needs Guard.charge > 20");
+    }
+    return reasons;
+  }
+
+  // Why the supervisor does not allow it.
+  BlockReasons against_light() const {
+    BlockReasons reasons;
+    if (!(supervisor_.state.component_Guard == usher_component_Guard_clear)) {
+      reasons.add_requirement("requirement light needs Guard.clear");
+    }
+    if (!(supervisor_.state.service_light == usher_service_light_idle)) {
+      reasons.add_state(std::string("Lamp.light.") +
+          usher_location_name_service_light(supervisor_.state.service_light));
+    }
+    return reasons;
+  }
+
+  // Why the supervisor does not allow it.
+  BlockReasons against_go_to() const {
+    BlockReasons reasons;
+    if (!(supervisor_.state.component_Guard == usher_component_Guard_clear)) {
+      reasons.add_requirement("requirement go_to needs Guard.clear");
+    }
+    if (!(supervisor_.state.action_go_to == usher_action_go_to_idle)) {
+      reasons.add_state(std::string("Navigation.go_to.") +
+          usher_location_name_action_go_to(supervisor_.state.action_go_to));
+    }
+    if (!(supervisor_.state.component_Navigation == usher_component_Navigation_resting)) {
+      reasons.add_state(std::string("Navigation.") +
+          usher_location_name_component_Navigation(supervisor_.state.component_Navigation));
+    }
+    return reasons;
+  }
+
+  // What becomes of a command, for /diagnostics.
+  std::string verdict(usher_event event, const BlockReasons& reasons) const {
+    if (!usher_enabled(&supervisor_, event)) return reasons.sentence();
+    return "allowed";
+  }
+
+  // A status for each component, once in a number of ticks, for whoever listens.
+  void publish_diagnostics() {
+    if (!report_pace_.due()) return;
+    if (diagnostics_report_->get_subscription_count() > 0) {
+      diagnostic_msgs::msg::DiagnosticArray report;
+      report.header.stamp = now();
+      report.status.push_back(status_of_Guard());
+      report.status.push_back(status_of_Scanner());
+      report.status.push_back(status_of_Lamp());
+      report.status.push_back(status_of_Navigation());
+      report.status.push_back(status_of_Drive());
+      diagnostics_report_->publish(report);
+    }
+    blocked_.clear();
+  }
+
+  using Status = diagnostic_msgs::msg::DiagnosticStatus;
+
+  Status status_of_Guard() const {
+    const std::string state = usher_location_name_component_Guard(supervisor_.state.component_Guard);
+    ComponentStatus<Status> status(get_fully_qualified_name(), "Usher", "Guard", state);
+    status.add("state", state);
+    status.add("charge", Integer(supervisor_.state.component_Guard_charge));
+    return status.made();
+  }
+
+  Status status_of_Scanner() const {
+    const std::string state = usher_location_name_component_Scanner(supervisor_.state.component_Scanner);
+    ComponentStatus<Status> status(get_fully_qualified_name(), "Usher", "Scanner", state);
+    status.add("state", state);
+    status.add("second", data_.Scanner.second);
+    return status.made();
+  }
+
+  Status status_of_Lamp() const {
+    const std::string state = "lamp";
+    ComponentStatus<Status> status(get_fully_qualified_name(), "Usher", "Lamp", state);
+    status.add("state", state);
+    status.add("lit", data_.Lamp.lit);
+    status.add("request to light", verdict(usher_service_light_c_trigger, against_light()));
+    if (blocked_.count(usher_service_light_c_trigger) > 0) status.warn("light was blocked");
+    return status.made();
+  }
+
+  Status status_of_Navigation() const {
+    const std::string state = usher_location_name_component_Navigation(supervisor_.state.component_Navigation);
+    ComponentStatus<Status> status(get_fully_qualified_name(), "Usher", "Navigation", state);
+    status.add("state", state);
+    status.add("seen", literal_name(data_.Navigation.seen));
+    status.add("request to go_to", verdict(usher_action_go_to_c_trigger, against_go_to()));
+    if (blocked_.count(usher_action_go_to_c_trigger) > 0) status.warn("go_to was blocked");
+    return status.made();
+  }
+
+  Status status_of_Drive() const {
+    ComponentStatus<Status> status(get_fully_qualified_name(), "Usher", "Drive", "has no states");
+    status.add("request to speed", verdict(usher_message_speed_c_trigger, against_speed()));
+    status.add("request to label", verdict(usher_message_label_c_trigger, BlockReasons()));
+    if (blocked_.count(usher_message_speed_c_trigger) > 0) status.warn("speed was blocked");
+    if (blocked_.count(usher_message_label_c_trigger) > 0) status.warn("label was blocked");
+    return status.made();
+  }
+
   double seconds() const { return now().seconds(); }
 
   usher_supervisor supervisor_;
@@ -412,7 +511,10 @@ class Layer : public rclcpp::Node {
   std::size_t listeners_ = 0;
   rclcpp::Publisher<std_msgs::msg::String>::SharedPtr state_report_;
   rclcpp::Publisher<std_msgs::msg::String>::SharedPtr definition_report_;
+  ReportPace report_pace_;
+  rclcpp::Publisher<diagnostic_msgs::msg::DiagnosticArray>::SharedPtr diagnostics_report_;
 
+  std::set<usher_event> blocked_;  // Since the last report on /diagnostics.
   rclcpp::Publisher<std_msgs::msg::String>::SharedPtr blocked_report_;
   std::unique_ptr<MessageRelay<std_msgs::msg::Empty>> stop_relay_;
   std::unique_ptr<MessageRelay<std_msgs::msg::Empty>> resume_relay_;

@@ -10,10 +10,13 @@
 #include <cstdint>
 #include <deque>
 #include <exception>
+#include <iterator>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 
+#include <diagnostic_msgs/DiagnosticArray.h>
 #include <geometry_msgs/PoseStamped.h>
 #include <ros/callback_queue.h>
 #include <ros/ros.h>
@@ -25,6 +28,8 @@
 #include <std_msgs/UInt8.h>
 
 #include "courier_controller/definition.hpp"
+#include "robosc/block_reasons.hpp"
+#include "robosc/component_status.hpp"
 #include "robosc/data.hpp"
 #include "robosc/event_log.hpp"
 #include "robosc/fields.hpp"
@@ -126,6 +131,12 @@ class Controller {
     std_msgs::String definition;
     definition.data = kDefinition;
     definition_report_.publish(definition);
+    const auto report_period =
+        std::chrono::milliseconds(parameter(private_, "diagnostics_ms", 1000, 0, 86400000,
+        "From one report on /diagnostics to the next; 0: none."));
+    report_pace_.open(report_period, period);
+    if (report_period.count() > 0) diagnostics_report_ =
+        node_.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 10);
 
     courier_hooks hooks = {};
     hooks.context = this;
@@ -302,17 +313,28 @@ class Controller {
     return watchdog_stops_ && (scan_watchdog_->silent() || count_watchdog_->silent() || word_watchdog_->silent());
   }
 
+  // Where the data of a command can't be made, it is withheld, until its data can be made again or it is not to be sent
+  // any more.
+  bool or_withheld(courier_event event, bool made) {
+    if (made) {
+      withheld_.erase(event);
+      return true;
+    }
+    withheld_.insert(event);
+    return false;
+  }
+
   // Before an event; false withholds it.
   bool before(courier_event event) {
     switch (event) {
       // requirement target needs Scanner.seen != nothing
       // requirement Counter.limited > 100 disables target
       case courier_message_target_c_trigger:
-        return !held() && prepare_target();
+        return !held() && or_withheld(courier_message_target_c_trigger, prepare_target());
       case courier_message_sum_c_trigger:
         return !held() && prepare_sum();
       case courier_message_ratio_c_trigger:
-        return !held() && prepare_ratio();
+        return !held() && or_withheld(courier_message_ratio_c_trigger, prepare_ratio());
       // requirement Counter.limited > 100 disables report
       // requirement report needs Scanner.looking => Counter.limited < 50
       case courier_message_report_c_trigger:
@@ -334,6 +356,9 @@ class Controller {
 
   // After an event: what it sends goes out, and what happened is noted.
   void after(courier_event event) {
+    for (auto command = withheld_.begin(); command != withheld_.end();) {
+      command = courier_enabled(&supervisor_, *command) ? std::next(command) : withheld_.erase(command);
+    }
     const char* direction = "internal";
     switch (event) {
       case courier_message_target_c_trigger:
@@ -376,6 +401,7 @@ class Controller {
   void tick() {
     courier_tick(&supervisor_);
     publish_state();
+    publish_diagnostics();
   }
 
   void on_silence(const char* topic, const Watchdog<Countdown>& watchdog) {
@@ -440,6 +466,92 @@ class Controller {
     return components;
   }
 
+  // Why the supervisor does not allow it.
+  BlockReasons against_target() const {
+    BlockReasons reasons;
+    if (!(supervisor_.state.component_Scanner_seen != courier_Side_nothing)) {
+      reasons.add_requirement("requirement target needs Scanner.seen != nothing");
+    }
+    if (Integer(supervisor_.state.component_Counter_limited) > 100) {
+      reasons.add_requirement("requirement Counter.limited > 100 disables target");
+    }
+    return reasons;
+  }
+
+  // Why the supervisor does not allow it.
+  BlockReasons against_report() const {
+    BlockReasons reasons;
+    if (Integer(supervisor_.state.component_Counter_limited) > 100) {
+      reasons.add_requirement("requirement Counter.limited > 100 disables report");
+    }
+    if (!((!(supervisor_.state.component_Scanner == courier_component_Scanner_looking)
+        || (Integer(supervisor_.state.component_Counter_limited) < 50)))) {
+      reasons.add_requirement("requirement report needs Scanner.looking => Counter.limited < 50");
+    }
+    return reasons;
+  }
+
+  // What becomes of a command, for /diagnostics.
+  std::string verdict(courier_event event, const BlockReasons& reasons) const {
+    if (!courier_enabled(&supervisor_, event)) return reasons.sentence();
+    if (held()) return stopping_ ? "held back: the node is not active" : "held back: a topic is silent";
+    if (withheld_.count(event) > 0) return "held back: its data can't be sent";
+    return "allowed";
+  }
+
+  // A status for each component, once in a number of ticks, for whoever listens.
+  void publish_diagnostics() {
+    if (!report_pace_.due()) return;
+    if (diagnostics_report_.getNumSubscribers() > 0) {
+      diagnostic_msgs::DiagnosticArray report;
+      report.header.stamp = ros::Time::now();
+      report.status.push_back(status_of_Scanner());
+      report.status.push_back(status_of_Counter());
+      report.status.push_back(status_of_Office());
+      diagnostics_report_.publish(report);
+    }
+  }
+
+  using Status = diagnostic_msgs::DiagnosticStatus;
+
+  Status status_of_Scanner() const {
+    const std::string state = courier_location_name_component_Scanner(supervisor_.state.component_Scanner);
+    ComponentStatus<Status> status(ros::this_node::getName(), "Courier", "Scanner", state);
+    status.add("state", state);
+    status.add("seen", courier_literal_name_Side(supervisor_.state.component_Scanner_seen));
+    status.add("first", data_.Scanner.first);
+    status.add("before", data_.Scanner.before);
+    status.add("fourth", data_.Scanner.fourth);
+    if (scan_watchdog_->silent()) status.warn("/scan is silent");
+    return status.made();
+  }
+
+  Status status_of_Counter() const {
+    const std::string state = "counting";
+    ComponentStatus<Status> status(ros::this_node::getName(), "Courier", "Counter", state);
+    status.add("state", state);
+    status.add("limited", Integer(supervisor_.state.component_Counter_limited));
+    status.add("total", data_.Counter.total);
+    status.add("capped", data_.Counter.capped);
+    status.add("class", literal_name(data_.Counter.class_));
+    status.add("text", data_.Counter.text);
+    if (count_watchdog_->silent()) status.warn("count is silent");
+    if (word_watchdog_->silent()) status.warn("word is silent");
+    return status.made();
+  }
+
+  Status status_of_Office() const {
+    ComponentStatus<Status> status(ros::this_node::getName(), "Courier", "Office", "has no states");
+    status.add("request to target", verdict(courier_message_target_c_trigger, against_target()));
+    status.add("request to sum", verdict(courier_message_sum_c_trigger, BlockReasons()));
+    status.add("request to ratio", verdict(courier_message_ratio_c_trigger, BlockReasons()));
+    status.add("request to report", verdict(courier_message_report_c_trigger, against_report()));
+    status.add("request to busy", verdict(courier_message_busy_c_trigger, BlockReasons()));
+    if (withheld_.count(courier_message_target_c_trigger) > 0) status.warn("target is withheld");
+    if (withheld_.count(courier_message_ratio_c_trigger) > 0) status.warn("ratio is withheld");
+    return status.made();
+  }
+
   double seconds() const { return ros::Time::now().toSec(); }
 
   ros::NodeHandle node_;
@@ -467,6 +579,7 @@ class Controller {
   std_msgs::String report_message_;
   std_msgs::Bool busy_message_;
 
+  std::set<courier_event> withheld_;  // Commands whose data can't be sent.
   bool stopping_ = false;
   bool watchdog_stops_ = false;
   EventLog log_;
@@ -475,6 +588,8 @@ class Controller {
   std::size_t listeners_ = 0;
   ros::Publisher state_report_;
   ros::Publisher definition_report_;
+  ReportPace report_pace_;
+  ros::Publisher diagnostics_report_;
 
   ros::Publisher target_publisher_;
   ros::Publisher sum_publisher_;

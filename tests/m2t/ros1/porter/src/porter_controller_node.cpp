@@ -16,6 +16,7 @@
 #include <string>
 #include <utility>
 
+#include <diagnostic_msgs/DiagnosticArray.h>
 #include <geometry_msgs/Twist.h>
 #include <nav2_msgs/NavigateToPoseAction.h>
 #include <ros/callback_queue.h>
@@ -27,6 +28,8 @@
 #include <std_srvs/Trigger.h>
 
 #include "porter_controller/definition.hpp"
+#include "robosc/block_reasons.hpp"
+#include "robosc/component_status.hpp"
 #include "robosc/data.hpp"
 #include "robosc/event_log.hpp"
 #include "robosc/fields.hpp"
@@ -91,6 +94,12 @@ class Controller {
     std_msgs::String definition;
     definition.data = kDefinition;
     definition_report_.publish(definition);
+    const auto report_period =
+        std::chrono::milliseconds(parameter(private_, "diagnostics_ms", 1000, 0, 86400000,
+        "From one report on /diagnostics to the next; 0: none."));
+    report_pace_.open(report_period, period);
+    if (report_period.count() > 0) diagnostics_report_ =
+        node_.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 10);
 
     porter_hooks hooks = {};
     hooks.context = this;
@@ -290,9 +299,9 @@ class Controller {
     return watchdog_stops_ && (order_watchdog_->silent() || stop_watchdog_->silent());
   }
 
-  // Where the data of a command can't be made, these go out instead, whatever is required of them: once, until its data
-  // can be made again or it is not to be sent any more.
-  bool or_instead(porter_event event, bool made) {
+  // Where the data of a command can't be made, it is withheld, until its data can be made again or it is not to be sent
+  // any more. Once for each such time others go out instead, whatever is required of them.
+  bool or_withheld(porter_event event, bool made) {
     if (made) {
       withheld_.erase(event);
       return true;
@@ -314,7 +323,7 @@ class Controller {
     switch (event) {
       // requirement crawl needs Base.left = near and Base.parked
       case porter_message_crawl_c_trigger:
-        return !held() && or_instead(porter_message_crawl_c_trigger, prepare_crawl());
+        return !held() && or_withheld(porter_message_crawl_c_trigger, prepare_crawl());
       // requirement halt needs Base.left != near and Base.parked
       case porter_message_halt_c_trigger:
         return !held() && prepare_halt();
@@ -326,7 +335,7 @@ class Controller {
         return !held() && prepare_release();
       // requirement travel needs Desk.ordered and Gripper.grips
       case porter_action_travel_c_trigger:
-        return !held() && !travel_client_->busy() && or_instead(porter_action_travel_c_trigger, prepare_travel());
+        return !held() && !travel_client_->busy() && or_withheld(porter_action_travel_c_trigger, prepare_travel());
       case porter_service_grip_c_reset:
         return !grip_retry_->running();
       case porter_service_release_c_reset:
@@ -394,6 +403,7 @@ class Controller {
   void tick() {
     porter_tick(&supervisor_);
     publish_state();
+    publish_diagnostics();
   }
 
   void on_silence(const char* topic, const Watchdog<Countdown>& watchdog) {
@@ -458,6 +468,138 @@ class Controller {
     return components;
   }
 
+  // Why the supervisor does not allow it.
+  BlockReasons against_crawl() const {
+    BlockReasons reasons;
+    if (!(supervisor_.state.component_Base_left == porter_Distance_near && supervisor_.state.component_Base ==
+        porter_component_Base_parked)) {
+      reasons.add_requirement("requirement crawl needs Base.left = near and Base.parked");
+    }
+    return reasons;
+  }
+
+  // Why the supervisor does not allow it.
+  BlockReasons against_halt() const {
+    BlockReasons reasons;
+    if (!(supervisor_.state.component_Base_left != porter_Distance_near && supervisor_.state.component_Base ==
+        porter_component_Base_parked)) {
+      reasons.add_requirement("requirement halt needs Base.left != near and Base.parked");
+    }
+    return reasons;
+  }
+
+  // Why the supervisor does not allow it.
+  BlockReasons against_grip() const {
+    BlockReasons reasons;
+    if (!(supervisor_.state.component_Desk == porter_component_Desk_ordered)) {
+      reasons.add_requirement("requirement grip needs Desk.ordered");
+    }
+    if (!(supervisor_.state.service_grip == porter_service_grip_idle)) {
+      reasons.add_state(std::string("Gripper.grip.") +
+          porter_location_name_service_grip(supervisor_.state.service_grip));
+    }
+    if (!(supervisor_.state.component_Gripper == porter_component_Gripper_empty)) {
+      reasons.add_state(std::string("Gripper.") +
+          porter_location_name_component_Gripper(supervisor_.state.component_Gripper));
+    }
+    return reasons;
+  }
+
+  // Why the supervisor does not allow it.
+  BlockReasons against_release() const {
+    BlockReasons reasons;
+    if (!(supervisor_.state.component_Desk == porter_component_Desk_open)) {
+      reasons.add_requirement("requirement release needs Desk.open");
+    }
+    if (!(supervisor_.state.service_release == porter_service_release_idle)) {
+      reasons.add_state(std::string("Gripper.release.") +
+          porter_location_name_service_release(supervisor_.state.service_release));
+    }
+    if (!(supervisor_.state.component_Gripper == porter_component_Gripper_closed)) {
+      reasons.add_state(std::string("Gripper.") +
+          porter_location_name_component_Gripper(supervisor_.state.component_Gripper));
+    }
+    return reasons;
+  }
+
+  // Why the supervisor does not allow it.
+  BlockReasons against_travel() const {
+    BlockReasons reasons;
+    if (!(supervisor_.state.component_Desk == porter_component_Desk_ordered &&
+        supervisor_.state.component_Gripper_grips)) {
+      reasons.add_requirement("requirement travel needs Desk.ordered and Gripper.grips");
+    }
+    if (!(supervisor_.state.action_travel == porter_action_travel_idle)) {
+      reasons.add_state(std::string("Base.travel.") +
+          porter_location_name_action_travel(supervisor_.state.action_travel));
+    }
+    if (!(supervisor_.state.component_Base == porter_component_Base_parked)) {
+      reasons.add_state(std::string("Base.") + porter_location_name_component_Base(supervisor_.state.component_Base));
+    }
+    return reasons;
+  }
+
+  // What becomes of a command, for /diagnostics.
+  std::string verdict(porter_event event, const BlockReasons& reasons) const {
+    if (!porter_enabled(&supervisor_, event)) return reasons.sentence();
+    if (held()) return stopping_ ? "held back: the node is not active" : "held back: a topic is silent";
+    if (event == porter_action_travel_c_trigger && travel_client_->busy()) return
+        "held back: its last goal has not ended";
+    if (withheld_.count(event) > 0) return "held back: its data can't be sent";
+    return "allowed";
+  }
+
+  // A status for each component, once in a number of ticks, for whoever listens.
+  void publish_diagnostics() {
+    if (!report_pace_.due()) return;
+    if (diagnostics_report_.getNumSubscribers() > 0) {
+      diagnostic_msgs::DiagnosticArray report;
+      report.header.stamp = ros::Time::now();
+      report.status.push_back(status_of_Desk());
+      report.status.push_back(status_of_Gripper());
+      report.status.push_back(status_of_Base());
+      diagnostics_report_.publish(report);
+    }
+  }
+
+  using Status = diagnostic_msgs::DiagnosticStatus;
+
+  Status status_of_Desk() const {
+    const std::string state = porter_location_name_component_Desk(supervisor_.state.component_Desk);
+    ComponentStatus<Status> status(ros::this_node::getName(), "Porter", "Desk", state);
+    status.add("state", state);
+    status.add("place", data_.Desk.place);
+    if (order_watchdog_->silent()) status.warn("order is silent");
+    if (stop_watchdog_->silent()) status.warn("/stop is silent");
+    return status.made();
+  }
+
+  Status status_of_Gripper() const {
+    const std::string state = porter_location_name_component_Gripper(supervisor_.state.component_Gripper);
+    ComponentStatus<Status> status(ros::this_node::getName(), "Porter", "Gripper", state);
+    status.add("state", state);
+    status.add("grips", supervisor_.state.component_Gripper_grips);
+    status.add("request to grip", verdict(porter_service_grip_c_trigger, against_grip()));
+    status.add("request to release", verdict(porter_service_release_c_trigger, against_release()));
+    if (!grip_fault_.empty()) status.warn("/gripper/grip: " + grip_fault_);
+    if (!release_fault_.empty()) status.warn("release: " + release_fault_);
+    return status.made();
+  }
+
+  Status status_of_Base() const {
+    const std::string state = porter_location_name_component_Base(supervisor_.state.component_Base);
+    ComponentStatus<Status> status(ros::this_node::getName(), "Porter", "Base", state);
+    status.add("state", state);
+    status.add("left", porter_literal_name_Distance(supervisor_.state.component_Base_left));
+    status.add("request to crawl", verdict(porter_message_crawl_c_trigger, against_crawl()));
+    status.add("request to halt", verdict(porter_message_halt_c_trigger, against_halt()));
+    status.add("request to travel", verdict(porter_action_travel_c_trigger, against_travel()));
+    if (!travel_fault_.empty()) status.warn("/travel: " + travel_fault_);
+    if (withheld_.count(porter_message_crawl_c_trigger) > 0) status.warn("crawl is withheld");
+    if (withheld_.count(porter_action_travel_c_trigger) > 0) status.warn("travel is withheld");
+    return status.made();
+  }
+
   double seconds() const { return ros::Time::now().toSec(); }
 
   ros::NodeHandle node_;
@@ -480,7 +622,7 @@ class Controller {
   nav2_msgs::NavigateToPoseGoal travel_goal_;
   std::string travel_fault_;
 
-  std::set<porter_event> withheld_;  // Commands in whose place others were sent.
+  std::set<porter_event> withheld_;  // Commands whose data can't be sent.
   bool stopping_ = false;
   bool watchdog_stops_ = false;
   EventLog log_;
@@ -489,6 +631,8 @@ class Controller {
   std::size_t listeners_ = 0;
   ros::Publisher state_report_;
   ros::Publisher definition_report_;
+  ReportPace report_pace_;
+  ros::Publisher diagnostics_report_;
 
   ros::Publisher cmd_vel_publisher_;
   std::optional<ServiceClient<std_srvs::SetBool>> grip_client_;

@@ -9,11 +9,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <iterator>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 
+#include <diagnostic_msgs/msg/diagnostic_array.hpp>
 #include <geometry_msgs/msg/pose_stamped.hpp>
 #include <rclcpp/rclcpp.hpp>
 #include <rclcpp_components/register_node_macro.hpp>
@@ -25,7 +28,9 @@
 #include <std_msgs/msg/u_int8.hpp>
 
 #include "courier_controller/definition.hpp"
+#include "robosc/block_reasons.hpp"
 #include "robosc/callback_guard.hpp"
+#include "robosc/component_status.hpp"
 #include "robosc/data.hpp"
 #include "robosc/event_log.hpp"
 #include "robosc/fields.hpp"
@@ -247,17 +252,28 @@ class Controller : public rclcpp::Node {
     return watchdog_stops_ && (scan_watchdog_->silent() || count_watchdog_->silent() || word_watchdog_->silent());
   }
 
+  // Where the data of a command can't be made, it is withheld, until its data can be made again or it is not to be sent
+  // any more.
+  bool or_withheld(courier_event event, bool made) {
+    if (made) {
+      withheld_.erase(event);
+      return true;
+    }
+    withheld_.insert(event);
+    return false;
+  }
+
   // Before an event; false withholds it.
   bool before(courier_event event) {
     switch (event) {
       // requirement target needs Scanner.seen != nothing
       // requirement Counter.limited > 100 disables target
       case courier_message_target_c_trigger:
-        return !held() && prepare_target();
+        return !held() && or_withheld(courier_message_target_c_trigger, prepare_target());
       case courier_message_sum_c_trigger:
         return !held() && prepare_sum();
       case courier_message_ratio_c_trigger:
-        return !held() && prepare_ratio();
+        return !held() && or_withheld(courier_message_ratio_c_trigger, prepare_ratio());
       // requirement Counter.limited > 100 disables report
       // requirement report needs Scanner.looking => Counter.limited < 50
       case courier_message_report_c_trigger:
@@ -279,6 +295,9 @@ class Controller : public rclcpp::Node {
 
   // After an event: what it sends goes out, and what happened is noted.
   void after(courier_event event) {
+    for (auto command = withheld_.begin(); command != withheld_.end();) {
+      command = courier_enabled(&supervisor_, *command) ? std::next(command) : withheld_.erase(command);
+    }
     const char* direction = "internal";
     switch (event) {
       case courier_message_target_c_trigger:
@@ -322,6 +341,7 @@ class Controller : public rclcpp::Node {
   void tick() {
     courier_tick(&supervisor_);
     publish_state();
+    publish_diagnostics();
   }
 
   void on_silence(const char* topic, const Watchdog<Countdown>& watchdog) {
@@ -387,6 +407,92 @@ class Controller : public rclcpp::Node {
     return components;
   }
 
+  // Why the supervisor does not allow it.
+  BlockReasons against_target() const {
+    BlockReasons reasons;
+    if (!(supervisor_.state.component_Scanner_seen != courier_Side_nothing)) {
+      reasons.add_requirement("requirement target needs Scanner.seen != nothing");
+    }
+    if (Integer(supervisor_.state.component_Counter_limited) > 100) {
+      reasons.add_requirement("requirement Counter.limited > 100 disables target");
+    }
+    return reasons;
+  }
+
+  // Why the supervisor does not allow it.
+  BlockReasons against_report() const {
+    BlockReasons reasons;
+    if (Integer(supervisor_.state.component_Counter_limited) > 100) {
+      reasons.add_requirement("requirement Counter.limited > 100 disables report");
+    }
+    if (!((!(supervisor_.state.component_Scanner == courier_component_Scanner_looking)
+        || (Integer(supervisor_.state.component_Counter_limited) < 50)))) {
+      reasons.add_requirement("requirement report needs Scanner.looking => Counter.limited < 50");
+    }
+    return reasons;
+  }
+
+  // What becomes of a command, for /diagnostics.
+  std::string verdict(courier_event event, const BlockReasons& reasons) const {
+    if (!courier_enabled(&supervisor_, event)) return reasons.sentence();
+    if (held()) return stopping_ ? "held back: the node is not active" : "held back: a topic is silent";
+    if (withheld_.count(event) > 0) return "held back: its data can't be sent";
+    return "allowed";
+  }
+
+  // A status for each component, once in a number of ticks, for whoever listens.
+  void publish_diagnostics() {
+    if (!report_pace_.due()) return;
+    if (diagnostics_report_->get_subscription_count() > 0) {
+      diagnostic_msgs::msg::DiagnosticArray report;
+      report.header.stamp = now();
+      report.status.push_back(status_of_Scanner());
+      report.status.push_back(status_of_Counter());
+      report.status.push_back(status_of_Office());
+      diagnostics_report_->publish(report);
+    }
+  }
+
+  using Status = diagnostic_msgs::msg::DiagnosticStatus;
+
+  Status status_of_Scanner() const {
+    const std::string state = courier_location_name_component_Scanner(supervisor_.state.component_Scanner);
+    ComponentStatus<Status> status(get_fully_qualified_name(), "Courier", "Scanner", state);
+    status.add("state", state);
+    status.add("seen", courier_literal_name_Side(supervisor_.state.component_Scanner_seen));
+    status.add("first", data_.Scanner.first);
+    status.add("before", data_.Scanner.before);
+    status.add("fourth", data_.Scanner.fourth);
+    if (scan_watchdog_->silent()) status.warn("/scan is silent");
+    return status.made();
+  }
+
+  Status status_of_Counter() const {
+    const std::string state = "counting";
+    ComponentStatus<Status> status(get_fully_qualified_name(), "Courier", "Counter", state);
+    status.add("state", state);
+    status.add("limited", Integer(supervisor_.state.component_Counter_limited));
+    status.add("total", data_.Counter.total);
+    status.add("capped", data_.Counter.capped);
+    status.add("class", literal_name(data_.Counter.class_));
+    status.add("text", data_.Counter.text);
+    if (count_watchdog_->silent()) status.warn("count is silent");
+    if (word_watchdog_->silent()) status.warn("word is silent");
+    return status.made();
+  }
+
+  Status status_of_Office() const {
+    ComponentStatus<Status> status(get_fully_qualified_name(), "Courier", "Office", "has no states");
+    status.add("request to target", verdict(courier_message_target_c_trigger, against_target()));
+    status.add("request to sum", verdict(courier_message_sum_c_trigger, BlockReasons()));
+    status.add("request to ratio", verdict(courier_message_ratio_c_trigger, BlockReasons()));
+    status.add("request to report", verdict(courier_message_report_c_trigger, against_report()));
+    status.add("request to busy", verdict(courier_message_busy_c_trigger, BlockReasons()));
+    if (withheld_.count(courier_message_target_c_trigger) > 0) status.warn("target is withheld");
+    if (withheld_.count(courier_message_ratio_c_trigger) > 0) status.warn("ratio is withheld");
+    return status.made();
+  }
+
   // Connects the node to everything that the model names.
   void configure() {
     log_ =
@@ -434,6 +540,12 @@ class Controller : public rclcpp::Node {
 
     rclcpp::PublisherOptions reporting;
     reporting.use_intra_process_comm = rclcpp::IntraProcessSetting::Disable;
+    const auto report_period =
+        std::chrono::milliseconds(parameter(*this, "diagnostics_ms", 1000, 0, 86400000,
+        "From one report on /diagnostics to the next; 0: none."));
+    report_pace_.open(report_period, period);
+    if (report_period.count() > 0) diagnostics_report_ =
+        rclcpp::create_publisher<diagnostic_msgs::msg::DiagnosticArray>(*this, "/diagnostics", 10, reporting);
     state_report_ = rclcpp::create_publisher<std_msgs::msg::String>(*this, "~/state", 10, reporting);
     definition_report_ =
         rclcpp::create_publisher<std_msgs::msg::String>(*this, "~/definition", rclcpp::QoS(1).transient_local(),
@@ -508,6 +620,7 @@ class Controller : public rclcpp::Node {
   std_msgs::msg::String report_message_;
   std_msgs::msg::Bool busy_message_;
 
+  std::set<courier_event> withheld_;  // Commands whose data can't be sent.
   bool stopping_ = false;
   bool watchdog_stops_ = false;
   EventLog log_;
@@ -516,6 +629,8 @@ class Controller : public rclcpp::Node {
   std::size_t listeners_ = 0;
   rclcpp::Publisher<std_msgs::msg::String>::SharedPtr state_report_;
   rclcpp::Publisher<std_msgs::msg::String>::SharedPtr definition_report_;
+  ReportPace report_pace_;
+  rclcpp::Publisher<diagnostic_msgs::msg::DiagnosticArray>::SharedPtr diagnostics_report_;
 
   rclcpp::Publisher<geometry_msgs::msg::PoseStamped>::SharedPtr target_publisher_;
   rclcpp::Publisher<std_msgs::msg::UInt8>::SharedPtr sum_publisher_;

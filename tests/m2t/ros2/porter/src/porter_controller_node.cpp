@@ -16,6 +16,7 @@
 #include <string>
 #include <utility>
 
+#include <diagnostic_msgs/msg/diagnostic_array.hpp>
 #include <geometry_msgs/msg/twist.hpp>
 #include <nav2_msgs/action/navigate_to_pose.hpp>
 #include <rclcpp/rclcpp.hpp>
@@ -27,7 +28,9 @@
 #include <std_srvs/srv/trigger.hpp>
 
 #include "porter_controller/definition.hpp"
+#include "robosc/block_reasons.hpp"
 #include "robosc/callback_guard.hpp"
+#include "robosc/component_status.hpp"
 #include "robosc/data.hpp"
 #include "robosc/event_log.hpp"
 #include "robosc/fields.hpp"
@@ -227,9 +230,9 @@ class Controller : public rclcpp::Node {
     return watchdog_stops_ && (order_watchdog_->silent() || stop_watchdog_->silent());
   }
 
-  // Where the data of a command can't be made, these go out instead, whatever is required of them: once, until its data
-  // can be made again or it is not to be sent any more.
-  bool or_instead(porter_event event, bool made) {
+  // Where the data of a command can't be made, it is withheld, until its data can be made again or it is not to be sent
+  // any more. Once for each such time others go out instead, whatever is required of them.
+  bool or_withheld(porter_event event, bool made) {
     if (made) {
       withheld_.erase(event);
       return true;
@@ -251,7 +254,7 @@ class Controller : public rclcpp::Node {
     switch (event) {
       // requirement crawl needs Base.left = near and Base.parked
       case porter_message_crawl_c_trigger:
-        return !held() && or_instead(porter_message_crawl_c_trigger, prepare_crawl());
+        return !held() && or_withheld(porter_message_crawl_c_trigger, prepare_crawl());
       // requirement halt needs Base.left != near and Base.parked
       case porter_message_halt_c_trigger:
         return !held() && prepare_halt();
@@ -263,7 +266,7 @@ class Controller : public rclcpp::Node {
         return !held() && prepare_release();
       // requirement travel needs Desk.ordered and Gripper.grips
       case porter_action_travel_c_trigger:
-        return !held() && !travel_client_->busy() && or_instead(porter_action_travel_c_trigger, prepare_travel());
+        return !held() && !travel_client_->busy() && or_withheld(porter_action_travel_c_trigger, prepare_travel());
       case porter_service_grip_c_reset:
         return !grip_retry_->running();
       case porter_service_release_c_reset:
@@ -332,6 +335,7 @@ class Controller : public rclcpp::Node {
   void tick() {
     porter_tick(&supervisor_);
     publish_state();
+    publish_diagnostics();
   }
 
   void on_silence(const char* topic, const Watchdog<Countdown>& watchdog) {
@@ -394,6 +398,138 @@ class Controller : public rclcpp::Node {
                        .add("variables", Json::object()
                            .add("left", porter_literal_name_Distance(supervisor_.state.component_Base_left))));
     return components;
+  }
+
+  // Why the supervisor does not allow it.
+  BlockReasons against_crawl() const {
+    BlockReasons reasons;
+    if (!(supervisor_.state.component_Base_left == porter_Distance_near && supervisor_.state.component_Base ==
+        porter_component_Base_parked)) {
+      reasons.add_requirement("requirement crawl needs Base.left = near and Base.parked");
+    }
+    return reasons;
+  }
+
+  // Why the supervisor does not allow it.
+  BlockReasons against_halt() const {
+    BlockReasons reasons;
+    if (!(supervisor_.state.component_Base_left != porter_Distance_near && supervisor_.state.component_Base ==
+        porter_component_Base_parked)) {
+      reasons.add_requirement("requirement halt needs Base.left != near and Base.parked");
+    }
+    return reasons;
+  }
+
+  // Why the supervisor does not allow it.
+  BlockReasons against_grip() const {
+    BlockReasons reasons;
+    if (!(supervisor_.state.component_Desk == porter_component_Desk_ordered)) {
+      reasons.add_requirement("requirement grip needs Desk.ordered");
+    }
+    if (!(supervisor_.state.service_grip == porter_service_grip_idle)) {
+      reasons.add_state(std::string("Gripper.grip.") +
+          porter_location_name_service_grip(supervisor_.state.service_grip));
+    }
+    if (!(supervisor_.state.component_Gripper == porter_component_Gripper_empty)) {
+      reasons.add_state(std::string("Gripper.") +
+          porter_location_name_component_Gripper(supervisor_.state.component_Gripper));
+    }
+    return reasons;
+  }
+
+  // Why the supervisor does not allow it.
+  BlockReasons against_release() const {
+    BlockReasons reasons;
+    if (!(supervisor_.state.component_Desk == porter_component_Desk_open)) {
+      reasons.add_requirement("requirement release needs Desk.open");
+    }
+    if (!(supervisor_.state.service_release == porter_service_release_idle)) {
+      reasons.add_state(std::string("Gripper.release.") +
+          porter_location_name_service_release(supervisor_.state.service_release));
+    }
+    if (!(supervisor_.state.component_Gripper == porter_component_Gripper_closed)) {
+      reasons.add_state(std::string("Gripper.") +
+          porter_location_name_component_Gripper(supervisor_.state.component_Gripper));
+    }
+    return reasons;
+  }
+
+  // Why the supervisor does not allow it.
+  BlockReasons against_travel() const {
+    BlockReasons reasons;
+    if (!(supervisor_.state.component_Desk == porter_component_Desk_ordered &&
+        supervisor_.state.component_Gripper_grips)) {
+      reasons.add_requirement("requirement travel needs Desk.ordered and Gripper.grips");
+    }
+    if (!(supervisor_.state.action_travel == porter_action_travel_idle)) {
+      reasons.add_state(std::string("Base.travel.") +
+          porter_location_name_action_travel(supervisor_.state.action_travel));
+    }
+    if (!(supervisor_.state.component_Base == porter_component_Base_parked)) {
+      reasons.add_state(std::string("Base.") + porter_location_name_component_Base(supervisor_.state.component_Base));
+    }
+    return reasons;
+  }
+
+  // What becomes of a command, for /diagnostics.
+  std::string verdict(porter_event event, const BlockReasons& reasons) const {
+    if (!porter_enabled(&supervisor_, event)) return reasons.sentence();
+    if (held()) return stopping_ ? "held back: the node is not active" : "held back: a topic is silent";
+    if (event == porter_action_travel_c_trigger && travel_client_->busy()) return
+        "held back: its last goal has not ended";
+    if (withheld_.count(event) > 0) return "held back: its data can't be sent";
+    return "allowed";
+  }
+
+  // A status for each component, once in a number of ticks, for whoever listens.
+  void publish_diagnostics() {
+    if (!report_pace_.due()) return;
+    if (diagnostics_report_->get_subscription_count() > 0) {
+      diagnostic_msgs::msg::DiagnosticArray report;
+      report.header.stamp = now();
+      report.status.push_back(status_of_Desk());
+      report.status.push_back(status_of_Gripper());
+      report.status.push_back(status_of_Base());
+      diagnostics_report_->publish(report);
+    }
+  }
+
+  using Status = diagnostic_msgs::msg::DiagnosticStatus;
+
+  Status status_of_Desk() const {
+    const std::string state = porter_location_name_component_Desk(supervisor_.state.component_Desk);
+    ComponentStatus<Status> status(get_fully_qualified_name(), "Porter", "Desk", state);
+    status.add("state", state);
+    status.add("place", data_.Desk.place);
+    if (order_watchdog_->silent()) status.warn("order is silent");
+    if (stop_watchdog_->silent()) status.warn("/stop is silent");
+    return status.made();
+  }
+
+  Status status_of_Gripper() const {
+    const std::string state = porter_location_name_component_Gripper(supervisor_.state.component_Gripper);
+    ComponentStatus<Status> status(get_fully_qualified_name(), "Porter", "Gripper", state);
+    status.add("state", state);
+    status.add("grips", supervisor_.state.component_Gripper_grips);
+    status.add("request to grip", verdict(porter_service_grip_c_trigger, against_grip()));
+    status.add("request to release", verdict(porter_service_release_c_trigger, against_release()));
+    if (!grip_fault_.empty()) status.warn("/gripper/grip: " + grip_fault_);
+    if (!release_fault_.empty()) status.warn("release: " + release_fault_);
+    return status.made();
+  }
+
+  Status status_of_Base() const {
+    const std::string state = porter_location_name_component_Base(supervisor_.state.component_Base);
+    ComponentStatus<Status> status(get_fully_qualified_name(), "Porter", "Base", state);
+    status.add("state", state);
+    status.add("left", porter_literal_name_Distance(supervisor_.state.component_Base_left));
+    status.add("request to crawl", verdict(porter_message_crawl_c_trigger, against_crawl()));
+    status.add("request to halt", verdict(porter_message_halt_c_trigger, against_halt()));
+    status.add("request to travel", verdict(porter_action_travel_c_trigger, against_travel()));
+    if (!travel_fault_.empty()) status.warn("/travel: " + travel_fault_);
+    if (withheld_.count(porter_message_crawl_c_trigger) > 0) status.warn("crawl is withheld");
+    if (withheld_.count(porter_action_travel_c_trigger) > 0) status.warn("travel is withheld");
+    return status.made();
   }
 
   // Whether a goal may still be accepted, to be cancelled then.
@@ -465,6 +601,12 @@ class Controller : public rclcpp::Node {
 
     rclcpp::PublisherOptions reporting;
     reporting.use_intra_process_comm = rclcpp::IntraProcessSetting::Disable;
+    const auto report_period =
+        std::chrono::milliseconds(parameter(*this, "diagnostics_ms", 1000, 0, 86400000,
+        "From one report on /diagnostics to the next; 0: none."));
+    report_pace_.open(report_period, period);
+    if (report_period.count() > 0) diagnostics_report_ =
+        rclcpp::create_publisher<diagnostic_msgs::msg::DiagnosticArray>(*this, "/diagnostics", 10, reporting);
     state_report_ = rclcpp::create_publisher<std_msgs::msg::String>(*this, "~/state", 10, reporting);
     definition_report_ =
         rclcpp::create_publisher<std_msgs::msg::String>(*this, "~/definition", rclcpp::QoS(1).transient_local(),
@@ -526,7 +668,7 @@ class Controller : public rclcpp::Node {
   nav2_msgs::action::NavigateToPose::Goal travel_goal_;
   std::string travel_fault_;
 
-  std::set<porter_event> withheld_;  // Commands in whose place others were sent.
+  std::set<porter_event> withheld_;  // Commands whose data can't be sent.
   bool stopping_ = false;
   bool watchdog_stops_ = false;
   EventLog log_;
@@ -535,6 +677,8 @@ class Controller : public rclcpp::Node {
   std::size_t listeners_ = 0;
   rclcpp::Publisher<std_msgs::msg::String>::SharedPtr state_report_;
   rclcpp::Publisher<std_msgs::msg::String>::SharedPtr definition_report_;
+  ReportPace report_pace_;
+  rclcpp::Publisher<diagnostic_msgs::msg::DiagnosticArray>::SharedPtr diagnostics_report_;
 
   rclcpp::Publisher<geometry_msgs::msg::Twist>::SharedPtr cmd_vel_publisher_;
   std::optional<ServiceClient<std_srvs::srv::SetBool>> grip_client_;

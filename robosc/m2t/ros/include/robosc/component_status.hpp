@@ -1,0 +1,79 @@
+// What a node tells on /diagnostics.
+#ifndef ROBOSC_COMPONENT_STATUS_HPP_
+#define ROBOSC_COMPONENT_STATUS_HPP_
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <string>
+
+#include "robosc/data.hpp"
+#include "robosc/json.hpp"
+
+namespace robosc {
+inline namespace v1 {
+
+/// A value as people and plots read it.
+inline std::string plain_text(double value) {
+  return std::isnan(value) ? "nan" : std::isinf(value) ? (value < 0 ? "-inf" : "inf") : to_json(value);
+}
+inline std::string plain_text(const std::string& value) { return value; }
+inline std::string plain_text(const char* value) { return value; }
+inline std::string plain_text(bool value) { return to_json(value); }
+inline std::string plain_text(Integer value) { return to_json(value); }
+
+/// Which ticks are followed by a report: the first, then one in so many milliseconds; none where these are 0.
+class ReportPace {
+ public:
+  void open(std::chrono::milliseconds wanted, std::chrono::milliseconds period) {
+    every_ = wanted.count() == 0 ? 0 : std::max<std::chrono::milliseconds::rep>(1, wanted / period);
+    passed_ = 0;
+  }
+
+  /// A tick is over: whether it is time for a report.
+  bool due() {
+    if (every_ == 0) return false;
+    const bool due = passed_ == 0;
+    passed_ = (passed_ + 1) % every_;
+    return due;
+  }
+
+ private:
+  std::chrono::milliseconds::rep every_ = 0;
+  std::chrono::milliseconds::rep passed_ = 0;
+};
+
+/// The status of a component in the making; `Status` is that of diagnostic_msgs, of either ROS.
+template <typename Status>
+class ComponentStatus {
+ public:
+  ComponentStatus(const std::string& node, const char* robot, const char* component, const std::string& message) {
+    status_.level = Status::OK;
+    status_.name = node.substr(std::min(node.find_first_not_of('/'), node.size())) + ": " + component;
+    status_.hardware_id = robot;
+    status_.message = message;
+  }
+
+  template <typename Value>
+  void add(const char* key, const Value& value) {
+    status_.values.emplace_back();
+    status_.values.back().key = key;
+    status_.values.back().value = plain_text(value);
+  }
+
+  /// Something is wrong with it.
+  void warn(const std::string& what) {
+    status_.level = Status::WARN;
+    status_.message += "; " + what;
+  }
+
+  const Status& made() const { return status_; }
+
+ private:
+  Status status_;
+};
+
+}  // namespace v1
+}  // namespace robosc
+
+#endif  // ROBOSC_COMPONENT_STATUS_HPP_

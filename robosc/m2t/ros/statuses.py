@@ -1,0 +1,80 @@
+"""What a node tells on `/diagnostics` of each component, ready to be printed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from robosc.m2t.c.comments import string_literal
+from robosc.m2t.ros.names import identifier
+from robosc.semantics.component_parts import STATELESS, components, request
+from robosc.semantics.naming import Names
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from robosc.m2t.ros.gates import Gate
+    from robosc.m2t.ros.node import Client, Node, Subscription
+    from robosc.metamodel import rosgraph
+
+
+@dataclass(frozen=True)
+class Command:
+    """A command: what a status calls it, as a literal; its gate, its name; whether it may be withheld, of an action."""
+
+    key: str
+    gate: Gate
+    name: str
+    may_fail: bool
+    action: Client | None
+
+
+@dataclass(frozen=True)
+class Status:
+    """A component: a word for it, its name, its state, where it has one, and its variables, as expressions of C++."""
+
+    word: str
+    name: str
+    state: str | None
+    stateless: str
+    variables: Sequence[tuple[str, str]]
+    #: What it is told, and what tells of it.
+    commands: list[Command]
+    topics: list[Subscription]
+    clients: list[Client]
+
+
+def statuses(graph: rosgraph.RosGraph, node: Node, gates: Mapping[rosgraph.Sending, Gate]) -> list[Status]:
+    """The status of each component of a graph, whose commands have these gates."""
+    heard = dict(zip(graph.subscriptions, node.subscriptions, strict=True))
+    called = dict(zip([*graph.serviceClients, *graph.actionClients], node.clients, strict=True))
+    actions = {client.request.event: client for client in node.clients if client.cancel}
+    messages = [message for publisher in node.publishers for message in publisher.messages]
+    failing = {
+        message.event for message in [*messages, *(client.request for client in node.clients)] if message.may_fail
+    }
+    reported = {component.name: component for component in node.reported}
+    words = Names()
+    return [
+        Status(
+            words.fresh(identifier(parts.name)),
+            string_literal(parts.name),
+            told.state if told else None,
+            string_literal(STATELESS),
+            told.variables if told else (),
+            [
+                Command(
+                    string_literal(request(sending)),
+                    gates[sending],
+                    sending.name,
+                    gates[sending].event in failing,
+                    actions.get(gates[sending].event),
+                )
+                for sending in parts.commands
+            ],
+            [heard[topic] for topic in parts.topics],
+            [called[client] for client in parts.clients],
+        )
+        for parts in components(graph)
+        for told in [reported.get(string_literal(parts.name))]
+    ]

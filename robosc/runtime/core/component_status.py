@@ -1,0 +1,90 @@
+"""What a node tells on `/diagnostics`: a status for each component of its robot."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import isfinite
+from typing import TYPE_CHECKING
+
+from robosc.runtime.core.event_log import shown
+from robosc.runtime.core.json_text import json_text
+from robosc.semantics.component_parts import STATELESS, Parts, components, request
+from robosc.semantics.roles import event_name
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from robosc.metamodel import rosgraph, sct
+    from robosc.runtime.core.blocking import Blocking
+    from robosc.runtime.core.json_text import Json
+    from robosc.runtime.core.port import Port
+
+
+@dataclass(frozen=True)
+class ComponentStatus:
+    """A status: of which component, whether something is wrong, its state and what is wrong, and further values."""
+
+    component: str
+    warns: bool
+    message: str
+    values: Sequence[tuple[str, str]]
+
+
+@dataclass(frozen=True)
+class Own:
+    """What a controller or a layer knows beside its engine."""
+
+    #: What it says of a command that the supervisor allows: None where it can be sent.
+    held_back: Callable[[sct.Event], str | None]
+    #: What is wrong with a component.
+    faults: Callable[[Parts], Sequence[str]]
+
+
+class StatusReporter:
+    """Publishes the states of all components once in a number of ticks, for whoever listens; none with 0."""
+
+    def __init__(self, graph: rosgraph.RosGraph, port: Port, blocking: Blocking, own: Own) -> None:
+        self._components = components(graph)
+        self._port = port
+        self._blocking = blocking
+        self._own = own
+        self._every = 0
+        self._passed = 0
+
+    def open(self, milliseconds: int, period: int) -> None:
+        """Publishes every so many milliseconds from now on, in whole periods, one at least; never with 0."""
+        self._every = max(1, milliseconds // period) if milliseconds else 0
+
+    def publish(self) -> bool:
+        """A tick is over: publishes, if it is time and somebody listens. Whether it was time."""
+        if self._every == 0:
+            return False
+        due = self._passed == 0
+        self._passed = (self._passed + 1) % self._every
+        if due and self._port.status_listeners():
+            self._port.publish_statuses([self._status(parts) for parts in self._components])
+        return due
+
+    def _status(self, parts: Parts) -> ComponentStatus:
+        plant, faults = parts.plant, self._own.faults(parts)
+        state, values = STATELESS, []
+        if plant is not None:
+            state = plant.locations[self._blocking.engine.location(plant)].name
+            values = [("state", state)]
+            values += [(variable.name, _text(self._blocking.engine.value(variable))) for variable in plant.variables]
+        values += [(variable.name, _text(shown(self._blocking.data.variables[variable]))) for variable in parts.kept]
+        values += [(request(sending), self._verdict(sending.event)) for sending in parts.commands]
+        return ComponentStatus(parts.name, bool(faults), "; ".join([state, *faults]), values)
+
+    def _verdict(self, event: sct.Event) -> str:
+        if not self._blocking.engine.enabled(event_name(event)):
+            return str(self._blocking.reason(event))
+        held = self._own.held_back(event)
+        return "allowed" if held is None else f"held back: {held}"
+
+
+def _text(value: Json) -> str:
+    """A value as people and plots read it."""
+    if isinstance(value, str):
+        return value.encode(errors="replace").decode()
+    return str(value) if isinstance(value, float) and not isfinite(value) else json_text(value)

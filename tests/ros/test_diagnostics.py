@@ -1,0 +1,113 @@
+"""What nodes tell on `/diagnostics`, held against an engine that follows what they tell on `~/state`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import robosc
+from robosc.engine import Engine
+from robosc.metamodel import sct
+from robosc.runtime.core.json_text import json_text
+from robosc.semantics.edges import edges_from, edges_of
+from robosc.semantics.roles import event_name
+from robosc.simulation.tracking import Tracker
+from tests.ros.test_layer import trial
+from tests.ros.workspaces import EXAMPLES, USHER
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from tests.ros.conftest import Drive
+    from tests.ros.test_layer import Trial
+
+__all__ = ["trial"]
+
+
+class Witness:
+    """Follows a robot by the reports of its node, and knows what each status says then."""
+
+    def __init__(self, path: Path) -> None:
+        robot = robosc.load(path)
+        self.model = robosc.to_sct(robot)
+        robosc.synthesize(self.model)
+        self.engine = Engine(self.model)
+        self.tracker = Tracker(self.engine)
+        self.commands = [
+            event for plant in self.model.plants for event in plant.events if event.kind == sct.EventKind.trigger
+        ]
+
+    def statuses(self, state: dict[str, Any]) -> dict[str, dict[str, str | None]]:
+        """The values of each component's status after a report on `~/state`; None: a number that is not finite."""
+        list(self.tracker.report(state))
+        told: dict[str, dict[str, str | None]] = {
+            name: {"state": component["state"], **{key: text(value) for key, value in component["variables"].items()}}
+            for name, component in state["components"].items()
+        }
+        for event in self.commands:
+            component, _, name = event.eContainer().origin.rpartition(".")
+            told.setdefault(component, {})[f"request to {name}"] = self.verdict(event)
+        return told
+
+    def verdict(self, event: sct.Event) -> str:
+        """What is said of a command, as far as the engine knows it."""
+        if self.engine.enabled(event_name(event)):
+            return "allowed"
+        failing = [str(requirement.text) for requirement in self.engine.failing(event_name(event))]
+        if failing:
+            return f"forbidden: {'; '.join(failing)}"
+        places = [plant.locations[self.engine.location(plant)] for plant in self.model.plants if edges_of(plant, event)]
+        stuck = [place for place in places if not edges_from(place, event)]
+        where = ", ".join(f"{place.eContainer().origin}.{place.name}" for place in stuck)
+        return f"not possible in {where}" if stuck else "forbidden by synthesis"
+
+
+def text(value: object) -> str | None:
+    """A value of `~/state` as a status has it."""
+    return value if isinstance(value, str | None) else json_text(value)  # type: ignore[arg-type]
+
+
+def compare(reports: list[dict[str, Any]], path: Path, node: str) -> list[dict[str, Any]]:
+    """Holds each report on `/diagnostics` against the last one on `~/state` before it; returns all their statuses."""
+    witness, statuses, expected = Witness(path), [], None
+    told = [report for report in reports if report["topic"] != "definition"]
+    for report in sorted(told, key=lambda one: (one["data"]["time"], one["topic"] == "diagnostics")):
+        if report["topic"] == "state":
+            expected = witness.statuses(report["data"])
+        elif expected is not None:
+            seen = {status["name"]: dict(status["values"]) for status in report["data"]["status"]}
+            for name, values in expected.items():
+                found = seen.pop(f"{node}: {name}", {})
+                unread = {
+                    key for key, value in values.items() if value is None and found.get(key) in ("nan", "inf", "-inf")
+                }
+                assert {key: None if key in unread else value for key, value in found.items()} == values
+            assert all(not values for values in seen.values()), "others have nothing to tell of"
+            statuses += report["data"]["status"]
+    for status in statuses:
+        assert status["hardware_id"] == witness.model.name
+        state, *faults = status["message"].split("; ")
+        assert state == dict(status["values"]).get("state", "has no states")
+        assert status["level"] == bool(faults)
+    return statuses
+
+
+def test_a_controller_says_what_its_engine_knows(drive: Drive) -> None:
+    path = EXAMPLES / "line_follower" / "line_follower.rscd"
+    statuses = compare(drive.reports, path, "line_follower_controller")
+    said = {dict(status["values"]).get("request to move") for status in statuses} - {None}
+    assert {
+        "allowed",
+        "forbidden: requirement move needs LineDetector.following and Lidar.free and EmergencyStop.in_service",
+    } == said
+
+
+def test_a_layer_says_what_its_engine_knows_and_what_it_blocked(trial: Trial) -> None:
+    statuses = compare(trial.reports, USHER / "usher.rscd", "usher_layer")
+    blocked = {entry["event"] for entry in trial.log if entry["direction"] == "blocked"}
+    faults = {fault for status in statuses for fault in status["message"].split("; ")[1:]}
+    assert faults
+    names = {event.partition(".")[0].partition("_")[2] for event in blocked}
+    assert faults <= {f"{name} was blocked" for name in names}
+    said = {value for status in statuses for key, value in status["values"] if key == "request to go_to"}
+    assert {"allowed", "forbidden: requirement go_to needs Guard.clear"} < said
+    assert "not possible in Navigation.go_to.executing, Navigation.going" in said
