@@ -58,6 +58,11 @@ _EPILOG = "\n".join(["\b", "Targets:", *(f"  {target.name:<11} {target.descripti
     "--with-tests", is_flag=True, help="Add a test that plays event traces against the node, and a Dockerfile."
 )
 @click.option(
+    "--typed-state",
+    is_flag=True,
+    help="Let the node publish its state as a message, too; a package with its type is generated beside it.",
+)
+@click.option(
     "--into",
     metavar="NAME",
     callback=_into,
@@ -85,6 +90,7 @@ def command(
     output: str | None,
     chosen: str | None,
     with_tests: bool,
+    typed_state: bool,
     into: str | None,
     confirmed: Sequence[str],
     list_inputs: bool,
@@ -108,13 +114,17 @@ def command(
 
     Exit status: 0 done, 1 errors in the model, 2 a wrong call, 3 no supervisor exists.
     """
-    _refuse_what_does_not_fit(targets, with_tests, into)
+    _refuse_what_does_not_fit(targets, with_tests, typed_state, into)
     with Report(form, aside=list_inputs) as report:
         models = read_models(model, paths, report, cif=not any(target.needs_graph for target in targets))
         for target in targets:
             if target.needs_graph and models.rosgraph is None:
                 raise CallError(f"{model} has no ROS graph, which {target.name} needs: give its .rosgraph.xmi or .rscd")
         settings = read_configuration(model, chosen, report)
+        settings = settings.model_copy(update={"typed_state": typed_state or settings.typed_state})
+        if into and settings.typed_state:
+            message = "what a package of yours includes can't have a typed state yet: that is a package of its own"
+            report.add([settings.error(("typedState",), message, "leave out --into, or the typed state")])
         # What a build makes stays where it is built.
         copied = [] if into else targets
         copies = _copies(Path(model).parent, copied, settings, confirmed, report)
@@ -126,7 +136,7 @@ def command(
         for target in targets:
             report.add(target.findings(models, settings))
         if with_tests:
-            report.add(_untested(models))
+            report.add(_untested(models, settings))
         report.stop_on_errors()
         folder = Path(output or f"build/{models.sct.name}")
         files = {}
@@ -149,10 +159,13 @@ def command(
         say(f"{written}: {len(texts)} files, {sum(resolved / name in changed for name in texts)} written", err=True)
 
 
-def _refuse_what_does_not_fit(targets: Sequence[Target], with_tests: bool, into: str | None) -> None:
+def _refuse_what_does_not_fit(targets: Sequence[Target], with_tests: bool, typed_state: bool, into: str | None) -> None:
     if with_tests and not any(target.tested_ros for target in targets):
         tested = [target.name for target in TARGETS.values() if target.tested_ros]
         raise CallError(f"--with-tests is for {' and '.join(tested)}: the other targets have none")
+    if typed_state and not any(target.package for target in targets):
+        nodes = [target.name for target in TARGETS.values() if target.package]
+        raise CallError(f"--typed-state is for {', '.join(nodes)}: the other targets have no node")
     if into is not None and not (len(targets) == 1 and targets[0].can_be_included):
         included = [target.name for target in TARGETS.values() if target.can_be_included]
         raise CallError(f"--into is for one of {', '.join(included)}")
@@ -163,8 +176,15 @@ def _inputs() -> list[str]:
     return sorted(str(Path(name).resolve()) for name in inputs())
 
 
-def _untested(models: Models) -> Iterator[Diagnostic]:
-    """Which of two deadlines that fall together comes first, ROS does not say: a trace can't be played then."""
+def _untested(models: Models, configuration: Configuration) -> Iterator[Diagnostic]:
+    """What can't be tested yet.
+
+    Which of two deadlines that fall together comes first, ROS does not say: a trace can't be played then. The
+    Dockerfile of a package builds this one alone.
+    """
+    if configuration.typed_state:
+        message = "a package with trace tests can't have a typed state yet: its Dockerfile builds one package"
+        yield configuration.error(("typedState",), message, "leave out --with-tests, or the typed state")
     for plant in models.sct.plants:
         for event in plant.events:
             if event.timer is not None:
@@ -221,6 +241,7 @@ def _trees(
             names = f"{packages[below].name} and {target.name}"
             raise CallError(f'{names} would both be {below}: "package.name" names both, generate one at a time')
         trees[folder] |= {(below / path).as_posix(): text for path, text in files.items()}
+        trees[folder] |= target.beside(models, configuration)
         if target in copies:
             trees.setdefault(copies[target], {}).update(files)
     return trees

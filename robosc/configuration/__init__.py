@@ -14,7 +14,7 @@ from pydantic.alias_generators import to_camel
 from robosc.diagnostics import Diagnostic, ModelError, Severity, Span
 from robosc.files import reading as files
 from robosc.files.json_reading import JsonError, json_value
-from robosc.semantics.naming import controller_name, layer_name
+from robosc.semantics.naming import controller_name, layer_name, snake_case
 
 if TYPE_CHECKING:
     from robosc.metamodel.expression import NamedElement
@@ -158,6 +158,10 @@ class Configuration(_Settings):
     """All settings of generated code. In JSON the names are in camelCase; each is optional."""
 
     publish_state_information: bool = Field(default=True, description="Whether the node publishes its state.")
+    typed_state: bool = Field(
+        default=False,
+        description="Whether the node publishes its state as a message, too, and a package with its type is generated.",
+    )
     write_events_to_log: bool = Field(default=False, description="Whether the node writes an event log.")
     diagnostics_ms: int = Field(
         default=1000,
@@ -205,6 +209,10 @@ class Configuration(_Settings):
     def package_name(self, robot: "NamedElement") -> str:
         """The name of a robot's package, node and executable."""
         return self.package.name or controller_name(robot)
+
+    def interfaces_name(self, robot: "NamedElement") -> str:
+        """The name of the package with the type of a robot's state."""
+        return f"{self.package.name or snake_case(robot.name)}_msgs"
 
     def layer_name(self, robot: "NamedElement") -> str:
         """The same for the supervisory layer before a robot."""

@@ -42,6 +42,13 @@ class OptionalGenerator(Protocol):
         """The files that it generates without options, but as these ask for."""
 
 
+class PackageGenerator(Protocol):
+    """What the module of a target offers that is a ROS package."""
+
+    def interfaces(self, models: Models, configuration: Configuration) -> dict[str, str]:
+        """The package with the types of its own, if it needs any: paths begin with its name."""
+
+
 @dataclass(frozen=True)
 class Target:
     """A target: what it is, what it reads, and where its files go."""
@@ -75,6 +82,13 @@ class Target:
             return self._folder
         named = configuration.layer_name if self.package == "layer" else configuration.package_name
         return f"{self._folder}/{named(models.sct)}"
+
+    def beside(self, models: Models, configuration: Configuration) -> dict[str, str]:
+        """What it generates beside that folder: POSIX path below the output folder to text."""
+        if self.package is None:
+            return {}
+        made = cast("PackageGenerator", self.generator()).interfaces(models, configuration)
+        return {f"{self._folder}/{path}": text for path, text in made.items()}
 
     def findings(self, models: Models, configuration: Configuration) -> list[Diagnostic]:
         """What keeps the target from these models and settings, and what is doubtful about them."""

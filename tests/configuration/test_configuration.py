@@ -14,6 +14,7 @@ from robosc.files.resources import locate
 
 EVERYTHING = {
     "publishStateInformation": False,
+    "typedState": True,
     "writeEventsToLog": True,
     "diagnosticsMs": 500,
     "output": {

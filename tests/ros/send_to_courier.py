@@ -9,7 +9,7 @@ import sys
 import time
 from pathlib import Path
 
-from topics import connect, plain
+from topics import connect, plain, type_of
 
 SENT = {
     "target": "geometry_msgs/PoseStamped",
@@ -46,7 +46,7 @@ EVENTS = {"scan": "side", "count": "size", "word": "word"}
 def lasting(seen):
     """What was seen, but for what counts and times messages."""
     sent = {topic: {**message, "header": None} for topic, message in seen["sent"].items()}
-    return seen["components"], sent
+    return seen["components"], sent, {**seen["typed"], "header": None}
 
 
 class Session:
@@ -55,6 +55,14 @@ class Session:
         self.reports = []
         self.sent = {topic: [] for topic in SENT}
         self.topics.listen("/courier_controller/state", "std_msgs/String", self.report)
+        #: A node that was compiled tells its state as a message, too.
+        self.typed = {}
+        try:
+            type_of("courier_msgs/State")
+        except ImportError:
+            pass
+        else:
+            self.topics.listen("/courier_controller/typed_state", "courier_msgs/State", self.type)
         for topic, kind in SENT.items():
             self.topics.listen(topic, kind, lambda message, topic=topic: self.sent[topic].append(plain(message)))
         self.senders = {
@@ -65,6 +73,9 @@ class Session:
 
     def report(self, message):
         self.reports.append(json.loads(message.data))
+
+    def type(self, message):
+        self.typed = plain(message)
 
     def wait(self, condition):
         until = time.monotonic() + PATIENCE
@@ -84,7 +95,7 @@ class Session:
             if time.monotonic() > until:
                 raise TimeoutError(f"it does not come to rest; the last that was seen is {seen}")
             seen, before = self.ticks(), now
-        return {what: seen[what] for what in ("components", "sent")}
+        return {what: seen[what] for what in ("components", "sent", "typed")}
 
     def ticks(self):
         """What is reported in the next ticks, what is heard until then, and on which topics the reports say it is."""
@@ -96,7 +107,7 @@ class Session:
         told = {topic for topic in SENT if f"message_{topic}.c_trigger" in happened}
         self.wait(lambda: all(self.sent[topic] for topic in told))
         sent = {topic: messages[-1] for topic, messages in self.sent.items() if messages}
-        return {"components": self.reports[-1]["components"], "sent": sent, "told": told}
+        return {"components": self.reports[-1]["components"], "sent": sent, "told": told, "typed": self.typed}
 
     def step(self, topic, fields):
         start = len(self.reports)

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import json
 import math
+import re
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -17,6 +19,7 @@ from robosc.files.resources import locate
 if TYPE_CHECKING:
     from tests.ros.conftest import Courier
 
+HERE = Path(__file__).parent
 NOTHING = '"nothing" ??/ */ \\'
 
 
@@ -133,3 +136,28 @@ def test_logs_events_with_their_data(courier: Courier) -> None:
     times = [entry["time"] for entry in courier.log]
     assert times == sorted(times)
     assert not math.isnan(times[0])
+
+
+def test_a_compiled_node_tells_its_state_as_a_message(courier: Courier) -> None:
+    text = (HERE.parent / "m2t" / "typed_state" / "ros2" / "courier_msgs" / "msg" / "State.msg").read_text()
+    values: dict[str, list[str]] = {}
+    constants: list[str] = []
+    for name, is_constant in re.findall(r"^\w+ (\w+)(=\d+)?$", text, re.MULTILINE):
+        if is_constant:
+            constants.append(name)
+        else:
+            values[name], constants = constants, []
+    for name, step in courier.steps.items():
+        typed = step["typed"]
+        if not typed:  # the package of its type is built with the node
+            pytest.skip("run straight from its model")
+        for component, told in step["components"].items():
+            state = values[component.lower()][typed[component.lower()]]
+            assert state == f"{component}_is_{told['state']}".upper()
+            for variable, value in told["variables"].items():
+                field = f"{component}_{variable}".lower()
+                seen = typed[field]
+                if values[field]:
+                    assert values[field][seen] == f"{field}_is_{value}".upper(), name
+                else:
+                    assert seen == value or value is None, name

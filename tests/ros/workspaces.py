@@ -43,6 +43,8 @@ class Package:
     target: str
     configuration: Path | None = None
     with_tests: bool = False
+    #: Whether the node publishes its state as a message, whose package is built beside it.
+    typed: bool = False
     #: A fault to put into it: a file of the package, what stands there, what shall.
     fault: tuple[str, str, str] | None = None
 
@@ -69,7 +71,7 @@ def _packages(target: str) -> list[Package]:
         ),
         Package("supervised_line_follower_layer", supervised / "supervised_line_follower.rscd", f"{target}-layer"),
         Package("line_stepper_controller", supervised / "controller" / "line_stepper.rscd", target),
-        Package("courier_controller", CPP / "courier.rscd", target),
+        Package("courier_controller", CPP / "courier.rscd", target, typed=True),
         Package("porter_controller", CPP / "porter.rscd", target, CPP / "porter-config.json", with_tests=True),
         Package("scout_controller", HERE / "faults" / "scout.rscd", target),
         Package("cruise_controller", HERE.parent / "runtime" / "cruise.rscd", target),
@@ -195,6 +197,7 @@ def build(ros: Ros, folder: Path, packages: Sequence[Package], others: Sequence[
         command: list[str | Path] = [sys.executable, "-m", "robosc", "transform", package.model, "-o", out]
         settings = ["--config", package.configuration] if package.configuration else []
         settings += ["--with-tests"] if package.with_tests else []
+        settings += ["--typed-state"] if package.typed else []
         done = subprocess.run(
             [*command, "--to", package.target, *settings], capture_output=True, text=True, check=False
         )
@@ -202,7 +205,8 @@ def build(ros: Ros, folder: Path, packages: Sequence[Package], others: Sequence[
         made = out / package.target.removesuffix("-layer") / package.name
         if package.fault:
             _spoil(made, *package.fault)
-        _link(source / package.name, made)
+        for folder_made in [made, *made.parent.glob("*_msgs")]:
+            _link(source / folder_made.name, folder_made)
     for other in others:
         _link(source / other.name, other)
     return ros.built(folder)

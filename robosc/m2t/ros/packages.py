@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol
 from robosc.configuration import NO_STOP, NO_STOP_ON_SILENCE
 from robosc.files.resources import locate
 from robosc.m2t.c import engine
-from robosc.m2t.ros import preconditions
+from robosc.m2t.ros import preconditions, typed_state
 from robosc.m2t.ros.gates import gates
 from robosc.m2t.ros.layer import LayerNode
+from robosc.m2t.ros.names import CppNames
 from robosc.m2t.ros.node import Node
 from robosc.m2t.ros.rendering import fold, node_environment
 from robosc.m2t.ros.statuses import statuses
@@ -126,6 +127,32 @@ class RosTarget:
         node = Node(graph, configuration.on_shutdown, configuration.on_withheld)
         return self._files(graph, configuration.package_name(graph), configuration, node, None, tests, into)
 
+    def interfaces(self, models: Models, configuration: Configuration) -> dict[str, str]:
+        """The package with the type of the robot's state, where the configuration asks for one: text by path.
+
+        It stands beside the node's: its own name begins each path.
+        """
+        graph = models.rosgraph
+        assert graph is not None
+        if not configuration.typed_state:
+            return {}
+        package = configuration.interfaces_name(graph)
+        values = {
+            "ros": self.ros.version,
+            "robot": graph.name,
+            "package": package,
+            "about": configuration.package,
+            "message": typed_state.MESSAGE,
+            "fields": typed_state.fields(graph, CppNames(graph)),
+        }
+        templates = node_environment(f"robosc.m2t.ros.ros{self.ros.version}")
+        files = {
+            "package.xml": "interfaces_package.xml.j2",
+            "CMakeLists.txt": "interfaces_CMakeLists.txt.j2",
+            f"msg/{typed_state.MESSAGE}.msg": "State.msg.j2",
+        }
+        return {f"{package}/{path}": templates.get_template(name).render(values) for path, name in files.items()}
+
     def _files(  # noqa: PLR0913, PLR0917
         self,
         graph: rosgraph.RosGraph,
@@ -150,7 +177,15 @@ class RosTarget:
             **(_test_files(ros, name, into) if tests else {}),
         }
         texts_told = configuration.publish_state_information or (layer and layer.gates)
-        reports = [*([_TEXT] if texts_told else []), *([_STATUSES] if told else [])]
+        typed = typed_state.fields(graph, CppNames(graph)) if configuration.typed_state else []
+        kind_of_state = rosgraph.Interface(
+            package=configuration.interfaces_name(graph), type=typed_state.MESSAGE, kind=_MESSAGE
+        )
+        reports = [
+            *([_TEXT] if texts_told else []),
+            *([_STATUSES] if told else []),
+            *([kind_of_state] if configuration.typed_state else []),
+        ]
         types = {interface.package for interface in [*node.interfaces, *reports]}
         used = Used({package for package in types if package != into}, reports)
         own = [definition.removeprefix("include/")] if configuration.publish_state_information else []
@@ -174,6 +209,8 @@ class RosTarget:
             "parameter_groups": _groups(declared),
             "publishes_state": configuration.publish_state_information,
             "statuses": told,
+            "typed_fields": typed,
+            "typed": kind_of_state if configuration.typed_state else None,
             "remembers": bool(node.may_withhold and (told or node.instead)),
             "gates": list(commands.values()) if told else list(layer.gates.values()) if layer else [],
             "writes_log": configuration.write_events_to_log,

@@ -51,6 +51,9 @@ def preconditions(models: Models, configuration: Configuration, kind: str, ros: 
         return [Diagnostic(models.sct.name, START, Severity.ERROR, RULE, message)]
     found = [*engine_preconditions(models.sct), *_names(graph), *_types(graph)]
     found += _parameters(graph, configuration, kind, ros)
+    if configuration.typed_state and not configuration.publish_state_information:
+        hint = 'leave out "publishStateInformation": false'
+        found.append(configuration.error(("typedState",), '"typedState" needs "publishStateInformation"', hint))
     if kind == "controller":
         name = configuration.package_name(graph)
         return [*found, *_package(graph, configuration, name), *_settings(graph, configuration)]
