@@ -51,7 +51,7 @@ class StatusReporter:
         self._every = 0
         self._passed = 0
 
-    def open(self, milliseconds: int, period: int) -> None:
+    def report_every(self, milliseconds: int, period: int) -> None:
         """Publishes every so many milliseconds from now on, in whole periods, one at least; never with 0."""
         self._every = max(1, milliseconds // period) if milliseconds else 0
 

@@ -62,7 +62,7 @@ class EventHandler:
         own = Own(self._held_back, self._faults)
         self._statuses = StatusReporter(graph, port, self._blocking, own)
         if "diagnostics_ms" in settings.parameters:
-            self._statuses.open(settings.number("diagnostics_ms"), settings.number("period_ms"))
+            self._statuses.report_every(settings.number("diagnostics_ms"), settings.number("period_ms"))
         self._warn = Throttle(port.warn, event_loop.clock)
         self._events = {event_name(event): event for plant in graph.model.plants for event in plant.events}
         self._incoming = self._of_role(engine.Role.incoming)
