@@ -130,14 +130,19 @@ def in_words(steps: Sequence[TraceStep], model: sct.SupervisoryControlModel) -> 
     said = []
     for step in steps:
         event = events[step.event]
-        data = ", ".join(f"{_data(parameter, event)} = {text(chosen)}" for parameter, chosen in step.inputs.items())
+        data = ", ".join(_data(parameter, chosen, event) for parameter, chosen in step.inputs.items())
         said.append(f"{words(event)} ({data})" if data else words(event))
     runs = [(phrase, len(list(run))) for phrase, run in groupby(said)]
     return ", then ".join(phrase if times == 1 else f"{times:,} times {phrase}" for phrase, times in runs)
 
 
-def _data(input_name: str, event: sct.Event) -> str:
-    return input_name.removeprefix(f"i_{event.kind.name}").removeprefix("_") or "value"
+def _data(input_name: str, chosen: Value, event: sct.Event) -> str:
+    """What comes with an event: a piece of its data, or what the node computes of it, as the model writes that."""
+    computed = next((found.text for found in event.inputs if found.name == input_name), None)
+    if computed is None:
+        said = input_name.removeprefix(f"i_{event.kind.name}").removeprefix("_") or "value"
+        return f"{said} = {text(chosen)}"
+    return computed if chosen is True else f"!({computed})" if chosen is False else f"{computed} = {text(chosen)}"
 
 
 def listed(names: Sequence[str]) -> str:

@@ -236,9 +236,9 @@ class Views:
 
 
 def at(element: Any) -> str:
-    """Where an element stands: `file:line:column`."""
+    """Where an element stands: `file:line:column`, without the file's folder, as there is little room."""
     file, span = place(element)
-    return f"{file}:{span.line}:{span.column}"
+    return f"{Path(file).name}:{span.line}:{span.column}"
 
 
 def shown(value: object) -> str:
