@@ -19,10 +19,11 @@ from typing import TYPE_CHECKING, Any
 from unittest.mock import patch
 
 ROOT = Path(__file__).parent.parent
-sys.path.insert(0, str(ROOT))
+sys.path[:0] = [str(ROOT), str(ROOT / "examples" / "plugins" / "robosc-faudes")]
+
+from robosc_faudes.automata import faudes_states  # noqa: E402
 
 import robosc  # noqa: E402
-from benchmarks.automata import faudes_states  # noqa: E402
 from benchmarks.families import FAMILIES  # noqa: E402
 from robosc.analysis.supervise import diagnose  # noqa: E402
 from robosc.language import reading  # noqa: E402

@@ -191,7 +191,9 @@ def generate(
     with_tests: bool = False,
     into: str | None = None,
 ) -> dict[str, str]:
-    """The files of a target (`cif`, `supervisor`, `ros1`, `ros2`, `xmi`): POSIX path in the target's folder to text.
+    """The files of a target: POSIX path in the target's folder to text.
+
+    Targets are `cif`, `supervisor`, `ros1`, `ros2`, `xmi`, and those of other packages that are installed.
 
     Without a configuration all settings have their defaults. `with_tests` adds a test and a Dockerfile to the packages
     of `ros1` and `ros2`. `into` names a package, or for `supervisor` a target of CMake, of your own that the code
@@ -201,18 +203,19 @@ def generate(
     """
     from robosc.configuration import Configuration
     from robosc.diagnostics import ModelError, has_errors
-    from robosc.m2t.targets import TARGETS
+    from robosc.m2t.targets import targets
 
-    if target not in TARGETS:
-        raise ValueError(f"there is no target {target!r}, but {', '.join(TARGETS)}")
+    known = targets()
+    if target not in known:
+        raise ValueError(f"there is no target {target!r}, but {', '.join(known)}")
     if models.sct.supervisor is None:
         raise ValueError("the sct model has no supervisor yet: synthesize gives it one")
-    if TARGETS[target].needs_graph and models.rosgraph is None:
+    if known[target].needs_graph and models.rosgraph is None:
         raise ValueError(f"{target} needs the ROS graph")
-    if into is not None and not TARGETS[target].can_be_included:
+    if into is not None and not known[target].can_be_included:
         raise ValueError(f"{target} is no code that could become part of {into}")
     configuration = configuration or Configuration()
-    findings = TARGETS[target].findings(models, configuration)
+    findings = known[target].findings(models, configuration)
     if has_errors(findings):
         raise ModelError(findings)
-    return TARGETS[target].files(models, configuration, with_tests=with_tests, into=into)
+    return known[target].files(models, configuration, with_tests=with_tests, into=into)

@@ -202,6 +202,7 @@ OPENERS = {
     "node_tests.trace_player",  # ships with generated packages, and sees nothing of ours
     "analysis.verify.c_program",  # a temporary folder, here and in the next
     "analysis.verify.c_exploration",
+    "extensions",  # what an installed package declares
 }
 
 

@@ -8,8 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from robosc.extensions import extensions
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
+
+    from robosc.extensions import Extension
 
 #: A file that must be there.
 FILE = click.Path(exists=True, dir_okay=False, readable=True)
@@ -56,6 +60,35 @@ memory = click.option(
     show_default=True,
     help="The most memory for synthesis and generating, in megabytes of 2^20 bytes.",
 )
+
+
+_SYNTHESIZER = "robosc.synthesizer"
+
+
+def _keep(context: click.Context, _parameter: click.Parameter, name: str | None) -> None:
+    if name is not None:
+        known = extensions("robosc.synthesizers")
+        if name not in known:
+            others = ", ".join(known) or "no package with one"
+            raise click.BadParameter(f"{name!r} is no synthesizer that is installed; there is {others}")
+        context.meta[_SYNTHESIZER] = known[name]
+
+
+#: For commands that synthesize; which one was chosen `chosen_synthesizer` knows.
+synthesizer = click.option(
+    "--synthesizer",
+    metavar="NAME",
+    expose_value=False,
+    callback=_keep,
+    help="Let another tool synthesize, of a package that is installed (entry point robosc.synthesizers).",
+)
+
+
+def chosen_synthesizer() -> Extension | None:
+    """The synthesizer that the running command was called with, if any."""
+    context = click.get_current_context(silent=True)
+    chosen: Extension | None = None if context is None else context.meta.get(_SYNTHESIZER)
+    return chosen
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import robosc
 from robosc.checks import check
 from robosc.cli import CallError
+from robosc.cli.options import chosen_synthesizer
 from robosc.language import read as read_text
 from robosc.language.libraries import search_folders
 from robosc.m2t.models import Models
@@ -117,14 +118,22 @@ def read_models(path: str, paths: Paths, report: Report, *, cif: bool = False) -
 def supervise_models(models: Models, report: Report, *, memory: int | None = None) -> None:
     """Gives the sct model its supervisor, unless it has one; warnings about it go to the report.
 
+    Where the command was called with another synthesizer, that one gives it, also in place of one that is there.
+
     `memory` is the most that the process may take, in bytes, if not the default of synthesis. Ends the report where
     there are errors. Raises EmptySupervisorError where there is no supervisor.
     """
     from robosc.analysis.supervise import supervise
-    from robosc.cli.progress import synthesizing
+    from robosc.cli.progress import progress, synthesizing
     from robosc.synthesis import MEMORY
 
-    if models.sct.supervisor is None:
+    chosen = chosen_synthesizer()
+    if chosen is not None:
+        from robosc.analysis.other_synthesizers import supervise_by
+
+        with progress(f"synthesizing by {chosen.name}"):
+            supervise_by(chosen, models.sct, memory=memory or MEMORY)
+    elif models.sct.supervisor is None:
         with synthesizing() as statistics:
             supervision = supervise(models.sct, memory=memory or MEMORY, statistics=statistics)
         report.add(supervision.findings)

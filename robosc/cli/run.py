@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from robosc.cli import CallError, interruption
-from robosc.cli.options import Paths, configuration, findings_format, model, paths
+from robosc.cli.options import Paths, configuration, findings_format, model, paths, synthesizer
 from robosc.cli.parameters import parameters, set_parameters
 from robosc.cli.reading import read_configuration, read_models, supervise_models
 from robosc.cli.report import Report
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 @configuration
 @findings_format
 @parameters
+@synthesizer
 @paths
 @click.argument("arguments", nargs=-1, type=click.UNPROCESSED, metavar="[ROS ARGUMENTS]")
 def command(

@@ -12,7 +12,7 @@ import click
 
 from robosc.analysis.wording import with_words
 from robosc.cli import put, say
-from robosc.cli.options import FILE, Paths, model, paths
+from robosc.cli.options import FILE, Paths, model, paths, synthesizer
 from robosc.cli.parameters import parameters, set_parameters
 from robosc.cli.reading import read_configuration, read_models, supervise_models
 from robosc.cli.report import Report
@@ -38,6 +38,7 @@ if TYPE_CHECKING:
 @click.option("--seed", type=int, default=0, show_default=True, help="Of everything random.")
 @click.option("--config", "chosen", type=FILE, help="For --loop: the configuration, if not the one near the model.")
 @parameters
+@synthesizer
 @paths
 def command(
     model: str,

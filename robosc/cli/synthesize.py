@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from robosc.analysis.supervise import EmptySupervisorError, supervise
+from robosc.analysis.other_synthesizers import supervise_by
+from robosc.analysis.supervise import Diagnosis, EmptySupervisorError, supervise
 from robosc.analysis.system import counted
 from robosc.analysis.wording import called, change
 from robosc.cli import EMPTY_SUPERVISOR, put, say
-from robosc.cli.options import Paths, memory, model, paths
+from robosc.cli.options import Paths, chosen_synthesizer, memory, model, paths, synthesizer
 from robosc.cli.progress import synthesizing
 from robosc.cli.reading import read_models
 from robosc.cli.report import Report
@@ -28,7 +29,6 @@ if sys.platform != "win32":
 
 if TYPE_CHECKING:
     from robosc.analysis.observations import Weight
-    from robosc.analysis.supervise import Diagnosis
     from robosc.synthesis import Counts, Statistics, Synthesis
 
 
@@ -37,6 +37,7 @@ if TYPE_CHECKING:
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 @click.option("--counts", is_flag=True, help="Count states only: no guards, no findings.")
 @memory
+@synthesizer
 @paths
 def command(model: str, as_json: bool, counts: bool, megabytes: int, paths: Paths) -> None:
     """Synthesize the supervisor of a robot: its states, and when it allows what.
@@ -59,6 +60,12 @@ def command(model: str, as_json: bool, counts: bool, megabytes: int, paths: Path
         plants = read_models(model, paths, report, cif=True).sct
         if counts:
             _count(plants, megabytes << 20, as_json=as_json)
+            return
+        chosen = chosen_synthesizer()
+        if chosen is not None:
+            found = supervise_by(chosen, plants, memory=megabytes << 20)
+            show = _show_json if as_json else _show
+            show(plants, Diagnosis(**vars(found)))
             return
         try:
             with synthesizing() as statistics:

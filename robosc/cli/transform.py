@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from robosc.cli import CallError, interruption, put, say
-from robosc.cli.options import Paths, configuration, findings_format, memory, model, paths
+from robosc.cli.options import Paths, configuration, findings_format, memory, model, paths, synthesizer
 from robosc.cli.progress import progress
 from robosc.cli.reading import read_configuration, read_models, supervise_models
 from robosc.cli.report import Report
@@ -17,7 +17,7 @@ from robosc.configuration import LOCATIONS
 from robosc.diagnostics import Diagnostic, Severity
 from robosc.files.reading import inputs
 from robosc.files.writing import write
-from robosc.m2t.targets import TARGETS, Target, together
+from robosc.m2t.targets import TARGETS, Target, targets, together
 from robosc.metamodel.places import place
 from robosc.synthesis.memory import bounded
 
@@ -34,10 +34,11 @@ _INCLUDING = re.compile(r"[A-Za-z][\w.-]*", re.ASCII)
 
 def _targets(_context: click.Context, _parameter: click.Parameter, values: Sequence[str]) -> list[Target]:
     names = [name.strip() for value in values for name in value.split(",")]
+    known = targets()
     for name in names:
-        if name not in TARGETS:
-            raise click.BadParameter(f"{name!r} is none of {', '.join(TARGETS)}")
-    return [TARGETS[name] for name in dict.fromkeys(names)]
+        if name not in known:
+            raise click.BadParameter(f"{name!r} is none of {', '.join(known)}")
+    return [known[name] for name in dict.fromkeys(names)]
 
 
 def _into(_context: click.Context, _parameter: click.Parameter, name: str | None) -> str | None:
@@ -46,10 +47,16 @@ def _into(_context: click.Context, _parameter: click.Parameter, name: str | None
     return name
 
 
-_EPILOG = "\n".join(["\b", "Targets:", *(f"  {target.name:<11} {target.description}" for target in TARGETS.values())])
+class _Command(click.Command):
+    """Lists the targets when help is asked for, with those of packages that are installed."""
+
+    def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        lines = (f"  {target.name:<15} {target.description}" for target in targets().values())
+        self.epilog = "\n".join(["\b", "Targets:", *lines])
+        super().format_epilog(ctx, formatter)
 
 
-@click.command("transform", epilog=_EPILOG)
+@click.command("transform", cls=_Command)
 @model
 @click.option("--to", "targets", required=True, multiple=True, callback=_targets, metavar="TARGET[,TARGET]")
 @click.option("-o", "--output", type=click.Path(file_okay=False), help="The output folder.  [default: build/<robot>]")
@@ -83,6 +90,7 @@ _EPILOG = "\n".join(["\b", "Targets:", *(f"  {target.name:<11} {target.descripti
 )
 @findings_format
 @memory
+@synthesizer
 @paths
 def command(
     model: str,

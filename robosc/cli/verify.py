@@ -12,7 +12,7 @@ from rich.text import Text
 from robosc.analysis.verify import Outcome, verify
 from robosc.analysis.verify.verdict import TRUSTED, as_json, as_junit, details, summary
 from robosc.cli import ERRORS_FOUND, interruption, put, say
-from robosc.cli.options import Paths, configuration, model, paths
+from robosc.cli.options import Paths, configuration, model, paths, synthesizer
 from robosc.cli.progress import progress
 from robosc.cli.reading import read_configuration, read_models, supervise_models
 from robosc.cli.report import Report
@@ -40,6 +40,7 @@ _WIDTH = 120
 @click.option("--json", "as_object", is_flag=True, help="Print one JSON object.")
 @click.option("--junit", type=click.Path(dir_okay=False), help="Write JUnit XML to FILE, too.")
 @configuration
+@synthesizer
 @paths
 def command(
     model: str,

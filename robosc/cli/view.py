@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from robosc.cli import CallError, put, say
-from robosc.cli.options import FILE, Paths, paths
+from robosc.cli.options import FILE, Paths, paths, synthesizer
 from robosc.cli.parameters import parameters, set_parameters
 from robosc.cli.reading import read_configuration, read_models, supervise_models
 from robosc.cli.report import Report
@@ -42,6 +42,7 @@ if TYPE_CHECKING:
 )
 @click.option("--address", default="127.0.0.1", show_default=True, help="Listen on this address; others need a token.")
 @parameters
+@synthesizer
 @paths
 def command(
     models: Sequence[str],

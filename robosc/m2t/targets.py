@@ -1,10 +1,16 @@
-"""What can be generated: a target is a room of `robosc.m2t` of its name; those that are ROS packages share one."""
+"""What can be generated: a target is a room of `robosc.m2t` of its name; those that are ROS packages share one.
+
+Packages of others add targets by entry points (`robosc.targets`).
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from importlib import import_module
-from typing import TYPE_CHECKING, Literal, Protocol, TypedDict, cast
+from pathlib import PurePosixPath
+from typing import TYPE_CHECKING, Any, Literal, Protocol, TypedDict, cast
+
+from robosc.extensions import Extension, extensions
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -155,6 +161,61 @@ TARGETS = {
         Target("xmi", "the models between the steps"),
     )
 }
+
+
+@dataclass(frozen=True)
+class ExtensionTarget(Target):
+    """A target of another package: a module with `preconditions` and `generate`, and perhaps `needs_graph = True`."""
+
+    extension: Extension | None = None
+
+    @property
+    def can_be_included(self) -> bool:
+        """Nobody asks that of it."""
+        return False
+
+    @property
+    def needs_graph(self) -> bool:
+        """Whether the module says so."""
+        return bool(getattr(self._module, "needs_graph", False))
+
+    @property
+    def _module(self) -> Any:
+        assert self.extension is not None
+        return self.extension.load("preconditions", "generate")
+
+    def generator(self) -> Generator:
+        """The module, whose faults are told as such."""
+        assert self.extension is not None
+        return _Guarded(self.extension, self._module)
+
+
+@dataclass(frozen=True)
+class _Guarded:
+    """The module of an extension: what it raises, or gives back against the contract, is a finding."""
+
+    extension: Extension
+    module: Any
+
+    def preconditions(self, models: Models, configuration: Configuration) -> list[Diagnostic]:
+        with self.extension.working():
+            return list(self.module.preconditions(models, configuration))
+
+    def generate(self, models: Models, configuration: Configuration) -> dict[str, str]:
+        with self.extension.working():
+            files = dict(self.module.generate(models, configuration))
+        for path, text in files.items():
+            relative = isinstance(path, str) and not PurePosixPath(path).is_absolute() and ".." not in path.split("/")
+            if not relative or not isinstance(text, str):
+                raise self.extension.fault(f"it gives {path!r}, which is no relative path with a text")
+        return files
+
+
+def targets() -> dict[str, Target]:
+    """All targets by name: those of the tool, and those of other packages that are installed."""
+    others = extensions("robosc.targets").values()
+    made = (ExtensionTarget(other.name, other.description, other.name, extension=other) for other in others)
+    return TARGETS | {target.name: target for target in made if target.name not in TARGETS}
 
 
 def together() -> AbstractContextManager[None]:

@@ -1,9 +1,9 @@
 """The robots of the benchmarks are valid, and have as many states as is said of them."""
 
 import pytest
+from robosc_faudes.automata import faudes_states, plants, requirements
 
 import robosc
-from benchmarks.automata import faudes_states, plants, requirements
 from benchmarks.families import FAMILIES
 from benchmarks.scaling import INTERFACES
 from benchmarks.scaling_run import Costs

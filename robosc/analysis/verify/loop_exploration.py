@@ -36,7 +36,7 @@ _PARTS, _EARLY = 4, 3
 #: Of an event with more values of its inputs, these are tried: all least, all greatest, all in the middle.
 _VALUES = 4
 #: An operation asks all events whether they can happen; so many questions are asked in the whole.
-_QUESTIONS = 600_000
+_QUESTIONS = 1_000_000
 #: So many values are near an end of an input's range.
 _NEAR = 3
 #: So many milliseconds go by at most where it is not known when something is up.
@@ -50,7 +50,7 @@ class LoopEffort:
     Fewer, where a robot has many events.
     """
 
-    explored: int = 40_000
+    explored: int = 60_000
     walked: int = 5_000
 
 

@@ -7,6 +7,7 @@ that is a ValueError.
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from dataclasses import dataclass
 from itertools import product
 from typing import TYPE_CHECKING, Any
@@ -202,6 +203,14 @@ def faudes_states(
 
     Raises ImportError where `faudes` is not installed.
     """
+    plant, supervisor = faudes_supervisor(model, during)
+    return plant.Size(), supervisor.Size()
+
+
+def faudes_supervisor(
+    model: sct.SupervisoryControlModel, during: Callable[[str], AbstractContextManager[None]] = nullcontext
+) -> tuple[Any, Any]:
+    """The composed plants and the supervisor, as generators of libFAUDES; arguments as of `faudes_states`."""
     import faudes  # noqa: PLC0415  # it may be missing
 
     faudes.StateNamesOff()
@@ -218,7 +227,7 @@ def faudes_states(
     with during("supervisor"):
         supervisor = faudes.System()
         faudes.SupCon(plant, specification, supervisor)
-    return plant.Size(), supervisor.Size()
+    return plant, supervisor
 
 
 def _composed(generators: list[Any]) -> Any:

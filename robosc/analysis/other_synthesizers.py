@@ -1,0 +1,65 @@
+"""Gives a model the supervisor that another synthesis tool finds."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robosc.analysis.system import GuardedSystem
+from robosc.diagnostics import Diagnostic, ModelError, Severity
+from robosc.metamodel import sct
+from robosc.metamodel.places import place
+from robosc.metamodel.validity import faults
+from robosc.semantics.roles import event_name
+from robosc.synthesis import MEMORY, Statistics, Synthesis, encoded
+
+if TYPE_CHECKING:
+    from robosc.extensions import Extension
+    from robosc.synthesis.encoding import Encoding
+
+
+def supervise_by(extension: Extension, model: sct.SupervisoryControlModel, *, memory: int = MEMORY) -> Synthesis:
+    """Gives the model the supervisor that the function `synthesize` of another package makes of it.
+
+    Nothing but its guards is believed, and of these no more than that they are well-formed: one for each controllable
+    event. States are counted anew. Raises ModelError where the package fails or finds no supervisor, MemoryError where
+    decision diagrams take more than `memory` bytes.
+    """
+    module = extension.load("synthesize")
+    model.supervisor = None
+    with extension.working():
+        supervisor = module.synthesize(model)
+    if supervisor is None:
+        message = f"the supervisor is empty: `{extension.name}` finds none"
+        hint = "without --synthesizer, robosc says why"
+        raise ModelError([Diagnostic(*place(model), Severity.ERROR, "empty-supervisor", message, hint)])
+    _check(extension, model, supervisor)
+
+    def look(encoding: Encoding) -> Synthesis:
+        system = GuardedSystem(model, encoding)
+        for guard in supervisor.guards:
+            guard.everEnabled = (system.controlled & system.allowed[guard.event]).satisfiable()
+        possible = (event for event in system.relations if (system.controlled & system.allowed[event]).satisfiable())
+        supervisor.controlledStates = encoding.count(system.controlled)
+        return Synthesis(supervisor, None, supervisor.controlledStates, 0, Statistics(), tuple(possible))
+
+    return encoded(model, look, memory)
+
+
+def _check(extension: Extension, model: sct.SupervisoryControlModel, supervisor: object) -> None:
+    """Makes the supervisor that of the model, if it is one."""
+    if not isinstance(supervisor, sct.Supervisor):
+        raise extension.fault(f"it gives a {type(supervisor).__name__} and no supervisor")
+    controllable = [event for plant in model.plants for event in plant.events if event.controllable]
+    guards = {guard.event: guard for guard in supervisor.guards}
+    if len(supervisor.guards) != len(controllable) or set(guards) != set(controllable):
+        missing = next((event_name(event) for event in controllable if event not in guards), None)
+        told = f"it gives none for `{missing}`" if missing else "it gives others"
+        raise extension.fault(f"a supervisor has one guard for each controllable event, and {told}")
+    supervisor.guards = [guards[event] for event in controllable]
+    supervisor.settlingBound = None
+    supervisor.controlledStates = supervisor.bddNodes = 0
+    model.supervisor = supervisor
+    fault = next(faults(model), None)
+    if fault is not None:
+        model.supervisor = None
+        raise extension.fault(f"its supervisor is none of this model: {fault[1]}")

@@ -1,0 +1,223 @@
+"""The example packages that add a target and a synthesizer, installed as a stranger installs them, and broken ones."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+from random import Random
+
+import pytest
+from click.testing import CliRunner
+
+import robosc
+from robosc import extensions
+from robosc.cli import main
+from robosc.configuration import Configuration
+from robosc.engine import Engine
+from robosc.m2t.models import Models
+from robosc.semantics.roles import event_name
+from tests.examples.conftest import MODELS, models_of
+from tests.m2t.supervisor import corners
+from tests.m2t.supervisor.test_supervisor import dock
+
+from .structured_text import Block
+
+ROOT = Path(__file__).parents[2]
+PLUGINS = ROOT / "examples" / "plugins"
+LINE_FOLLOWER = MODELS["line_follower"]
+
+
+@pytest.fixture(scope="module")
+def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder into which pip has installed both packages, without a network."""
+    folder = tmp_path_factory.mktemp("installed")
+    source = tmp_path_factory.mktemp("source")
+    for name in ("robosc-structured-text", "robosc-faudes"):
+        subprocess.run(["cp", "-r", PLUGINS / name, source / name], check=True)
+        command = [sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", "--no-build-isolation", "--no-index"]
+        subprocess.run([*command, "--target", folder, source / name], check=True)
+    return folder
+
+
+def tool(installed: Path, *arguments: object, status: int = 0) -> str:
+    """The standard output of a run of the tool where the packages are installed."""
+    done = subprocess.run(
+        [sys.executable, "-m", "robosc", *map(str, arguments)],
+        env={**os.environ, "PYTHONPATH": f"{ROOT}:{installed}"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == status, done.stdout + done.stderr
+    return done.stdout if status == 0 else done.stdout + done.stderr
+
+
+def test_a_target_of_another_package_is_listed_and_generates(installed: Path, tmp_path: Path) -> None:
+    assert "structured-text the supervisor as a function block" in tool(installed, "transform", "--help")
+    out = tmp_path / "out"
+    tool(installed, "transform", LINE_FOLLOWER, "--to", "structured-text,cif", "-o", out)
+    text = (out / "structured-text" / "LineFollower.st").read_text()
+    assert "FUNCTION_BLOCK FB_LineFollower\n" in text
+    assert (out / "LineFollower.cif").exists()
+    assert "a time has no form in the function block [structured-text]" in tool(
+        installed, "transform", ROOT / "tests/analysis/verify/patrol.rscd", "--to", "structured-text", status=1
+    )
+
+
+def test_the_example_is_short() -> None:
+    text = (PLUGINS / "robosc-structured-text" / "robosc_structured_text" / "__init__.py").read_text()
+    assert len(text.splitlines()) <= 300
+
+
+@pytest.mark.slow
+def test_another_synthesizer_is_verified(installed: Path) -> None:
+    pytest.importorskip("faudes")
+    said = json.loads(tool(installed, "verify", LINE_FOLLOWER, "--synthesizer", "faudes", "--json"))
+    outcomes = {verdict["property"]: verdict["outcome"] for verdict in said["properties"]}
+    assert said["proved"]
+    assert outcomes["maximal permissiveness"] == "proved"
+
+
+def test_another_synthesizer_finds_as_many_states(installed: Path) -> None:
+    pytest.importorskip("faudes")
+    both = [
+        json.loads(tool(installed, "synthesize", LINE_FOLLOWER, "--json", *other))
+        for other in ((), ("--synthesizer", "faudes"))
+    ]
+    assert both[0]["controlled_states"] == both[1]["controlled_states"] == 64
+    enabled = [{event["name"]: event["ever_enabled"] for event in one["events"]} for one in both]
+    assert enabled[0] == enabled[1]
+
+
+def test_a_synthesizer_that_is_not_installed() -> None:
+    done = CliRunner().invoke(main, ["synthesize", str(LINE_FOLLOWER), "--synthesizer", "none_such"])
+    assert done.exit_code == 2
+    assert "'none_such' is no synthesizer that is installed" in done.stderr
+
+
+@pytest.fixture
+def broken(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    """Installs a package with one module, which does not do what it ought to."""
+
+    def install(group: str, text: str) -> Path:
+        site = tmp_path / "site"
+        info = site / "robosc_broken-1.0.dist-info"
+        info.mkdir(parents=True)
+        (site / "robosc_broken.py").write_text(text)
+        (info / "METADATA").write_text("Metadata-Version: 2.1\nName: robosc-broken\nVersion: 1.0\n")
+        (info / "entry_points.txt").write_text(f"[{group}]\n\nbroken = robosc_broken\n")
+        (info / "RECORD").write_text("robosc_broken-1.0.dist-info/entry_points.txt,,\nrobosc_broken.py,,\n")
+        monkeypatch.syspath_prepend(str(site))
+        monkeypatch.delitem(sys.modules, "robosc_broken", raising=False)
+        extensions.extensions.cache_clear()
+        return info / "entry_points.txt"
+
+    yield install
+    extensions.extensions.cache_clear()
+    sys.modules.pop("robosc_broken", None)
+
+
+TARGET = "def preconditions(models, configuration):\n    return []\n\n\ndef generate(models, configuration):\n    "
+TARGETS = {
+    "import none_such_module\n": "ModuleNotFoundError: No module named 'none_such_module'",
+    "x = (": "SyntaxError",
+    "def generate(models, configuration):\n    return {}\n": "`robosc_broken` has no function `preconditions`",
+    f"{TARGET}return {{}}['x']\n": "KeyError: 'x'",
+    f"{TARGET}return {{'../out': ''}}\n": "it gives '../out', which is no relative path with a text",
+    f"{TARGET}return {{'file': b''}}\n": "it gives 'file', which is no relative path with a text",
+}
+
+
+@pytest.mark.parametrize("text", TARGETS)
+def test_a_broken_target_is_a_finding(broken, text: str, tmp_path: Path) -> None:
+    file = broken("robosc.targets", text)
+    arguments = ["transform", str(LINE_FOLLOWER), "--to", "broken", "--format", "json", "-o", str(tmp_path / "out")]
+    done = CliRunner().invoke(main, arguments)
+    assert done.exit_code == 1, done.output
+    [finding] = [found for found in json.loads(done.stdout) if found["severity"] == "error"]
+    assert (finding["rule"], finding["file"], finding["line"]) == ("extension", str(file), 3)
+    assert f"`broken` of robosc-broken 1.0 does not work: {TARGETS[text]}" in finding["message"]
+    assert not (tmp_path / "out").exists()
+
+
+SYNTHESIZER = "from robosc.metamodel import sct\n\n\ndef synthesize(model):\n    "
+SYNTHESIZERS = {
+    f"{SYNTHESIZER}return None\n": ("empty-supervisor", "the supervisor is empty: `broken` finds none"),
+    f"{SYNTHESIZER}return 3\n": ("extension", "it gives a int and no supervisor"),
+    f"{SYNTHESIZER}return sct.Supervisor()\n": ("extension", "and it gives none for `"),
+    f"{SYNTHESIZER}raise ValueError('too large')\n": ("extension", "ValueError: too large"),
+}
+
+
+@pytest.mark.parametrize("text", SYNTHESIZERS)
+def test_a_broken_synthesizer_is_a_finding(broken, text: str) -> None:
+    broken("robosc.synthesizers", text)
+    done = CliRunner().invoke(main, ["synthesize", str(LINE_FOLLOWER), "--synthesizer", "broken"])
+    rule, message = SYNTHESIZERS[text]
+    assert done.exit_code == (3 if rule == "empty-supervisor" else 1), done.output
+    assert f"[{rule}]" in done.stderr
+    assert message in done.stderr
+
+
+@pytest.mark.build
+def test_verify_refutes_a_supervisor_that_allows_too_much(broken) -> None:
+    all_allowed = (
+        f"{SYNTHESIZER}events = [event for plant in model.plants for event in plant.events if event.controllable]\n"
+        "    return sct.Supervisor(guards=[sct.EventGuard(event=event) for event in events])\n"
+    )
+    broken("robosc.synthesizers", all_allowed)
+    done = CliRunner().invoke(main, ["verify", str(LINE_FOLLOWER), "--synthesizer", "broken", "--json"])
+    assert done.exit_code == 1, done.output
+    verdicts = json.loads(done.stdout)["properties"]
+    refuted = [verdict["property"] for verdict in verdicts if verdict["outcome"] == "refuted"]
+    assert any(name.startswith("requirement move needs") for name in refuted)
+
+
+@pytest.mark.parametrize("make", [corners.swap, corners.names, corners.data, corners.cancel_and_trigger, dock])
+def test_the_function_block_does_what_the_engine_does(make, monkeypatch: pytest.MonkeyPatch) -> None:
+    follow(make(), monkeypatch)
+
+
+def test_the_function_block_of_an_example(monkeypatch: pytest.MonkeyPatch) -> None:
+    follow(models_of("maze_solver").sct, monkeypatch)
+
+
+def follow(model, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Both are asked and told the same for 300 random events."""
+    monkeypatch.syspath_prepend(str(PLUGINS / "robosc-structured-text"))
+    import robosc_structured_text  # noqa: PLC0415  # it is found here only
+
+    random = Random(7)  # noqa: S311
+    [text] = robosc_structured_text.generate(Models(model), Configuration()).values()
+    engine, executed, block = Engine(model), robosc.to_engine(model), Block(text)
+    names = [event.name for event in executed.events]
+    carried = robosc_structured_text._Names(executed)
+    events = {event_name(event): event for event in engine.roles.events}
+    block.call({"event": -1})
+    for _ in range(300):
+        assert [block.variables["enabled"][number] for number in range(len(names))] == [
+            engine.enabled(name) for name in names
+        ]
+        number = random.randrange(len(names))
+        given = {}
+        for declared in executed.events[number].inputs:
+            code = random.randint(declared.minimum, declared.maximum)
+            given[declared] = code
+        data = {declared.input.name: _shown(declared.input.type, code) for declared, code in given.items()}
+        happened = engine.perform(names[number], data)
+        assert events[names[number]]
+        block.call({"event": number, **{carried[one]: _raw(one, code) for one, code in given.items()}})
+        assert block.variables["happened"] == happened
+        cells = dict(zip(executed.variables, engine.state.cells, strict=True))
+        assert {one: int(block.variables[carried[one]]) for one in cells} == cells
+
+
+def _shown(kind, code: int):
+    if hasattr(kind, "enumeration"):
+        return kind.enumeration.literals[code].name
+    return code if hasattr(kind, "minimum") else bool(code)
+
+
+def _raw(declared, code: int):
+    return bool(code) if type(declared.type).__name__ == "BooleanType" else code
