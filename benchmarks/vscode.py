@@ -95,7 +95,8 @@ def served(command: Path, folder: Path, extension: Path, variables: Mapping[str,
     """The address of an editor that has the extension; its data lies in a folder, as its workspace does."""
     own = folder / "data"
     (own / "User").mkdir(parents=True)
-    (own / "User" / "settings.json").write_text(json.dumps(_SETTINGS), encoding="utf-8")
+    settings = _SETTINGS | {"robosc.package": f"{ROOT}[editor]"}
+    (own / "User" / "settings.json").write_text(json.dumps(settings), encoding="utf-8")
     (folder / "config.yaml").write_text("auth: none\nbind-addr: 127.0.0.1:0\n", encoding="utf-8")
     options = ["--user-data-dir", str(own), "--extensions-dir", str(folder / "extensions")]
     options += ["--config", str(folder / "config.yaml"), "--disable-telemetry", "--disable-update-check"]
@@ -211,6 +212,13 @@ class Editor:
         if self._pictures is not None:
             self.page.mouse.move(0, 0)
             self.page.screenshot(path=self._pictures / f"{name}.png")
+
+
+def set_up(editor: Editor) -> None:
+    """No `robosc` is found, and a click on *Set Up* installs one for the editor alone."""
+    editor.file("cart.rscd")
+    editor.page.get_by_role("button", name="Set Up").click()
+    expect(editor.page.locator(".codelens-decoration").first).to_be_visible(timeout=5 * _LONGEST)
 
 
 def highlighting(editor: Editor) -> None:
@@ -346,6 +354,8 @@ def main() -> None:
             page.set_default_timeout(_LONGEST)
             editor = Editor(page, folder / "robots", options.pictures)
             editor.open(address)
+            if options.set_up:
+                set_up(editor)
             for step in (step for step in STEPS if step.__name__ in (options.step or step.__name__)):
                 editor.file("cart.rscd")
                 began = perf_counter()
