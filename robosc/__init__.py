@@ -218,4 +218,5 @@ def generate(
     findings = known[target].findings(models, configuration)
     if has_errors(findings):
         raise ModelError(findings)
-    return known[target].files(models, configuration, with_tests=with_tests, into=into)
+    made = known[target]
+    return made.files(models, configuration, made.tests(models, configuration) if with_tests else None, into=into)

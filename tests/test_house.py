@@ -44,7 +44,7 @@ ALLOWED = {
     "cif": {"language"},
     "editor": {"", "language", "checks", "analysis"},
     "runtime": {"engine"},
-    "node_tests": {"engine", "runtime", "m2t"},
+    "node_tests": {"engine", "runtime", "m2t", "analysis", "synthesis"},
     "simulation": {"engine", "runtime", "analysis", "language"},
     "debugger": {"m2t", "analysis", "engine", "simulation"},
     "view": {"m2t", "analysis", "engine", "simulation", "diagrams"},

@@ -14,18 +14,17 @@ from robosc.cli.progress import progress
 from robosc.cli.reading import read_configuration, read_models, supervise_models
 from robosc.cli.report import Report
 from robosc.configuration import LOCATIONS
-from robosc.diagnostics import Diagnostic, Severity
 from robosc.files.reading import inputs
 from robosc.files.writing import write
 from robosc.m2t.targets import TARGETS, Target, targets, together
-from robosc.metamodel.places import place
 from robosc.synthesis.memory import bounded
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from robosc.configuration import Configuration
-    from robosc.m2t.models import Models
+    from robosc.diagnostics import Diagnostic
+    from robosc.m2t.models import Models, TraceTest
 
 
 #: What a package of ROS, or a target of CMake, may be called here.
@@ -128,11 +127,7 @@ def command(
         for target in targets:
             if target.needs_graph and models.rosgraph is None:
                 raise CallError(f"{model} has no ROS graph, which {target.name} needs: give its .rosgraph.xmi or .rscd")
-        settings = read_configuration(model, chosen, report)
-        settings = settings.model_copy(update={"typed_state": typed_state or settings.typed_state})
-        if into and settings.typed_state:
-            message = "what a package of yours includes can't have a typed state yet: that is a package of its own"
-            report.add([settings.error(("typedState",), message, "leave out --into, or the typed state")])
+        settings = _settings(model, chosen, typed_state, into, report)
         # What a build makes stays where it is built.
         copied = [] if into else targets
         copies = _copies(Path(model).parent, copied, settings, confirmed, report)
@@ -144,16 +139,16 @@ def command(
         for target in targets:
             report.add(target.findings(models, settings))
         if with_tests:
-            report.add(_untested(models, settings))
+            report.add(_untested(settings))
         report.stop_on_errors()
         folder = Path(output or f"build/{models.sct.name}")
+        tests: dict[Target, TraceTest | None] = {}
         files = {}
         with together(), bounded(megabytes << 20, "generating"):
             for target in targets:
                 with progress(f"generating {target.name}"):
-                    files[target] = target.files(
-                        models, settings, with_tests=with_tests, interface_paths=paths.interfaces, into=into
-                    )
+                    tests[target] = target.tests(models, settings, paths.interfaces) if with_tests else None
+                    files[target] = target.files(models, settings, tests[target], into=into)
         if into is None:
             trees = _trees(folder, files, copies, models, settings)
         else:
@@ -165,6 +160,25 @@ def command(
     for written, texts in trees.items():
         resolved = written.resolve()
         say(f"{written}: {len(texts)} files, {sum(resolved / name in changed for name in texts)} written", err=True)
+    _tell_coverage(tests)
+
+
+def _settings(model: str, chosen: str | None, typed_state: bool, into: str | None, report: Report) -> Configuration:
+    """The configuration with what the call asks for; what does not fit goes to the report."""
+    settings = read_configuration(model, chosen, report)
+    settings = settings.model_copy(update={"typed_state": typed_state or settings.typed_state})
+    if into and settings.typed_state:
+        message = "what a package of yours includes can't have a typed state yet: that is a package of its own"
+        report.add([settings.error(("typedState",), message, "leave out --into, or the typed state")])
+    return settings
+
+
+def _tell_coverage(tests: Mapping[Target, TraceTest | None]) -> None:
+    for target, test in tests.items():
+        if test is not None:
+            say(f"{target.name}: the tests see {test.coverage}", err=True)
+            for missed in test.missed:
+                say(f"  not seen: {missed}", err=True)
 
 
 def _refuse_what_does_not_fit(targets: Sequence[Target], with_tests: bool, typed_state: bool, into: str | None) -> None:
@@ -184,26 +198,11 @@ def _inputs() -> list[str]:
     return sorted(str(Path(name).resolve()) for name in inputs())
 
 
-def _untested(models: Models, configuration: Configuration) -> Iterator[Diagnostic]:
-    """What can't be tested yet.
-
-    Which of two deadlines that fall together comes first, ROS does not say: a trace can't be played then. The
-    Dockerfile of a package builds this one alone.
-    """
+def _untested(configuration: Configuration) -> Iterator[Diagnostic]:
+    """What can't be tested yet: the Dockerfile of a package builds this one alone."""
     if configuration.typed_state:
         message = "a package with trace tests can't have a typed state yet: its Dockerfile builds one package"
         yield configuration.error(("typedState",), message, "leave out --with-tests, or the typed state")
-    for plant in models.sct.plants:
-        for event in plant.events:
-            if event.timer is not None:
-                hint = "leave out --with-tests"
-                yield Diagnostic(
-                    *place(event.timer),
-                    Severity.ERROR,
-                    "ros-node",
-                    "a robot that waits for a time has no trace tests yet",
-                    hint,
-                )
 
 
 def _copies(

@@ -84,6 +84,12 @@ class Engine:
         """Goes back to what `saved` was in an engine of this model."""
         self._cells, self._inputs[:] = saved
 
+    @property
+    def codes(self) -> dict[sct.Plant | sct.DiscreteVariable, int]:
+        """The state by the codes of decision diagrams: positions of locations and literals, distances from minima."""
+        cells = zip(self._layout.elements, self._layout.domains, self._cells, strict=True)
+        return {element: value - domain.low for (_, element), domain, value in cells}
+
     def state_with(self, values: Mapping[sct.Plant | sct.DiscreteVariable, Value]) -> State:
         """The current state, but for the locations of some plants and the values of some variables.
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from robosc.metamodel import robosc, rosgraph, sct
 
@@ -26,3 +26,6 @@ class TraceTest:
 
     parameters: Mapping[str, bool | int]
     files: Mapping[str, str]
+    #: How much of the robot its traces show, in words, and what they miss.
+    coverage: str
+    missed: Sequence[str]

@@ -112,25 +112,34 @@ class Target:
         """The ROS, 1 or 2, on which its packages can be tested with traces; None where they can't."""
         return self.ros if self.package == "controller" else None
 
+    def tests(
+        self, models: Models, configuration: Configuration, interface_paths: Sequence[str] = ()
+    ) -> TraceTest | None:
+        """The tests for its package; None where it can't have any.
+
+        `interface_paths` are folders in which ROS types are looked for, as `robosc.ros_types` does.
+        """
+        if self.tested_ros is None:
+            return None
+        made = import_module("robosc.node_tests.trace_test").trace_test
+        return cast("TraceTest", made(models.rosgraph, configuration, self.tested_ros, interface_paths))
+
     def files(
         self,
         models: Models,
         configuration: Configuration,
+        tests: TraceTest | None = None,
         *,
-        with_tests: bool = False,
-        interface_paths: Sequence[str] = (),
         into: str | None = None,
     ) -> dict[str, str]:
-        """What it generates; with tests where they are asked for and its packages can have any.
+        """What it generates, with these tests.
 
-        `interface_paths` are folders in which the tests look for ROS types, as `robosc.ros_types` does. `into` names
-        what of the user's own the code becomes part of, where it can be included: a package, or a target of CMake. Then
-        there is a `fragment.cmake`, and neither `CMakeLists.txt` nor `package.xml`.
+        `into` names what of the user's own the code becomes part of, where it can be included: a package, or a target
+        of CMake. Then there is a `fragment.cmake`, and neither `CMakeLists.txt` nor `package.xml`.
         """
         options: Options = {}
-        if with_tests and self.tested_ros is not None:
-            made = import_module("robosc.node_tests.trace_test").trace_test
-            options["tests"] = made(models.rosgraph, configuration, self.tested_ros, interface_paths)
+        if tests is not None:
+            options["tests"] = tests
         if into is not None:
             options["into"] = into
         return cast("OptionalGenerator", self.generator()).generate(models, configuration, **options)

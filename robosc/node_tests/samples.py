@@ -9,23 +9,32 @@ from dataclasses import dataclass, field
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
+from robosc.engine import Engine
 from robosc.metamodel import expression as ex
 from robosc.metamodel import rosgraph
 from robosc.metamodel.reflection import tree
 from robosc.node_tests.messages import Field, Leaf, Path, data_read, message, wire_type
+from robosc.ros_types import Section
 from robosc.ros_types.wire import INTEGER_RANGES
+from robosc.runtime.core.event_log import ReceivedData
+from robosc.runtime.core.node_data import NodeData
 from robosc.semantics import messages
 from robosc.semantics.messages import reads_elements
+from robosc.semantics.operators import UnreadableError
+from robosc.semantics.roles import event_name
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping, Sequence
+    from collections.abc import Collection, Iterator, Mapping, Sequence
 
-    from robosc.ros_types import RosDistribution, Section
-    from robosc.runtime.core.node_data import NodeData
+    from robosc.metamodel import sct
+    from robosc.ros_types import RosDistribution
 
 #: So many messages are tried in vain before no more are looked for.
 _TRIALS = 500
 _KEPT = 4
+_SEED = 1
+#: So many classes are told apart at most.
+_CLASSES = 64
 
 
 @dataclass(frozen=True)
@@ -37,10 +46,20 @@ class Read:
 
 
 @dataclass
+class Class:
+    """Messages that mean the same: literals that the conversions make of them, and events with equal inputs."""
+
+    literals: tuple[str, ...]
+    events: tuple[tuple[str, tuple[tuple[str, Any], ...]], ...]
+    samples: list[dict[Path, Leaf]] = field(default_factory=list)
+
+
+@dataclass
 class Incoming:
     """One kind of data that comes in: what each of its events shows of it, all that is read, and messages to send.
 
     `samples`: by the literals that the conversions make of a message, in the order of the events, some messages.
+    `classes`: those that can be read whole, by all that the supervisor is told of them.
     """
 
     events: list[tuple[str, list[Read]]]
@@ -48,6 +67,7 @@ class Incoming:
     #: The events that a message may not be, since elements of arrays that they need may not be there.
     unreadable: set[str]
     samples: dict[tuple[str, ...], list[dict[Path, Leaf]]] = field(default_factory=dict)
+    classes: list[Class] = field(default_factory=list)
 
     @property
     def conversions(self) -> list[Read]:
@@ -133,28 +153,77 @@ def incoming(
     return Incoming(events, {path: field for path, field in fields.items() if path not in inner}, unreadable)
 
 
-def find_samples(kind: Incoming, values: Values, data: NodeData, seed: int) -> None:
-    """Fills in `samples`: tries messages until each combination of literals has some, or enough were tried."""
-    choice = random.Random(seed)  # noqa: S311  # the same each time
+def all_incoming(graph: rosgraph.RosGraph, distribution: RosDistribution) -> dict[sct.Event, Incoming]:
+    """What each event that comes in shows, and the messages to choose from; the events of one topic share it."""
+    data = NodeData(graph, Engine(graph.model))
+    values, kept = Values(graph), list(messages.kept_reads(graph))
+    known: dict[sct.Event, Incoming] = {}
+    for interface, part, receptions in _receptions(graph):
+        described = []
+        for reception in receptions:
+            read = [assigned.value for assigned in reception.inputs] + data.values_read(reception.event)
+            later = [(path, inner) for owner, path, inner in kept if owner is reception]
+            described.append((event_name(reception.event), ReceivedData(read).parts, read, later))
+        kind = incoming(distribution, interface, part, described)
+        _find_samples(kind, values, data, receptions)
+        known |= dict.fromkeys((reception.event for reception in receptions), kind)
+    return known
+
+
+def _receptions(
+    graph: rosgraph.RosGraph,
+) -> Iterator[tuple[rosgraph.Interface, Section, Sequence[rosgraph.Reception]]]:
+    for topic in graph.subscriptions:
+        yield topic.interface, Section.MESSAGE, topic.receptions
+    for service in graph.serviceClients:
+        yield service.interface, Section.RESPONSE, [service.response]
+    for action in graph.actionClients:
+        yield action.interface, Section.FEEDBACK, [action.feedback]
+        yield action.interface, Section.RESULT, [action.response]
+
+
+def _find_samples(kind: Incoming, values: Values, data: NodeData, receptions: Sequence[rosgraph.Reception]) -> None:
+    """Fills in `samples` and `classes`: tries messages until each has some of all there are, or enough were tried."""
+    choice = random.Random(_SEED)  # noqa: S311  # the same each time
     pools = {path: values.of(field) for path, field in kind.fields.items()}
     paths = [path for path in pools if pools[path]]
     conversions = kind.conversions
-    combinations = math.prod(len(read.conversion.enumeration.literals) for read in conversions if read.conversion)
+    classes: dict[object, Class] = {}
     seen: list[dict[Path, Leaf]] = [{}]
     in_vain = 0
     while in_vain < _TRIALS:
         tried = _tried(choice, paths, pools, seen)
         made = message(kind.fields, tried)
         literals = tuple(_literal(read, made, data) for read in conversions)
-        kept = kind.samples.setdefault(literals, [])
+        kept = [kind.samples.setdefault(literals, [])]
+        events = _events(receptions, made, data)
+        if events is not None and ((literals, events) in classes or len(classes) < _CLASSES):
+            kept.append(classes.setdefault((literals, events), Class(literals, events)).samples)
         in_vain += 1
-        if len(kept) < _KEPT and tried not in kept:
-            kept.append(tried)
-            seen.append(tried)
-            in_vain = 0
-        if len(kind.samples) == combinations and all(len(found) == _KEPT for found in kind.samples.values()):
-            break
+        for samples in kept:
+            if len(samples) < _KEPT and tried not in samples:
+                samples.append(tried)
+                seen.append(tried)
+                in_vain = 0
     kind.samples = {literals: sorted(found, key=len, reverse=True) for literals, found in kind.samples.items()}
+    kind.classes = list(classes.values())
+
+
+def _events(
+    receptions: Sequence[rosgraph.Reception], made: Any, data: NodeData
+) -> tuple[tuple[str, tuple[tuple[str, Any], ...]], ...] | None:
+    """What the supervisor is told of a message; None where some of it can't be read."""
+    events = []
+    try:
+        for reception in receptions:
+            for value in data.values_read(reception.event):
+                data.value(value, made)
+            told = [(given.input.name, data.value(given.value, made)) for given in reception.inputs]
+            inputs = ((name, value.name if isinstance(value, ex.EnumerationLiteral) else value) for name, value in told)
+            events.append((event_name(reception.event), tuple(inputs)))
+    except UnreadableError:
+        return None
+    return tuple(events)
 
 
 def _tried(

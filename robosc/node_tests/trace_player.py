@@ -32,6 +32,10 @@ ANSWER = 2.0
 REACTION = 0.3
 SETTLED = 0.05
 MOST_IDLE_TICKS = 3
+#: Seconds by which times may differ that are the same.
+EXACT = 1e-6
+#: Seconds after the node's tick at which it is over.
+AFTER_TICK = 0.0003
 #: How ROS refuses what does not fit into a message.
 UNSENDABLE = (ArithmeticError, AssertionError, AttributeError, LookupError, TypeError, ValueError)
 DEEPEST = 100
@@ -102,20 +106,37 @@ def read_trace(path: str) -> list[Line]:
     return lines
 
 
-def just_after(tick: int, period: float) -> float:
-    """The time, in seconds, at which the node makes a tick, the first of which is 1.
+class Pace:
+    """The times at which the clock stands, in seconds: in each period just after the node's tick, then in between.
 
-    A little earlier in its period each time, so that no deadline that is set then, some periods long, falls on a tick.
+    The first is a little earlier in its period each time, so that no deadline that is set then, some periods long,
+    falls on a tick; the second a little later: deadlines that were set then are over. What is sent is sent in between.
     """
-    return (tick + 0.3 - 0.2 * (tick % STEPS) / STEPS) * period
 
+    def __init__(self, period: float) -> None:
+        self._period = period
+        self._tick = 1
+        self._ticked = False
 
-def between(tick: int, period: float) -> float:
-    """The time, in seconds, at which the node is sent something after a tick.
+    @property
+    def next(self) -> float:
+        """The next time."""
+        drift = self._tick % STEPS / STEPS
+        part = 0.56 + 0.1 * drift if self._ticked else 0.36 - 0.2 * drift
+        return (self._tick + part) * self._period
 
-    A little later in its period each time: deadlines that were set then, some periods long, are over.
-    """
-    return (tick + 0.5 + 0.1 * (tick % STEPS) / STEPS) * period
+    def before(self, seconds: float) -> float | None:
+        """Where the clock stops on its way to a time that is none of these, as the node's tick does; None: nowhere."""
+        if self.next < seconds + EXACT:
+            return self.next
+        tick = (self._tick + START) * self._period + AFTER_TICK
+        return None if self._ticked or tick > seconds + EXACT else tick
+
+    def advance(self) -> bool:
+        """Goes on to the time after the next; says whether a period is over with that."""
+        self._ticked = not self._ticked
+        self._tick += not self._ticked
+        return not self._ticked
 
 
 def same(one: Any, other: Any) -> bool:
@@ -347,7 +368,9 @@ class Player:
         self._port = port
         self._log = log
         self._period: float = connections["period"]
-        self._tick = 0
+        self._pace = Pace(self._period)
+        #: Whether the robot waits for times: else many ticks in which nothing happens are as good as some.
+        self._timed: bool = connections["timed"]
         self._topics = {topic["topic"]: Incoming(topic) for topic in connections["subscriptions"]}
         self._answers: dict[str, Callable[[Line], None]] = {}
         for service in connections["services"]:
@@ -375,7 +398,9 @@ class Player:
         """Plays a trace from the node's start on. Raises TraceError where the node does not follow it."""
         self._port.connect()
         self._port.set_time(self._now)
-        previous = lines[0]
+        # A trace that was made with the package tells times from the node's start, a log of a robot does not.
+        begun = self._now if lines[0].time < 2 * self._period else lines[0].time
+        previous = replace(lines[0], time=begun)
         for position, line in enumerate(lines):
             if line.direction == "in" and position >= self._sent_until:
                 self._let_pass(line, previous)
@@ -391,16 +416,33 @@ class Player:
 
     def _pass_period(self) -> None:
         """Time passes, with one tick of the node in it; stands still where messages are sent."""
-        self._tick += 1
-        for time_of in (just_after, between):
-            self._now = time_of(self._tick, self._period)
-            self._port.set_time(self._now)
-            self._log.wait(SETTLED)
+        while not self._go_on():
+            pass
+
+    def _go_on(self) -> bool:
+        """The clock goes on; says whether a period is over."""
+        self._go_to(self._pace.next)
+        return self._pace.advance()
+
+    def _go_to(self, seconds: float) -> None:
+        self._now = seconds
+        self._port.set_time(seconds)
+        self._log.wait(SETTLED)
+
+    def _pass_until(self, seconds: float) -> None:
+        """Time passes until something happens, at most until then."""
+        while self._log.peek() is None and self._now < seconds - EXACT:
+            stop = self._pace.before(seconds)
+            self._go_to(seconds if stop is None else stop)
+            if stop is not None:
+                self._pace.advance()
 
     def _let_pass(self, line: Line, previous: Line) -> None:
-        """The ticks of which the trace does not tell because nothing happened in them; many are as good as some."""
-        ticks = math.floor((line.time - previous.time) / self._period + 1e-3)
-        for _ in range(min(ticks, MOST_IDLE_TICKS)):
+        """The time of which the trace does not tell because nothing happened in it."""
+        if self._timed:
+            self._pass_until(self._now + line.time - previous.time)
+            return
+        for _ in range(min(math.floor((line.time - previous.time) / self._period + 1e-3), MOST_IDLE_TICKS)):
             self._pass_period()
             if self._log.peek() is not None:
                 return
@@ -477,18 +519,7 @@ class Player:
         elif line.direction == "in":
             done = self._log.wait(PATIENCE)
         else:
-            # What the node did at once comes at once; else it comes with a tick.
-            at_once = position > 0 and line.time - previous.time < self._period / 20
-            done = self._log.wait(SETTLED if at_once else 0)
-            if done is None:
-                self._begin_batch(lines, position)
-                done = self._log.wait(REACTION if at_once else 0)
-            for _ in range(math.ceil((line.time - previous.time) / self._period) + 3):
-                if done is not None:
-                    break
-                self._end_cancelled(lines, position)
-                self._pass_period()
-                done = self._log.peek()
+            done = self._wait_for_own(lines, position, previous)
         if done is None:
             raise TraceError(f"line {line.number}: the node does not do what the trace says: {line}")
         if (done.direction, done.event) != (line.direction, line.event):
@@ -501,13 +532,28 @@ class Player:
         if line.direction == "out":
             self._receive(line)
 
-    def _begin_batch(self, lines: list[Line], position: int) -> None:
-        """Where something comes in, the node first does what it has not done yet: before its first tick, that is.
+    def _wait_for_own(self, lines: list[Line], position: int, previous: Line) -> Line | None:
+        """What the node did at once comes at once; else it comes with a tick, or when a time is up."""
+        line = lines[position]
+        at_once = position > 0 and line.time - previous.time < self._period / 20
+        done = self._log.wait(SETTLED if at_once else 0)
+        if done is None and self._timed:
+            self._end_cancelled(lines, position)
+            self._pass_until(self._now + line.time - previous.time)
+            done = self._log.peek()
+        if done is None:
+            self._begin_batch(lines, position)
+            done = self._log.wait(REACTION if at_once else 0)
+        for _ in range(math.ceil((line.time - previous.time) / self._period) + 3):
+            if done is not None:
+                break
+            self._end_cancelled(lines, position)
+            self._pass_period()
+            done = self._log.peek()
+        return done
 
-        What happens when a time is up does not wait for anything that comes in.
-        """
-        if ".u_after" in lines[position].event:
-            return
+    def _begin_batch(self, lines: list[Line], position: int) -> None:
+        """Where something comes in, the node first does what it has not done yet: before its first tick, that is."""
         ahead = next((later for later in range(position, len(lines)) if lines[later].direction != "internal"), position)
         if (
             ahead >= self._sent_until

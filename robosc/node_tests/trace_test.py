@@ -5,9 +5,11 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING, Any
 
+from robosc.analysis.wording import words
 from robosc.files.resources import locate
 from robosc.m2t.models import TraceTest
-from robosc.node_tests.walk import Walk, parameters
+from robosc.metamodel import sct
+from robosc.node_tests.tour import Tour, parameters
 from robosc.ros_types import RosTypes
 from robosc.runtime.core.event_log import nested
 from robosc.semantics.roles import event_name
@@ -17,13 +19,10 @@ if TYPE_CHECKING:
     from os import PathLike
 
     from robosc.configuration import Configuration
-    from robosc.metamodel import rosgraph, sct
+    from robosc.metamodel import rosgraph
+    from robosc.node_tests.coverage import Goal
     from robosc.node_tests.samples import Incoming
     from robosc.runtime.core.port import Client
-
-_SEED = 1
-#: How often something comes in: for the topics, and for each service and action.
-_STIMULI = (60, 40)
 
 
 def trace_test(
@@ -38,14 +37,22 @@ def trace_test(
     The same call gives the same test.
     """
     distribution = next(known for known in RosTypes(interface_paths).distributions if known.name == f"ROS {version}")
-    walk = Walk(graph, configuration, distribution, _SEED)
-    stimuli = _STIMULI[0] + _STIMULI[1] * len([*graph.serviceClients, *graph.actionClients])
-    trace = "".join(f"{line}\n" for line in walk.go(stimuli))
+    tour = Tour(graph, configuration, distribution)
     started = parameters(graph, configuration)
-    described = json.dumps(_connections(graph, configuration, started, walk.incoming), indent=1) + "\n"
+    described = json.dumps(_connections(graph, configuration, started, tour.incoming), indent=1) + "\n"
     player = locate("node_tests/trace_player.py").read_text(encoding="utf-8")
-    files = {"connections.json": described, "trace_player.py": player, "traces/random_walk.jsonl": trace}
-    return TraceTest(started, files)
+    files = {"connections.json": described, "trace_player.py": player}
+    for number, lines in enumerate(tour.traces, 1):
+        files[f"traces/tour_{number}.jsonl"] = "".join(f"{line}\n" for line in lines)
+    return TraceTest(started, files, str(tour.coverage), [told(goal) for goal in tour.coverage.missed])
+
+
+def told(goal: Goal) -> str:
+    """What there is to see, in words: `the guard of the request to move is false`."""
+    if isinstance(goal.of, sct.Event):
+        return f"the guard of the {words(goal.of)} is {str(goal.value).lower()}"
+    line = f" (line {goal.of.source.span.line})" if goal.of.source else ""
+    return f"the transition on the {words(goal.of.event)}{line} is {'' if goal.value else 'not '}taken"
 
 
 def _connections(
@@ -59,6 +66,7 @@ def _connections(
         "node": configuration.package_name(graph),
         "managed": configuration.lifecycle,
         "period": started["period_ms"] / 1000,
+        "timed": any(event.timer is not None for plant in graph.model.plants for event in plant.events),
         "subscriptions": [
             {"topic": topic.topic, "type": _type(topic.interface), **_described(incoming[topic.receptions[0].event])}
             for topic in graph.subscriptions

@@ -122,7 +122,8 @@ def used(path: Path, target: str | None) -> None:
         and models.rosgraph is not None
         and not has_errors(TARGETS[target].findings(models, robosc.Configuration()))
     ):
-        TARGETS[target].files(models, robosc.Configuration(), with_tests=True)
+        made, settings = TARGETS[target], robosc.Configuration()
+        made.files(models, settings, made.tests(models, settings))
 
 
 @pytest.mark.parametrize("change", CHANGES)

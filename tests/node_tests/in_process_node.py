@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 from robosc.node_tests.messages import message
 from robosc.node_tests.robot import Robot, RunningGoal
+from robosc.node_tests.samples import all_incoming
+from robosc.node_tests.tour import parameters
 from robosc.node_tests.trace_player import START, Port, cancelled, leaves
-from robosc.node_tests.walk import Walk, parameters
 from robosc.ros_types import RosTypes
 from robosc.runtime.core.controller import Controller
 from robosc.runtime.core.event_log import EventLog
@@ -90,7 +91,7 @@ class InProcessNode(Port):
         distribution: RosDistribution = RosTypes().distributions[0]
         self._now = START * connections["period"]
         self._graph = graph
-        self._incoming = Walk(graph, configuration, distribution, 1).incoming
+        self._incoming = all_incoming(graph, distribution)
         self._robot = _Robot(graph, distribution, lambda: self._now)
         self._robot.port = self
         self._event_loop = EventLoop(lambda: self._now)

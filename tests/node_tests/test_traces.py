@@ -1,4 +1,4 @@
-"""Random walks, and the player that plays them: against the same controller, and against some that are not the same."""
+"""Tours, and the player that plays them: against the same controller, and against some that are not the same."""
 
 from __future__ import annotations
 
@@ -7,8 +7,9 @@ import json
 import re
 import subprocess
 import sys
+from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pytest
 from jsonschema import Draft202012Validator
@@ -20,15 +21,19 @@ from robosc.files.resources import locate
 from robosc.metamodel import expression as ex
 from robosc.node_tests import trace_player
 from robosc.node_tests.messages import Field, message
+from robosc.node_tests.samples import all_incoming
 from robosc.node_tests.trace_player import Log, Player, TraceError, read_trace
 from robosc.node_tests.trace_test import trace_test
-from robosc.node_tests.walk import Walk
 from robosc.ros_types import RosTypes
 from robosc.runtime.core.node_data import NodeData
 from robosc.semantics.edges import edges_from
 from robosc.semantics.roles import event_name
 
 from .in_process_node import InProcessNode
+
+if TYPE_CHECKING:
+    from robosc.m2t.models import TraceTest
+    from robosc.metamodel import rosgraph
 
 ROOT = Path(__file__).parents[2]
 CPP = ROOT / "tests" / "m2t" / "cpp"
@@ -42,28 +47,50 @@ MODELS = {
     "mission": ROOT / "tests" / "runtime" / "mission.rscd",
     "kept": ROOT / "tests" / "runtime" / "kept.rscd",
     "keeper": ROOT / "tests" / "ros" / "kept" / "keeper.rscd",
+    "push_ball": ROOT / "examples" / "push_ball" / "push_ball.rscd",
+    "sprayer": ROOT / "examples" / "sprayer" / "sprayer.rscd",
+    "warehouse_robot": ROOT / "examples" / "warehouse_robot" / "warehouse_robot.rscd",
 }
 SETTINGS = {"porter": CPP / "porter-config.json"}
+
+
+def robot_of(name: str) -> tuple[rosgraph.RosGraph, config.Configuration]:
+    robot = robosc.load(MODELS[name])
+    robosc.synthesize(robosc.to_sct(robot))
+    configuration = config.read(SETTINGS[name]) if name in SETTINGS else config.Configuration()
+    return robosc.to_rosgraph(robot), configuration
+
+
+@cache
+def made(name: str) -> TraceTest:
+    return trace_test(*robot_of(name), 2)
 
 
 class Case:
     """A robot and its test. The graph is a new one each time: tests may break it."""
 
     def __init__(self, name: str, folder: Path) -> None:
-        robot = robosc.load(MODELS[name])
-        model = robosc.to_sct(robot)
-        robosc.synthesize(model)
-        self.graph = robosc.to_rosgraph(robot)
-        self.configuration = config.read(SETTINGS[name]) if name in SETTINGS else robosc.Configuration()
-        self.files = trace_test(self.graph, self.configuration, 2).files
+        self.graph, self.configuration = robot_of(name)
+        self.test = made(name)
+        self.files = self.test.files
         self.connections: dict[str, Any] = json.loads(self.files["connections.json"])
-        self.trace = [json.loads(line) for line in self.files["traces/random_walk.jsonl"].splitlines()]
+        #: Its traces; `trace` is the first.
+        self.traces = [
+            [json.loads(line) for line in text.splitlines()]
+            for file, text in self.files.items()
+            if file.startswith("traces/")
+        ]
+        self.trace = self.traces[0]
         self._folder = folder
 
     def play(self) -> None:
-        """Plays the trace, as it is now, against the graph, as it is now."""
+        """Plays the traces, as they are now, against the graph, as it is now."""
+        for trace in self.traces:
+            self._play(trace)
+
+    def _play(self, lines: list[dict[str, Any]]) -> None:
         trace, log = self._folder / "trace.jsonl", self._folder / "events.jsonl"
-        trace.write_text("".join(f"{json.dumps(line)}\n" for line in self.trace))
+        trace.write_text("".join(f"{json.dumps(line)}\n" for line in lines))
         log.unlink(missing_ok=True)
         node = InProcessNode(self.connections, self.graph, self.configuration, log)
         Player(self.connections, node, Log(str(log))).play(read_trace(str(trace)))
@@ -85,22 +112,23 @@ every_model = pytest.mark.parametrize("case", MODELS, indirect=True)
 
 
 @every_model
-def test_a_controller_follows_its_own_walk(case: Case) -> None:
+def test_a_controller_follows_its_own_tours(case: Case) -> None:
     case.play()
 
 
 @every_model
-def test_a_walk_is_an_event_log(case: Case) -> None:
+def test_a_tour_is_an_event_log(case: Case) -> None:
     validator = Draft202012Validator(json.loads(locate("schemas/event-log.schema.json").read_text()))
-    for line in case.trace:
-        validator.validate(line)
-    times = [line["time"] for line in case.trace]
-    assert times == sorted(times)
+    for trace in case.traces:
+        for line in trace:
+            validator.validate(line)
+        times = [line["time"] for line in trace]
+        assert times == sorted(times)
 
 
 @pytest.mark.parametrize("case", ["line_follower", "porter"], indirect=True)
-def test_a_walk_sees_every_event(case: Case) -> None:
-    assert {line["event"] for line in case.trace} == {
+def test_tours_see_every_event(case: Case) -> None:
+    assert {line["event"] for trace in case.traces for line in trace} == {
         event_name(event)
         for plant in case.graph.model.plants
         for event in plant.events
@@ -110,9 +138,7 @@ def test_a_walk_sees_every_event(case: Case) -> None:
 
 @pytest.mark.parametrize("case", ["porter"], indirect=True)
 def test_the_same_call_gives_the_same_test(case: Case) -> None:
-    assert trace_test(case.graph, case.configuration, 2).files == case.files
-    other = Walk(case.graph, case.configuration, RosTypes().distributions[0], seed=2)
-    assert [json.loads(line) for line in other.go(50)] != case.trace[:50]
+    assert trace_test(case.graph, case.configuration, 2) == case.test
 
 
 # Logs of robots
@@ -129,7 +155,7 @@ def test_a_log_without_messages_is_played(case: Case) -> None:
 
 
 @pytest.mark.parametrize("case", ["mission"], indirect=True)
-def test_a_walk_brings_data_that_can_not_be_read(case: Case) -> None:
+def test_a_tour_brings_data_that_can_not_be_read(case: Case) -> None:
     events = [line["event"] for line in case.trace]
     assert events.count("message_length.u_response") > events.count("message_route.u_response") > 0
     unread = {line["event"] for line in case.trace if line["event"].endswith(".u_error") and "data" in line}
@@ -255,7 +281,7 @@ def test_a_node_that_forgets_is_noticed(case: Case) -> None:
 @every_model
 def test_samples_mean_what_they_say(case: Case) -> None:
     data = NodeData(case.graph, Engine(case.graph.model))
-    known = Walk(case.graph, case.configuration, RosTypes().distributions[0], 1).incoming
+    known = all_incoming(case.graph, RosTypes().distributions[0])
     for kind in {id(kind): kind for kind in known.values()}.values():
         for literals, found in kind.samples.items():
             for values in found:
@@ -289,7 +315,7 @@ def test_the_player_runs_where_ros_1_does() -> None:
     assert not any(name.startswith("robosc") for name in names)
 
 
-def test_a_walk_makes_no_array_without_end() -> None:
+def test_a_message_has_no_array_without_end() -> None:
     fields = {
         ("ranges", "2147483647"): Field(ex.DoubleType(), "float32"),
         ("ranges", "1"): Field(ex.DoubleType(), None),

@@ -23,7 +23,7 @@ MODELS = {
 }
 
 
-def rostest(workspace: Workspace, package: str, folder: Path, trace: str = "random_walk") -> tuple[int, str]:
+def rostest(workspace: Workspace, package: str, folder: Path, trace: str = "tour_1") -> tuple[int, str]:
     """The exit status of `rostest`, and what the tests that failed say."""
     results = folder / "results"
     command = ["rostest", "--results-base-dir", results, package, "play_trace.test", f"trace:={trace}"]
@@ -76,7 +76,7 @@ def test_catkin_knows_the_tests(ros1_workspace: Workspace) -> None:
         check=True,
     ).stdout
     for package in MODELS:
-        assert f"run_tests_{package}_rostest_play_trace__trace_random_walk.test\n" in targets
+        assert f"run_tests_{package}_rostest_play_trace__trace_tour_1.test\n" in targets
 
 
 @pytest.mark.parametrize("package", MODELS)
@@ -104,7 +104,7 @@ def test_launch_testing_plays_the_trace(ros2_workspace: Workspace, package: str,
 
 def test_launch_testing_fails_where_the_node_leaves_the_trace(ros2_workspace: Workspace, tmp_path: Path) -> None:
     package = ros2_workspace.folder / "src" / "line_follower_controller" / "test"
-    lines = (package / "traces" / "random_walk.jsonl").read_text(encoding="utf-8").splitlines()
+    lines = (package / "traces" / "tour_1.jsonl").read_text(encoding="utf-8").splitlines()
     sent = next(number for number, line in enumerate(lines) if json.loads(line)["direction"] == "out")
     trace = tmp_path / "wrong.jsonl"
     trace.write_text("\n".join(lines[:sent] + lines[sent + 1 :]), encoding="utf-8")
@@ -122,7 +122,7 @@ def test_colcon_knows_the_tests(ros2_workspace: Workspace, package: str, tmp_pat
     environment = ros2_workspace.environment()
     subprocess.run(cmake, cwd=tmp_path, env=environment, check=True, capture_output=True)
     listed = subprocess.run(["ctest", "-N"], cwd=tmp_path, env=environment, check=True, capture_output=True, text=True)
-    assert "play_random_walk" in listed.stdout
+    assert "play_tour_1" in listed.stdout
 
 
 def with_launch_testing(workspace: Workspace) -> None:
@@ -169,7 +169,7 @@ def parameters(test: Path, folder: Path) -> list[str]:
 def play(nodes: Workspace | Runner, node: list[str] | list[str | Path], test: Path, folder: Path) -> None:
     with middleware(nodes, folder / "run") as processes:
         processes.start("node", node)
-        trace = test / "traces" / "random_walk.jsonl"
+        trace = test / "traces" / "tour_1.jsonl"
         command = [nodes.ros.python, test / "play_trace.py", trace, folder / "events.jsonl"]
         player = processes.start("player", command)
         processes.wait_until(lambda: player.poll() is not None, "the trace has been played", seconds=900)

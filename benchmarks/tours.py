@@ -1,0 +1,82 @@
+"""How near to the shortest the tours of `--with-tests` are: prints a table of the examples.
+
+    python benchmarks/tours.py [EXAMPLE...]
+
+The bound is the least number of steps of a flow through the places of the control loop that shows all that the tours
+show, in as many runs: no runs have fewer, since they are such a flow, in whole steps. Where there are too many places
+to look at all of them, there is none. Needs scipy (`pip install 'robosc[benchmarks]'`).
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.optimize import LinearConstraint, milp
+from scipy.sparse import lil_matrix
+
+import robosc
+from robosc import configuration as config
+from robosc.node_tests.tour import Tour
+from robosc.ros_types import RosTypes
+
+if TYPE_CHECKING:
+    from robosc.node_tests.plan import Plan
+
+EXAMPLES = Path(__file__).parent.parent / "examples"
+#: Seconds for each bound: what is proved until then counts.
+PATIENCE = 120
+
+
+def bound(plan: Plan, runs: int) -> int | None:
+    """The least number of steps that a flow has which shows all that can be; None where not all places are known."""
+    if not plan.is_whole:
+        return None
+    arcs = [(place, step) for place in plan.places for step in plan.steps(place)]
+    number = {place: row for row, place in enumerate(plan.places)}
+    # A flow of each arc, then what ends in each place. The first place is where runs begin.
+    balance = lil_matrix((len(number), len(arcs) + len(number)))
+    for column, (place, step) in enumerate(arcs):
+        balance[number[place], column] -= 1
+        balance[number[step.end], column] += 1
+    for row in range(len(number)):
+        balance[row, len(arcs) + row] = -1
+    starts = np.zeros(len(number))
+    starts[0] = -runs
+    wanted = [bit for goal, bit in plan.bits.items() if goal in plan.possible]
+    shown = lil_matrix((len(wanted), len(arcs) + len(number)))
+    for column, (_, step) in enumerate(arcs):
+        for row, bit in enumerate(wanted):
+            if step.shows & bit:
+                shown[row, column] = 1
+    cost = np.concatenate([np.ones(len(arcs)), np.zeros(len(number))])
+    constraints = [
+        LinearConstraint(balance.tocsr(), starts, starts),
+        LinearConstraint(shown.tocsr(), np.ones(len(wanted)), np.inf),
+    ]
+    found = milp(cost, constraints=constraints, integrality=np.ones_like(cost), options={"time_limit": PATIENCE})
+    return None if found.mip_dual_bound is None else int(np.ceil(found.mip_dual_bound - 1e-6))
+
+
+def main() -> None:
+    names = sys.argv[1:] or sorted(path.parent.name for path in EXAMPLES.glob("*/*.rscd"))
+    print("| robot | runs | steps | at least | transitions | guards true | guards false |")
+    print("|---|---|---|---|---|---|---|")
+    for name in names:
+        robot = robosc.load(EXAMPLES / name / f"{name}.rscd")
+        robosc.synthesize(robosc.to_sct(robot))
+        file = config.find(EXAMPLES / name)
+        settings = config.read(file) if file else config.Configuration()
+        tour = Tour(robosc.to_rosgraph(robot), settings, RosTypes().distributions[0])
+        coverage = tour.coverage
+        least = bound(tour.plan, len(tour.traces))
+        counts = [coverage.transitions, coverage.guards(value=True), coverage.guards(value=False)]
+        cells = [f"{seen} of {possible}" for seen, possible in counts]
+        told = "not known" if least is None else f"{least} (+{coverage.steps / least - 1:.0%})"
+        print(f"| `{name}` | {len(tour.traces)} | {coverage.steps} | {told} | {' | '.join(cells)} |", flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,129 @@
+"""What a run of a controller has shown: which transitions were taken, and which guards were true, and which false."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from robosc.engine.transitions import Transitions
+from robosc.metamodel import engine as en
+from robosc.metamodel import sct
+from robosc.semantics.edges import edges_of
+from robosc.semantics.roles import event_name
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from robosc.engine import ControlLoop
+
+#: The events that the control loop asks for when it has settled, and when it settles.
+_QUEUED, _SILENT = (en.Role.cancel, en.Role.trigger), en.Role.silent
+
+
+@dataclass(frozen=True)
+class Goal:
+    """Something to see: an event's guard that is true, or false; a transition that is taken (true).
+
+    A transition `on … if …` is false where its event happens in its state and its condition does not hold.
+    """
+
+    of: sct.Event | sct.Edge
+    value: bool = True
+
+
+def goals(loop: ControlLoop) -> list[Goal]:
+    """All that there may be to see: of each transition of the text, then of the guard of each event of the controller.
+
+    A guard that is `true` as it stands has nothing to be false, and what would be chosen after it is never asked.
+    """
+    found = []
+    never_asked = {
+        alternative.event
+        for choice in loop.engine.executed.choices
+        for number, alternative in enumerate(choice.alternatives)
+        if any(not before.event.guard.terms for before in choice.alternatives[:number])
+    }
+    for plant in loop.engine.model.plants:
+        if plant.kind == sct.PlantKind.behaviour:
+            for edge in edges_of(plant):
+                if edge.source is not None:
+                    found += [Goal(edge), *([] if edge.guard is None else [Goal(edge, value=False)])]
+    events = {event_name(event): event for plant in loop.engine.model.plants for event in plant.events}
+    for executed in loop.engine.executed.events:
+        if executed.role in (*_QUEUED, _SILENT, en.Role.data) and executed not in never_asked:
+            event = events[executed.name]
+            found += [Goal(event), *([Goal(event, value=False)] if executed.guard.terms else [])]
+    return found
+
+
+class Watcher:
+    """What there is to see in one control loop: of `happening` ask it before an event, of `at_rest` after each call."""
+
+    def __init__(self, loop: ControlLoop) -> None:
+        self._engine = loop.engine
+        self._transitions = Transitions(loop.engine)
+        self._goals = set(goals(loop))
+        self._events = {event_name(event): event for plant in loop.engine.model.plants for event in plant.events}
+        executed = loop.engine.executed
+        self._queued = [event.name for event in executed.events if event.role in _QUEUED]
+        self._silent = [event.name for event in executed.events if event.role == _SILENT]
+        self._choices = [[alternative.event.name for alternative in one.alternatives] for one in executed.choices]
+        self._seen_at_rest: dict[tuple[int, ...], frozenset[Goal]] = {}
+
+    def happening(self, event: str) -> Iterator[Goal]:
+        """What is seen as an enabled event happens, with the inputs that are set."""
+        for edge, taken in self._transitions.tried(event):
+            yield Goal(edge, taken)
+        happening = Goal(self._events[event])
+        if happening in self._goals:
+            yield happening
+
+    def at_rest(self) -> frozenset[Goal]:
+        """What is seen where the control loop has done what it can do at once: then it has asked all guards."""
+        cells, _ = self._engine.saved
+        if cells not in self._seen_at_rest:
+            asked = [(event, self._engine.enabled(event)) for event in (*self._queued, *self._silent)]
+            for alternatives in self._choices:
+                for event in alternatives:
+                    asked.append((event, self._engine.enabled(event)))
+                    if asked[-1][1]:
+                        break  # those that follow are not asked
+            self._seen_at_rest[cells] = frozenset(Goal(self._events[event], value) for event, value in asked)
+        return self._seen_at_rest[cells]
+
+
+@dataclass(frozen=True)
+class Coverage:
+    """What a trace has shown of a robot: all goals, those seen, and those that are known to be seen in no run."""
+
+    goals: tuple[Goal, ...]
+    seen: frozenset[Goal]
+    impossible: frozenset[Goal]
+    #: How often something came in, or time went by.
+    steps: int
+
+    @property
+    def missed(self) -> list[Goal]:
+        """What may be seen, and was not."""
+        return [goal for goal in self.goals if goal not in self.seen and goal not in self.impossible]
+
+    @property
+    def transitions(self) -> tuple[int, int]:
+        """How many transitions were taken, of how many that may be."""
+        return self._count(goal for goal in self.goals if isinstance(goal.of, sct.Edge) and goal.value)
+
+    def guards(self, *, value: bool) -> tuple[int, int]:
+        """How many guards were true, or false, of how many that may be; of those of transitions only what is false."""
+        return self._count(
+            goal for goal in self.goals if goal.value == value and (isinstance(goal.of, sct.Event) or not value)
+        )
+
+    def _count(self, goals: Iterable[Goal]) -> tuple[int, int]:
+        possible = [goal for goal in goals if goal not in self.impossible]
+        return sum(goal in self.seen for goal in possible), len(possible)
+
+    def __str__(self) -> str:
+        """In words, such as `12 of 12 transitions, 9 of 9 guards true, 8 of 8 false, in 23 steps`."""
+        counts = [self.transitions, self.guards(value=True), self.guards(value=False)]
+        taken, true, false = (f"{seen} of {possible}" for seen, possible in counts)
+        return f"{taken} transitions, {true} guards true, {false} false, in {self.steps} steps"

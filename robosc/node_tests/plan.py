@@ -1,0 +1,335 @@
+"""What may come in next, what a control loop makes of it, and where a tour goes therefore."""
+
+from __future__ import annotations
+
+import random
+from collections import Counter
+from dataclasses import dataclass, field
+from functools import cached_property, reduce
+from operator import or_
+from typing import TYPE_CHECKING, NamedTuple
+
+from robosc.engine import ControlLoop, Hooks
+from robosc.metamodel import sct
+from robosc.node_tests.coverage import Goal, Watcher, goals
+from robosc.node_tests.guide import Guide, Way
+from robosc.semantics.roles import event_name
+from robosc.synthesis import encoded
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Set as AbstractSet
+
+    from robosc.engine import Settings
+    from robosc.engine.control_loop import SavedLoop
+    from robosc.engine.state import Value
+    from robosc.synthesis.encoding import Encoding
+
+#: Where there are no more steps all are looked at.
+_ALL = 30_000
+#: So often a tour is planned, each time with other choices between what is as near; the shortest is taken.
+_PLANS = 12
+#: So long may the way be that takes the place of a part of a tour.
+_DETOUR = 4
+#: So many ways that lead to where something can be seen may not show it.
+_IN_VAIN = 4
+
+
+@dataclass(frozen=True)
+class Stimulus:
+    """Something that comes in: a batch of events with their inputs. Without events: time goes by.
+
+    Until the next time is up, that is, or the pause after a failure is over.
+    """
+
+    name: str
+    events: tuple[tuple[str, tuple[tuple[str, Value], ...]], ...] = ()
+    fails: bool = False
+
+
+WAIT = Stimulus("wait")
+
+
+class Place(NamedTuple):
+    """Where a loop is, as far as a plan tells places apart: its cells, the times that run, and whether it pauses."""
+
+    cells: tuple[int, ...]
+    running: frozenset[int]
+    pauses: bool
+
+
+class Step(NamedTuple):
+    """A step of a tour: what comes in, where that leads, and what it shows, a bit for each goal."""
+
+    stimulus: Stimulus
+    end: Place
+    shows: int
+
+
+@dataclass
+class _Known:
+    saved: SavedLoop
+    steps: list[Step] | None = None
+
+
+@dataclass
+class Plan:
+    """The places of one model's control loop, looked at as they are needed, and tours through them."""
+
+    model: sct.SupervisoryControlModel
+    settings: Settings
+    stimuli: Sequence[Stimulus]
+    #: No time that is longer, in milliseconds, is waited for.
+    longest: int
+    _known: dict[Place, _Known] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self._loop = ControlLoop(self.model, self.settings, Hooks(self._before))
+        self._watcher = Watcher(self._loop)
+        #: All that there may be to see.
+        self.goals = goals(self._loop)
+        #: The bit of each of them.
+        self.bits = {goal: 1 << number for number, goal in enumerate(self.goals)}
+        self._at_rest: dict[tuple[int, ...], int] = {}
+        resets = [event for plant in self.model.plants for event in plant.events if event.kind == sct.EventKind.reset]
+        self._resets = {event_name(event) for event in resets}
+        self._timers = {timer.event.name: number for number, timer in enumerate(self._loop.engine.executed.timers)}
+        self._pauses = False
+        self._shown = self._anywhere = 0
+
+    def _before(self, event: str) -> bool:
+        if event in self._resets and self._pauses:
+            return False
+        self._shown |= self._mask(self._watcher.happening(event))
+        return True
+
+    def _mask(self, seen: Iterable[Goal]) -> int:
+        return reduce(or_, (self.bits[goal] for goal in seen), 0)
+
+    def place(self, saved: SavedLoop, *, pauses: bool) -> Place:
+        """The place of a loop; it is looked at from there on."""
+        found = Place(saved.cells, frozenset(saved.timers[1]), pauses)
+        self._known.setdefault(found, _Known(saved))
+        return found
+
+    @property
+    def places(self) -> list[Place]:
+        """The places that are known, in the order in which they were come to."""
+        return list(self._known)
+
+    @cached_property
+    def possible(self) -> set[Goal]:
+        """What can be seen: from the first place that was asked for on, else in the supervised system."""
+        if self.is_whole:
+            return {goal for goal in self.goals if self.bits[goal] & self._anywhere}
+        return encoded(self.model, lambda encoding: self._guide(encoding).possible)
+
+    @cached_property
+    def is_whole(self) -> bool:
+        """Whether there are so few places that all of them were looked at."""
+        pending = list(self._known)
+        seen = set(pending)
+        while pending and len(seen) * len(self.stimuli) < _ALL:
+            for step in self.steps(pending.pop()):
+                self._anywhere |= step.shows
+                if step.end not in seen:
+                    seen.add(step.end)
+                    pending.append(step.end)
+        return not pending
+
+    def steps(self, place: Place) -> list[Step]:
+        """All steps from a place that lead to another one or show something."""
+        known = self._known[place]
+        if known.steps is None:
+            found = (self._step(place, known.saved, stimulus) for stimulus in self.stimuli)
+            known.steps = [step for step in found if step is not None and (step.end != place or step.shows)]
+        return known.steps
+
+    def _step(self, place: Place, saved: SavedLoop, stimulus: Stimulus) -> Step | None:
+        loop = self._loop
+        loop.restore(saved)
+        self._pauses, self._shown = place.pauses, 0
+        if stimulus.events:
+            if place.pauses or not all(loop.enabled(event) for event, _ in stimulus.events):
+                return None  # while a failure is waited for nothing else comes in
+            loop.begin()
+            for event, inputs in stimulus.events:
+                loop.perform(event, dict(inputs))
+            self._pauses = stimulus.fails
+            loop.end()
+        else:
+            wait = None if place.pauses else loop.timers.wait
+            if wait is not None and wait <= self.longest:
+                loop.timers.at(loop.timers.now + wait)
+                loop.expire()
+            elif not place.pauses:
+                return None
+            self._pauses = False
+        shown = self._rest()
+        loop.tick()
+        shown |= self._rest() | self._shown
+        return Step(stimulus, self.place(loop.saved, pauses=self._pauses), shown)
+
+    def _rest(self) -> int:
+        cells, _ = self._loop.engine.saved
+        if cells not in self._at_rest:
+            self._at_rest[cells] = self._mask(self._watcher.at_rest())
+        return self._at_rest[cells]
+
+    # Tours
+
+    def tour(self, start: Place, shown: AbstractSet[Goal]) -> list[Step]:
+        """A short way from a start on that shows what can be shown and was not, as far as it is found.
+
+        Where there are too many places to look at all of them, decision diagrams say where to go.
+        """
+        wanted = self._mask(self.possible - shown)
+        if not self.is_whole:
+            return encoded(self.model, lambda encoding: self._guided(start, wanted, encoding))
+        tours = [self._planned(start, wanted, random.Random(seed)) for seed in range(_PLANS)]  # noqa: S311
+        return max(tours, key=lambda tour: ((_together(tour) & wanted).bit_count(), -len(tour)))
+
+    def _planned(self, start: Place, wanted: int, choice: random.Random) -> list[Step]:
+        tour: list[Step] = []
+        left, here = wanted, start
+        while left and (way := self._way_to_any(here, left, choice)):
+            tour += way
+            here = tour[-1].end
+            left &= ~_together(way)
+        return self._shortened(start, tour, wanted, _DETOUR)
+
+    def _way_to_any(self, start: Place, wanted: int, choice: random.Random) -> list[Step]:
+        """The shortest way to something wanted; of several one that shows the most."""
+        ways: dict[Place, list[Step]] = {start: []}
+        layer = [start]
+        while layer:
+            found: list[tuple[int, float, list[Step]]] = []
+            onwards: list[Place] = []
+            for place in layer:
+                for step in self.steps(place):
+                    if step.shows & wanted:
+                        found.append(((step.shows & wanted).bit_count(), choice.random(), [*ways[place], step]))
+                    if step.end not in ways:
+                        ways[step.end] = [*ways[place], step]
+                        onwards.append(step.end)
+            if found:
+                return max(found, key=lambda one: one[:2])[2]
+            layer = onwards
+        return []
+
+    def _guided(self, start: Place, wanted: int, encoding: Encoding) -> list[Step]:
+        """Takes each time the step that shows the most, else the way that the supervised system has to what is left."""
+        guide = self._guide(encoding)
+        tour: list[Step] = []
+        left, here, in_vain = wanted, start, Counter[Goal]()
+        while left:
+            # Times first: some are up only before anything has come in.
+            showing = [step for step in self.steps(here) if step.shows & left]
+            if showing:
+                way = [max(showing, key=lambda step: (step.stimulus == WAIT, (step.shows & left).bit_count()))]
+            else:
+                promising = [goal for goal in self.goals if self.bits[goal] & left and in_vain[goal] < _IN_VAIN]
+                events, aims = self._timed(here, promising) or guide.way(self._codes(here), promising)
+                if not events:
+                    break
+                in_vain.update(aims)
+                way = self._followed(here, events, left)
+            tour += way
+            here = way[-1].end if way else here
+            left &= ~_together(way)
+        return self._shortened(start, tour, wanted, 1)
+
+    def _guide(self, encoding: Encoding) -> Guide:
+        data: dict[str, list[dict[str, Value]]] = {}
+        for event, inputs in (pair for stimulus in self.stimuli for pair in stimulus.events):
+            data.setdefault(event, []).append(dict(inputs))
+        return Guide(self.model, encoding, self.goals, data)
+
+    def _codes(self, place: Place) -> Mapping[sct.Plant | sct.DiscreteVariable, int]:
+        self._loop.engine.restore((place.cells, self._loop.engine.saved[1]))
+        return self._loop.engine.codes
+
+    def _timed(self, here: Place, wanted: Iterable[Goal]) -> Way | None:
+        """The wait for something that is seen when a time is up that runs."""
+        for goal in wanted:
+            event = event_name(goal.of.event) if isinstance(goal.of, sct.Edge) else ""
+            if self._timers.get(event) in here.running:
+                return Way([(event, {})], {goal})
+        return None
+
+    def _followed(self, start: Place, events: Iterable[tuple[str, dict[str, Value]]], wanted: int) -> list[Step]:
+        """The steps that bring events about, or others like them, until something is seen that is wanted."""
+        way: list[Step] = []
+        for event, inputs in events:
+            for _ in range(1 + len(self._timers)):
+                here = way[-1].end if way else start
+                like = [step for step in self.steps(here) if self._is(step.stimulus, event)]
+                if like:  # else it is the controller's own, or not possible now
+                    way.append(min(like, key=lambda step: (_unlike(step.stimulus, event, inputs), step.stimulus.name)))
+                if _together(way) & wanted:
+                    return way
+                if not like or self._timers.get(event) not in way[-1].end.running:
+                    break  # else another time was up before this one
+        return way
+
+    def _is(self, stimulus: Stimulus, event: str) -> bool:
+        if not stimulus.events:
+            return ".u_after" in event or event in self._resets
+        return event in dict(stimulus.events)
+
+    def _shortened(self, start: Place, tour: list[Step], wanted: int, detour: int) -> list[Step]:
+        """The tour without detours: a part is left out, or a shorter way taken, where nothing is missed then."""
+        improved = True
+        while improved:
+            improved = False
+            places = [start, *(step.end for step in tour)]
+            before, after = _running(tour), _running(tour[::-1])[::-1]
+            for first in range(len(tour)):
+                for last in range(len(tour), first, -1):
+                    lost = _together(tour[first:last]) & wanted & ~before[first] & ~after[last]
+                    way = self._way(places[first], places[last], min(last - first - 1, detour), lost)
+                    if way is not None:
+                        tour = [*tour[:first], *way, *tour[last:]]
+                        improved = True
+                        break
+                if improved:
+                    break
+        while tour and not tour[-1].shows & wanted & ~_together(tour[:-1]):
+            tour.pop()
+        return tour
+
+    def _way(self, start: Place, end: Place, longest: int, shown: int) -> list[Step] | None:
+        """A way of at most so many steps, the shortest there is, if it shows all that is asked for; else None."""
+        if start == end and not shown:
+            return []
+        ways: dict[Place, list[Step]] = {start: []}
+        layer = [start]
+        for _ in range(longest):
+            onwards = []
+            for place in layer:
+                for step in self._known[place].steps or ():
+                    if step.end == end and not shown & ~(_together(ways[place]) | step.shows):
+                        return [*ways[place], step]
+                    if step.end not in ways:
+                        ways[step.end] = [*ways[place], step]
+                        onwards.append(step.end)
+            layer = onwards
+        return None
+
+
+def _unlike(stimulus: Stimulus, event: str, inputs: Mapping[str, Value]) -> int:
+    """How many inputs of the event it has otherwise."""
+    given = dict(dict(stimulus.events).get(event, ()))
+    return sum(given.get(name) != value for name, value in inputs.items())
+
+
+def _together(steps: Iterable[Step]) -> int:
+    return reduce(or_, (step.shows for step in steps), 0)
+
+
+def _running(steps: Sequence[Step]) -> list[int]:
+    """What the first steps show, none of them, one, and so on."""
+    shown = [0]
+    for step in steps:
+        shown.append(shown[-1] | step.shows)
+    return shown
