@@ -78,6 +78,15 @@ Each node drives the robot of its [scenario](simulator.md) for {seconds} s in re
 that has ended begins anew. Processor time as a share of one core; the most memory in use, in MB, ROS's own included.
 """
 
+WATCHED = """\
+## Who looks
+
+What it costs a node that somebody looks: the line follower on its line, with 30 scans and 30 corrections a second, in
+turn for {seconds} s with nobody, with the page of [`robosc view`](view.md) on its state, and with a monitor on
+[`/diagnostics`](ros.md#for-monitors-of-robots); the median of {rounds} rounds. *More* is the median of the differences
+to nobody in the same round. Processor time of the node as a share of one core, without that of page and monitor.
+"""
+
 TICKS = """\
 ## One tick
 
@@ -106,6 +115,12 @@ def page(results: Results) -> str:
             COSTS.format(seconds=_span(f"{measured['seconds']:.0f}" for measured in found.values())),
             _costs(found),
         ]
+    if found := _of(results, "watched"):
+        rounds, seconds = (
+            _span(f"{measured[what]:.0f}" for measured in found.values()) for what in ("rounds", "seconds")
+        )
+        parts += [WATCHED.format(rounds=rounds, seconds=seconds), _watched(found)]
+    if found := _of(results, "costs"):
         parts += [TICKS, *(_ticks(kind, measured) for kind, measured in found.items())]
     return "\n".join(parts)
 
@@ -142,6 +157,16 @@ def _costs(found: Mapping[Kind, Results]) -> str:
             for title in titles
         ],
     )
+
+
+def _watched(found: Mapping[Kind, Results]) -> str:
+    head = ["node", "nobody", "`robosc view`", "more", "monitor", "more"]
+    rows = []
+    for kind, measured in found.items():
+        taken, more = measured["taken"], measured["more"]
+        shares = [taken["nobody"], taken["view"], more["view"], taken["monitor"], more["monitor"]]
+        rows.append([kind.title, *(f"{100 * share:.1f} %" for share in shares)])
+    return _table(head, rows)
 
 
 def _cost(node: Results) -> list[str]:

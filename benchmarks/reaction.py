@@ -1,10 +1,10 @@
 """How soon nodes react, and what they cost, over the ROS that is there; writes `docs/performance.md`.
 
-    python benchmarks/reaction.py [--ros 1] [--nodes compiled] [--parts stop obstacle costs] [--stops 1000]
-                                  [--obstacles 200] [--seconds 300] [--keep FOLDER]
+    python benchmarks/reaction.py [--ros 1] [--nodes compiled] [--parts stop obstacle costs watched] [--stops 1000]
+                                  [--obstacles 200] [--seconds 300] [--rounds 9] [--keep FOLDER]
 
 Without options: compiled nodes and `robosc run`, ROS 1 and ROS 2, as far as they are there. Each of the four takes
-eight minutes, six of them for the costs, and what is compiled is built before. What was measured is kept in
+fourteen minutes, six of them for the costs, and what is compiled is built before. What was measured is kept in
 `benchmarks/performance.json`: what is left out this time stays on the page. `--keep` names a folder for what is built,
 so that the next call need not build it again.
 
@@ -27,6 +27,7 @@ sys.path.insert(0, str(ROOT))
 from benchmarks.node_costs import costs, summary  # noqa: E402
 from benchmarks.performance_page import KINDS, page, percentiles  # noqa: E402
 from benchmarks.timed_packages import timed_packages  # noqa: E402
+from benchmarks.watched import watched  # noqa: E402
 from tests.ros.installations import find_ros1, find_ros2  # noqa: E402
 from tests.ros.reactions import reactions  # noqa: E402
 from tests.ros.running import Runner, find_rclpy, ros1_modules, ros2_modules  # noqa: E402
@@ -78,6 +79,7 @@ def _options() -> argparse.Namespace:
     parser.add_argument("--stops", type=int, default=1000)
     parser.add_argument("--obstacles", type=int, default=200)
     parser.add_argument("--seconds", type=float, default=300, help="how long the costs are measured")
+    parser.add_argument("--rounds", type=int, default=9, help="how often it is measured what a look costs")
     parser.add_argument("--keep", type=Path, help="a folder for what is built")
     parser.add_argument("--machine", default="two shared cores", help="what the page says of the machine")
     return parser.parse_args()
@@ -129,10 +131,18 @@ def _costs(nodes: Workspace | Runner, folder: Path, options: argparse.Namespace)
     return {"seconds": options.seconds, "nodes": found}
 
 
+def _watched(nodes: Workspace | Runner, folder: Path, options: argparse.Namespace) -> dict[str, Any]:
+    with tempfile.TemporaryDirectory() as scratch:
+        runner = nodes if isinstance(nodes, Runner) else _prepared(nodes.ros.version, "run", Path(scratch))
+        assert isinstance(runner, Runner), runner
+        return watched(nodes, runner, folder, options.rounds, 10.0)
+
+
 PARTS: dict[str, Callable[[Any, Path, argparse.Namespace], dict[str, Any]]] = {
     "stop": _stops,
     "obstacle": _obstacles,
     "costs": _costs,
+    "watched": _watched,
 }
 
 

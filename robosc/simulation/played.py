@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
@@ -84,13 +85,19 @@ def counterexample_steps(simulation: Simulation, wanted: str | None) -> tuple[li
     """
     verdicts = verify_system(simulation.engine.model)
     properties = [verdict.property for verdict in verdicts]
-    if wanted is not None and wanted not in properties:
+    named = [one for one in properties if wanted is None or _is_called(one, wanted)]
+    if wanted is not None and not named:
         close = get_close_matches(wanted, properties, n=1)
         raise PlayError(f"there is no property `{wanted}`{f'; did you mean `{close[0]}`?' if close else ''}")
-    refuted = next((one for one in verdicts if one.outcome is Outcome.REFUTED and wanted in (None, one.property)), None)
+    refuted = next((one for one in verdicts if one.outcome is Outcome.REFUTED and one.property in named), None)
     if refuted is None:
         raise PlayError("nothing is refuted: there is no counterexample")
     return _steps(simulation, [*refuted.trace, *refuted.onwards]), f"{refuted.property}: {refuted.explanation}\n"
+
+
+def _is_called(verified: str, wanted: str) -> bool:
+    """Whether a property is meant: by what `verify` calls it, or one of the model by its name there."""
+    return verified == wanted or re.match(rf"property {re.escape(wanted)}(?!\w)", verified) is not None
 
 
 def _steps(simulation: Simulation, trace: Sequence[TraceStep]) -> list[Step]:

@@ -171,6 +171,7 @@ class _Describer:
             "controllable": bool(event.controllable),
             "owner": plant_of(event).origin or plant_of(event).name,
             "place": self.place(event) or self.place(plant_of(event)),
+            **({"timer": True} if event.timer is not None else {}),
             "inputs": [{"name": given.name, "label": _label(given), **_values(given.type)} for given in event.inputs],
         }
 

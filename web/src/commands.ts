@@ -1,8 +1,8 @@
 // Commands with their verdicts, what can happen besides, requirements.
 
 import type { Description, Event, Explanation, Input, Place, Value } from "./data";
-import { byId, html } from "./elements";
-import type { Whole } from "./run";
+import { byId, html, worded } from "./elements";
+import { verdictOf, type Whole } from "./run";
 
 /** What the page can ask of the server; where there is none, nothing. */
 export interface Asking {
@@ -56,8 +56,8 @@ export class CommandsView {
       if (shown.perform !== null) shown.perform.disabled = !isLast || verdict !== null;
       if (told === shown.told) continue;
       shown.told = told;
-      shown.item.className = verdict === null ? "allowed" : verdict.by === "plant" ? "unready" : "forbidden";
-      shown.verdict.textContent = verdict === null ? "allowed" : verdict.by === "plant" ? "not possible" : "forbidden";
+      shown.item.className = `${verdictOf(verdict)}${shown.item.classList.contains("found") ? " found" : ""}`;
+      shown.verdict.textContent = { allowed: "allowed", forbidden: "forbidden", unready: "not possible" }[verdictOf(verdict)];
       shown.reason.textContent = verdict?.reason.replace(/^forbidden /, "") ?? "";
       shown.why.replaceChildren();
       shown.links.hidden = verdict === null;
@@ -65,6 +65,14 @@ export class CommandsView {
     for (const [name, item] of this.events) {
       item.hidden = !whole.enabled.has(name);
       for (const button of item.querySelectorAll<HTMLButtonElement>("button[data-event]")) button.disabled = !isLast;
+    }
+  }
+
+  /** Brings a command into view, and marks it. */
+  find(event: string): void {
+    for (const [name, { item }] of this.commands) {
+      item.classList.toggle("found", name === event);
+      if (name === event) item.scrollIntoView({ block: "nearest" });
     }
   }
 
@@ -90,7 +98,7 @@ export class CommandsView {
     const item = html(
       "li",
       { "data-event": name },
-      html("p", {}, title, " ", verdict, " ", performer ?? ""),
+      html("p", { class: "command" }, title, " ", verdict, " ", performer ?? ""),
       reason,
       links,
       why,
@@ -125,7 +133,7 @@ export class CommandsView {
     try {
       const told = await this.asking!.explain(name);
       const list = (title: string, texts: string[]): Node[] =>
-        texts.length === 0 ? [] : [html("p", {}, title), html("ul", {}, ...texts.map((text) => html("li", {}, text)))];
+        texts.length === 0 ? [] : [html("p", {}, title), html("ul", {}, ...texts.map((text) => html("li", {}, ...worded(text))))];
       why.replaceChildren(
         ...list(told.allowed ? "It is allowed." : "Because:", told.notes),
         ...list("Otherwise:", told.otherwise === "" ? [] : [told.otherwise]),

@@ -55,6 +55,8 @@ export interface Event {
   controllable: boolean;
   owner: string;
   place: Place | null;
+  /** It comes when a time is up. */
+  timer?: boolean;
   inputs: Input[];
 }
 

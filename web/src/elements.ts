@@ -20,6 +20,11 @@ export function svg<Name extends keyof SVGElementTagNameMap>(
   return filled(document.createElementNS("http://www.w3.org/2000/svg", name), attributes, children);
 }
 
+/** A text in which backticks enclose what the model says, as the children of an element. */
+export function worded(text: string): (Node | string)[] {
+  return text.split("`").map((part, number) => (number % 2 === 1 ? html("code", {}, part) : part));
+}
+
 /** The element of the page with this identifier. */
 export function byId<Kind extends HTMLElement>(id: string, kind: new () => Kind): Kind {
   const found = document.getElementById(id);

@@ -6,7 +6,7 @@ import { byId, html } from "./elements";
 import { begin } from "./layout";
 import { RobotView } from "./robot";
 import { MOST, Run } from "./run";
-import { TextView } from "./text";
+import { stands, TextView } from "./text";
 import { TimelineView } from "./timeline";
 
 declare global {
@@ -54,7 +54,7 @@ class Page {
     document.title = `${description.robot} – RoboSC`;
     byId("robot-name", HTMLElement).textContent = description.robot;
     this.offer(description.robots ?? []);
-    this.text = new TextView(description);
+    this.text = new TextView(description, (file, line) => this.find(file, line));
     this.robot = new RobotView(description, (place) => this.text.goTo(place));
     const perform = (event: string, inputs: Record<string, Value>): void =>
       void this.act({ action: "perform", event, inputs });
@@ -140,6 +140,13 @@ class Page {
     this.follow.setAttribute("aria-pressed", String(this.following));
     this.onward.disabled = isLast;
     document.body.dataset["moment"] = String(this.shown);
+  }
+
+  /** Shows what stands in a line of the text: a state, a transition, a component; else the requirement's command. */
+  private find(file: number, line: number): void {
+    const requirement = this.description.requirements.find(({ place }) => place !== null && stands(place, file, line));
+    if (requirement === undefined) this.robot.find(file, line);
+    else this.commands.find(requirement.event);
   }
 
   private goOn(): void {

@@ -4,6 +4,7 @@ import type { Automaton, Description, Endpoint, Moment, Place } from "./data";
 import { byId, html, pressed, svg } from "./elements";
 import { type Box, columns, type Drawing, layout, type Line, LINE, path } from "./layout";
 import type { Whole } from "./run";
+import { stands } from "./text";
 
 /** Above so many lines a transition says how many more there are. */
 const MOST_LINES = 3;
@@ -37,7 +38,7 @@ export class RobotView {
     private readonly goTo: (place: Place | null) => void,
   ) {
     byId("search", HTMLInputElement).addEventListener("input", (event) =>
-      this.find((event.target as HTMLInputElement).value),
+      this.choose((event.target as HTMLInputElement).value),
     );
     byId("fold", HTMLButtonElement).addEventListener("click", () => this.fold());
     byId("zoom-in", HTMLButtonElement).addEventListener("click", () => this.scale(1.25));
@@ -221,7 +222,29 @@ export class RobotView {
     drawn.append(image);
   }
 
-  private find(text: string): void {
+  /** Brings what stands in a line of the text into view, and marks it: a state, a transition, or else a whole card. */
+  find(file: number, line: number): void {
+    for (const element of this.holder.querySelectorAll(".found")) element.classList.remove("found");
+    let [found, length]: [Element | null, number] = [null, Infinity];
+    const offer = (place: Place | null, element: Element | undefined): void => {
+      if (place === null || element === undefined || !stands(place, file, line)) return;
+      if (place.endLine - place.line < length) [found, length] = [element, place.endLine - place.line];
+    };
+    this.pictures.forEach(({ automaton, states, transitions }, number) => {
+      for (const [transition, group] of transitions) offer(automaton.transitions[transition]!.place, group);
+      automaton.states.forEach((state, at) => offer(state.place, states[at]));
+      offer(automaton.place, this.cards[number]?.element);
+    });
+    const element = found as Element | null;
+    if (element === null) return;
+    const card = element.closest<HTMLDetailsElement>(".card")!;
+    card.hidden = false;
+    card.open = true;
+    element.classList.add("found");
+    (element === card ? card : element).scrollIntoView({ block: "nearest", inline: "nearest" });
+  }
+
+  private choose(text: string): void {
     for (const card of this.cards) card.element.hidden = !card.texts.includes(text.toLowerCase());
   }
 

@@ -9,6 +9,11 @@ export interface Whole {
   timers: Map<string, number>;
 }
 
+/** What becomes of a command: it is allowed, forbidden, or the robot is not ready for it. */
+export function verdictOf(verdict: Verdict | null): "allowed" | "forbidden" | "unready" {
+  return verdict === null ? "allowed" : verdict.by === "plant" ? "unready" : "forbidden";
+}
+
 /** From one moment that is kept whole to the next. */
 const APART = 64;
 /** So many moments of a robot that runs; what is played is never so long, and can be taken back. */

@@ -3,15 +3,39 @@
 import type { Description, Place } from "./data";
 import { byId, html } from "./elements";
 
+/** Whether a place is of a line, or has it in it. */
+export function stands(place: Place, file: number, line: number): boolean {
+  return place.file === file && place.line <= line && line <= place.endLine;
+}
+
 export class TextView {
   private readonly lines = byId("lines", HTMLElement);
   private readonly chosen = byId("file", HTMLSelectElement);
   private shown = -1;
   private marked: Element[] = [];
+  /** The line, from 1, that the arrow keys have come to. */
+  private line = 1;
 
-  constructor(private readonly description: Description) {
+  /** `show`: shows what stands in a line of a file. */
+  constructor(
+    private readonly description: Description,
+    private readonly show: (file: number, line: number) => void,
+  ) {
     description.files.forEach((file, number) => this.chosen.append(html("option", { value: number }, file.name)));
     this.chosen.addEventListener("change", () => this.open(Number(this.chosen.value)));
+    this.lines.addEventListener("click", (event) => {
+      const at = [...this.lines.children].indexOf((event.target as Element).closest(".line")!);
+      if (at >= 0) this.choose(at + 1);
+    });
+    this.lines.addEventListener("keydown", (event) => {
+      const step = { ArrowDown: 1, ArrowUp: -1 }[event.key];
+      if (step !== undefined) {
+        this.line = Math.min(this.lines.children.length, Math.max(1, this.line + step));
+        this.mark(this.line, this.line);
+      } else if (event.key === "Enter") this.choose(this.line);
+      else return;
+      event.preventDefault();
+    });
     if (description.files.length > 0) this.open(0);
     else byId("text", HTMLElement).hidden = true;
   }
@@ -20,12 +44,25 @@ export class TextView {
   goTo(place: Place | null): void {
     if (place === null) return;
     this.open(place.file);
+    this.line = place.line;
+    this.mark(place.line, Math.min(place.endLine, place.line + 30));
+  }
+
+  private choose(line: number): void {
+    this.line = line;
+    this.mark(line, line);
+    this.show(this.shown, line);
+  }
+
+  private mark(from: number, to: number): void {
     for (const line of this.marked) line.classList.remove("here");
-    const last = Math.min(place.endLine, place.line + 30);
-    this.marked = [...this.lines.children].slice(place.line - 1, last);
+    this.marked = [...this.lines.children].slice(from - 1, to);
     for (const line of this.marked) line.classList.add("here");
     const first = this.marked[0] as HTMLElement | undefined;
-    if (first !== undefined) this.lines.scrollTop = first.offsetTop - this.lines.offsetTop - this.lines.clientHeight / 3;
+    if (first === undefined) return;
+    const [top, height] = [first.offsetTop - this.lines.offsetTop, this.lines.clientHeight];
+    const isSeen = top >= this.lines.scrollTop && top + first.clientHeight <= this.lines.scrollTop + height;
+    if (!isSeen) this.lines.scrollTop = top - height / 3;
   }
 
   /** Marks the lines of what has just happened. */
@@ -41,6 +78,7 @@ export class TextView {
     if (file === this.shown) return;
     this.shown = file;
     this.chosen.value = String(file);
+    this.line = 1;
     const lines = this.description.files[file]!.lines.map((line) =>
       html("div", { class: "line" }, ...line.map(([kind, text]) => (kind === "" ? text : html("span", { class: kind }, text)))),
     );

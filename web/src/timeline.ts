@@ -1,8 +1,9 @@
-// The time line: a lane for each component with its states, what happened and what was refused; numbers over time.
+// The time line: a lane for each component with its states, for each command with its verdicts, and for what was refused;
+// what happened; numbers and times over time.
 
 import type { Description, Moment } from "./data";
 import { byId, html } from "./elements";
-import type { Run } from "./run";
+import { type Run, verdictOf, type Whole } from "./run";
 
 /** So many moments are drawn, those up to the shown one and some after it. */
 const WINDOW = 400;
@@ -15,8 +16,9 @@ export class TimelineView {
   private readonly slider = byId("moment", HTMLInputElement);
   private readonly number = byId("moment-number", HTMLOutputElement);
   private readonly canvas = byId("lanes", HTMLCanvasElement);
+  private dragged: [number, number] = [0, 0];
   private readonly list = byId("happened", HTMLOListElement);
-  private readonly plots: { key: string; canvas: HTMLCanvasElement; now: HTMLElement }[] = [];
+  private readonly plots: Plot[] = [];
 
   constructor(
     private readonly description: Description,
@@ -24,19 +26,40 @@ export class TimelineView {
     private readonly choose: (number: number) => void,
   ) {
     this.slider.addEventListener("input", () => choose(Number(this.slider.value)));
-    this.canvas.addEventListener("click", (event) => {
-      const [first, last] = this.window(Number(this.slider.value));
-      const along = (event.offsetX - NAMES) / (this.canvas.clientWidth - NAMES);
-      if (along >= 0) choose(Math.min(last, Math.max(first, first + Math.floor(along * (last - first + 1)))));
+    this.canvas.addEventListener("pointerdown", (event) => {
+      this.dragged = this.window(Number(this.slider.value));
+      if (event.offsetX < NAMES) return;
+      this.canvas.setPointerCapture(event.pointerId);
+      this.drag(event);
+    });
+    this.canvas.addEventListener("pointermove", (event) => {
+      if (this.canvas.hasPointerCapture(event.pointerId)) this.drag(event);
     });
     const numbers = byId("numbers", HTMLUListElement);
     for (const automaton of description.automata)
-      for (const variable of automaton.variables.filter((one) => one.numeric)) {
-        const [canvas, now] = [html("canvas", { "aria-hidden": "true" }), html("strong")];
-        this.plots.push({ key: variable.key, canvas, now });
-        numbers.append(html("li", {}, `${variable.key}: `, now, canvas));
-      }
+      for (const variable of automaton.variables.filter((one) => one.numeric))
+        numbers.append(this.plot(variable.key, variable.key, ({ state }) => Number(state.get(variable.key)), String));
+    for (const [name, event] of Object.entries(description.events))
+      if (event.timer === true)
+        numbers.append(
+          this.plot(name, event.words, ({ timers }) => timers.get(name) ?? NaN, (left) =>
+            Number.isNaN(left) ? "not running" : `${left / 1000} s left`,
+          ),
+        );
     byId("numbers-section", HTMLElement).hidden = this.plots.length === 0;
+  }
+
+  private plot(key: string, title: string, value: (whole: Whole) => number, said: (value: number) => string): HTMLElement {
+    const [canvas, now] = [html("canvas", { "aria-hidden": "true" }), html("strong")];
+    this.plots.push({ value, said, canvas, now });
+    return html("li", { "data-key": key }, html("span", {}, title, ": ", now), canvas);
+  }
+
+  /** Chooses the moment under the pointer; what is drawn is still that of when it was pressed. */
+  private drag(event: PointerEvent): void {
+    const [first, last] = this.dragged;
+    const along = (event.offsetX - NAMES) / (this.canvas.clientWidth - NAMES);
+    this.choose(Math.min(last, Math.max(first, first + Math.floor(along * (last - first + 1)))));
   }
 
   show(shown: number): void {
@@ -74,40 +97,50 @@ export class TimelineView {
 
   private draw(shown: number): void {
     const [first, last] = this.window(shown);
-    const { automata } = this.description;
-    const columns: { state: (string | undefined)[]; numbers: number[]; refused: boolean }[] = [];
+    const { automata, commands, events } = this.description;
+    const columns: { states: string[]; numbers: number[]; refused: boolean }[] = [];
     for (let number = first; number <= last; number++) {
-      const { state } = this.run.at(number);
+      const whole = this.run.at(number);
       columns.push({
-        state: automata.map((automaton) => state.get(automaton.key) as string | undefined),
-        numbers: this.plots.map((plot) => Number(state.get(plot.key))),
+        states: [
+          ...automata.map((automaton) => String(whole.state.get(automaton.key) ?? "")),
+          ...commands.map((command) => verdictOf(whole.commands.get(command) ?? null)),
+        ],
+        numbers: this.plots.map((plot) => plot.value(whole)),
         refused: this.run.moment(number).by !== undefined,
       });
     }
     const colours = getComputedStyle(document.documentElement);
     const colour = (name: string): string => colours.getPropertyValue(name);
-    const context = prepared(this.canvas, (automata.length + 1) * LANE + 4);
+    const lanes = [
+      ...automata.map((automaton) => ({
+        name: automaton.name,
+        colour: (state: string) => `--lane-${Math.max(0, automaton.states.findIndex((one) => one.name === state)) % 6}`,
+      })),
+      ...commands.map((command) => ({ name: events[command]!.words, colour: (verdict: string) => `--${VERDICTS[verdict]}` })),
+    ];
+    const context = prepared(this.canvas, (lanes.length + 1) * LANE + 4);
     const step = (this.canvas.clientWidth - NAMES) / columns.length;
-    context.font = "11px sans-serif";
-    automata.forEach((automaton, lane) => {
+    context.font = "11px system-ui, sans-serif";
+    lanes.forEach(({ name, colour: of }, lane) => {
       const top = lane * LANE + 2;
       context.fillStyle = colour("--text");
-      context.fillText(automaton.name, 2, top + 11, NAMES - 8);
+      context.fillText(name, 2, top + 11, NAMES - 8);
       for (let begin = 0; begin < columns.length; ) {
-        const state = columns[begin]!.state[lane];
+        const state = columns[begin]!.states[lane]!;
         let end = begin + 1;
-        while (end < columns.length && columns[end]!.state[lane] === state) end++;
-        const number = automaton.states.findIndex((one) => one.name === state);
-        context.fillStyle = colour(`--lane-${Math.max(0, number) % 6}`);
-        context.fillRect(NAMES + begin * step, top, (end - begin) * step - (step > 3 ? 1 : 0), LANE - 3);
-        if ((end - begin) * step > 24) {
+        while (end < columns.length && columns[end]!.states[lane] === state) end++;
+        context.fillStyle = colour(of(state));
+        const inset = lane < automata.length ? 0 : 3;
+        context.fillRect(NAMES + begin * step, top + inset, (end - begin) * step - (step > 3 ? 1 : 0), LANE - 3 - 2 * inset);
+        if (inset === 0 && (end - begin) * step > 24) {
           context.fillStyle = colour("--on-lane");
-          context.fillText(state ?? "", NAMES + begin * step + 3, top + 10, (end - begin) * step - 6);
+          context.fillText(state, NAMES + begin * step + 4, top + 10, (end - begin) * step - 6);
         }
         begin = end;
       }
     });
-    const bottom = automata.length * LANE + 2;
+    const bottom = lanes.length * LANE + 2;
     context.fillStyle = colour("--text");
     context.fillText("refused", 2, bottom + 11, NAMES - 8);
     context.fillStyle = colour("--forbidden");
@@ -118,21 +151,36 @@ export class TimelineView {
     context.fillRect(NAMES + (shown - first + 0.5) * step - 1, 0, 2, bottom + LANE);
     this.plots.forEach((plot, index) => {
       const values = columns.map((column) => column.numbers[index]!);
-      plot.now.textContent = String(values[shown - first]);
+      plot.now.textContent = plot.said(values[shown - first]!);
       drawPlot(plot.canvas, values, shown - first, colour("--accent"), colour("--shown"));
     });
   }
 }
 
+interface Plot {
+  /** NaN: there is none. */
+  value: (whole: Whole) => number;
+  said: (value: number) => string;
+  canvas: HTMLCanvasElement;
+  now: HTMLElement;
+}
+
+/** The colours of what becomes of a command. */
+const VERDICTS: Record<string, string> = { allowed: "allowed-lane", forbidden: "forbidden-lane", unready: "unready-lane" };
+
 function drawPlot(canvas: HTMLCanvasElement, values: number[], shown: number, line: string, here: string): void {
   const context = prepared(canvas, 40);
-  const [least, most] = [Math.min(...values), Math.max(...values)];
+  const known = values.filter((value) => !Number.isNaN(value));
+  const [least, most] = [Math.min(...known), Math.max(...known)];
   const step = canvas.clientWidth / values.length;
   const height = (value: number): number => 36 - (most === least ? 0.5 : (value - least) / (most - least)) * 32;
   context.strokeStyle = line;
   context.beginPath();
   values.forEach((value, index) => {
-    context.lineTo(index * step, height(value));
+    if (Number.isNaN(value)) return;
+    const begins = index === 0 || Number.isNaN(values[index - 1]);
+    if (begins) context.moveTo(index * step, height(value));
+    else context.lineTo(index * step, height(value));
     context.lineTo((index + 1) * step, height(value));
   });
   context.stroke();

@@ -1,0 +1,102 @@
+"""What it costs a node that somebody looks: the line follower on its line, in turn alone and with who looks."""
+
+from __future__ import annotations
+
+import os
+import re
+import time
+from contextlib import contextmanager, nullcontext
+from pathlib import Path
+from statistics import median
+from typing import TYPE_CHECKING, Any
+from urllib.request import urlopen
+
+from benchmarks.timed_packages import EXAMPLES
+from tests.ros.reactions import HERE as TESTS
+from tests.ros.reactions import PACKAGE, SENSORS_HZ, one_process
+from tests.ros.workspaces import Workspace, middleware
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+    from contextlib import AbstractContextManager
+
+    from tests.ros.processes import Processes
+    from tests.ros.running import Runner
+
+ROOT = TESTS.parents[1]
+MODEL = EXAMPLES / "line_follower" / "line_follower.rscd"
+#: A monitor of robots: it says when it has heard of the node.
+MONITOR = """\
+from topics import connect
+topics = connect({version!r}, "monitor")
+topics.listen("/diagnostics", "diagnostic_msgs/DiagnosticArray", lambda message: print("heard", flush=True))
+while True:
+    topics.receive(1.0)
+"""
+#: Seconds in which the node starts, before it is measured.
+_WARM_UP = 5.0
+
+
+def watched(nodes: Workspace | Runner, runner: Runner, folder: Path, rounds: int, seconds: float) -> dict[str, Any]:
+    """Shares of a core that the node takes while nobody looks, the page does, a monitor does: medians of the rounds.
+
+    What a look costs is the median of the differences to nobody in the same round. `runner` runs `robosc view`.
+    """
+    with middleware(nodes, folder) as processes:
+        node = processes.start("node", one_process(nodes, PACKAGE))
+        processes.start("sensors", [nodes.ros.python, TESTS / "sensors.py", str(nodes.ros.version), str(SENSORS_HZ)])
+        time.sleep(_WARM_UP)
+        who: dict[str, Callable[[], AbstractContextManager[None]]] = {
+            "nobody": nullcontext,
+            "view": lambda: _page(processes, runner, folder),
+            "monitor": lambda: _monitor(processes, nodes, folder),
+        }
+        taken: dict[str, list[float]] = {name: [] for name in who}
+        for _ in range(rounds):
+            for name, looking in who.items():
+                with looking():
+                    before, began = _processor(node.pid), time.monotonic()
+                    time.sleep(seconds)
+                    taken[name].append((_processor(node.pid) - before) / (time.monotonic() - began))
+                assert node.poll() is None, processes.logs()
+    more = {
+        name: median(with_it - alone for with_it, alone in zip(taken[name], taken["nobody"], strict=True))
+        for name in ("view", "monitor")
+    }
+    return {
+        "rounds": rounds,
+        "seconds": seconds,
+        "taken": {name: median(shares) for name, shares in taken.items()},
+        "more": more,
+    }
+
+
+def _processor(pid: int) -> float:
+    """Seconds of the processor that a process has taken."""
+    fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+@contextmanager
+def _page(processes: Processes, runner: Runner, folder: Path) -> Iterator[None]:
+    """The page of `robosc view`, with a browser's stream of what it shows, from the first moment on."""
+    path = os.pathsep.join(filter(None, (str(ROOT), processes.environment.get("PYTHONPATH"))))
+    command = ["env", f"PYTHONPATH={path}", runner.robosc, "-m", "robosc", "view", MODEL, f"--ros{runner.ros.version}"]
+    process, log = processes.start("view", command), folder / "view.log"
+    processes.wait_until(lambda: "http" in log.read_text(), "the page is served")
+    address = re.findall(r"^http\S+$", log.read_text(), re.MULTILINE)[-1]
+    with urlopen(f"{address}moments", timeout=60) as stream:  # noqa: S310  # loopback
+        while b'"event"' not in stream.readline():
+            pass
+        yield
+    processes.stop(process)
+
+
+@contextmanager
+def _monitor(processes: Processes, nodes: Workspace | Runner, folder: Path) -> Iterator[None]:
+    script, log = MONITOR.format(version=str(nodes.ros.version)), folder / "monitor.log"
+    path = os.pathsep.join(filter(None, (str(TESTS), processes.environment.get("PYTHONPATH"))))
+    process = processes.start("monitor", ["env", f"PYTHONPATH={path}", nodes.ros.python, "-c", script])
+    processes.wait_until(lambda: "heard" in log.read_text(), "the monitor hears of the node")
+    yield
+    processes.stop(process)
