@@ -129,13 +129,16 @@ class SecondWriter(Writer):
         made = [
             Communication(f"bump{number}", "outgoing", data={"response": NONE}),
             Communication(f"lamp{number}", "incoming", sent=BOOLEAN),
+            Communication(f"far{number}", "outgoing", data={"response": DOUBLE}),
         ]
         self.templates.append(
-            f"component {name}(topic: string, most: integer(1..3), step: integer = 1) {{\n"
+            f"component {name}(topic: string, most: integer(1..3), step: integer = 1, limit: double = -k1 * 2) {{\n"
             f'outgoing message bump{number} with identifier: topic + "/bump", type: none\n'
             f'incoming message lamp{number} with identifier: topic + "/lamp", type: boolean\n'
+            f'outgoing message far{number} with identifier: topic + "/far", type: double\n'
             f"condition full = times >= most\nprovide lamp{number} with full\nbehaviour {{\n"
             "variable times: integer(0..most + 1)\n"
+            f"on response from far{number} if value > limit or f2(value, most) < limit * 2 do times := 0\n"
             f"initial marked state up {{ on response from bump{number} if full do times := 0"
             f" on response from bump{number} do times := times + step goto off }}\n"
             f"state off {{ transition if times > step goto up on request to lamp{number} goto up }}\n}}\n}}"
@@ -144,7 +147,10 @@ class SecondWriter(Writer):
             component = Component(
                 f"{name}I{index}", list(made), [Variable("times", INTEGER, may_be_needed=True)], ["up", "off"]
             )
-            component.text = f'component {component.name} is {name}("/{name.lower()}{index}", {self.one([1, 2, 3])})'
+            given = self.one(
+                ["1", "2", "3", "k0 - 1, k0", "most: 1 + 1, limit: k1 * 3", "3, 1, 0.25 + k1", "2, limit: k1"]
+            )
+            component.text = f'component {component.name} is {name}("/{name.lower()}{index}", {given})'
             self.templates.append(component.text)
             self.components.append(component)
         word = self.one(["all", "any"])

@@ -1,7 +1,8 @@
-"""Issue 13: what CIF's real tools say of random specifications, and of what is written for them."""
+"""What CIF's real tools say of random specifications, and of what is written for them."""
 
 from __future__ import annotations
 
+from math import prod
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -9,12 +10,18 @@ import pytest
 from click.testing import CliRunner
 
 from robosc.cli import main
+from robosc.configuration import Configuration
+from robosc.m2t import cif
+from robosc.metamodel import expression as ex
 from tests.cif.comparing import reading_of
 from tests.cif.escet import CONTROLLER_CHECK, Tools, home
 from tests.cif.random_specifications import Specification
+from tests.fuzz.valid import checked
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+
+    from robosc.metamodel import sct
 
 pytestmark = [
     pytest.mark.slow,
@@ -67,6 +74,34 @@ def test_what_is_written_of_specifications_is_valid(tools: Tools, tmp_path: Path
             assert call.status == 0, call.output
             valid += 1
     assert valid > 10
+
+
+def _values(parameter: sct.Input) -> int:
+    """How many values an input has."""
+    declared = parameter.type
+    if isinstance(declared, ex.IntegerType):
+        return declared.maximum - declared.minimum + 1
+    return len(declared.enumeration.literals) if isinstance(declared, ex.EnumerationType) else 2
+
+
+@pytest.mark.parametrize("start", range(0, 40, 10))
+def test_random_robots_have_as_many_states(tools: Tools, tmp_path: Path, start: int) -> None:
+    """To CIF the values of inputs are part of a state, each of them at any time."""
+    compared = 0
+    for seed in range(start, start + 10):
+        _, robot = checked(seed, tmp_path / "robot.rscd")
+        if robot is not None:
+            model = robot.models.sct
+            name = model.name
+            for file, text in cif.generate(robot.models, Configuration()).items():
+                (tmp_path / file).write_text(text)
+            told = prod(_values(one) for plant in model.plants for event in plant.events for one in event.inputs)
+            found = tools.synthesize(tmp_path / f"{name}.cif")
+            assert found.states == model.supervisor.controlledStates * told, f"seed {seed}: {found.call.output}"
+            valid = tools.is_valid(tmp_path / f"{name}.supervised.cif")
+            assert valid.status == 0, f"seed {seed}: {valid.output}"
+            compared += 1
+    assert compared > 2
 
 
 @pytest.mark.parametrize("path", sorted((_ROOT / "examples").glob("*/*.rscd")), ids=lambda path: str(path.stem))
