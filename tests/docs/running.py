@@ -51,7 +51,10 @@ class Desk:
         """Puts a block's text into the file that its mark names."""
         path = self.place(block) / block.marks["file"]
         path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(block.text, encoding="utf-8")
+        text = block.text
+        if block.kind == "diff":
+            text = changed(path.read_text(encoding="utf-8"), text)
+        path.write_text(text, encoding="utf-8")
 
     def run(self, command: str, folder: Path) -> tuple[int, str]:
         """Exit status and output of a command: in this process where it is a plain call of robosc, else by a shell."""
@@ -80,6 +83,15 @@ class Desk:
         return ended.returncode, ended.stdout
 
 
+def changed(text: str, diff: str) -> str:
+    """A text with one hunk of a diff applied, which has its place there once."""
+    old, new = (
+        "".join(line[1:] for line in diff.splitlines(keepends=True) if line[0] in signs) for signs in ("- ", "+ ")
+    )
+    assert text.count(old) == 1, old
+    return text.replace(old, new)
+
+
 def commands(block: Block) -> list[tuple[str, str | None]]:
     """The commands of a block, each with what the page shows that it prints, if it does."""
     if block.kind == "console":
@@ -93,6 +105,8 @@ def commands(block: Block) -> list[tuple[str, str | None]]:
 
 def matches(told: str, shown: str) -> bool:
     """Whether a program told what a page shows; `...` there stands for anything, alone on a line for any lines."""
+    if not shown.strip():
+        return not told.strip()
     lines = [re.escape(line.rstrip()).replace(re.escape("..."), ".*") for line in shown.strip().splitlines()]
     pattern = "".join("(?:.*\n)*" if line == ".*" else f"{line} *\n" for line in lines)
     return re.fullmatch(pattern, re.sub(r" +$", "", told.strip(), flags=re.MULTILINE) + "\n") is not None
