@@ -40,6 +40,7 @@ _COMMANDS = {
     "view": "See the supervised robot decide, in a browser.",
     "dap": "Debug a robot in an editor.",
     "run": "Be a robot's controller on ROS, without a build.",
+    "interfaces": "Build ROS 2 types of your own, without colcon.",
     "format": "Lay out models in the one canonical way.",
     "rule": "Say what a rule means.",
     "lsp": "Serve an editor: findings while typing, completion, and more.",

@@ -25,6 +25,7 @@ COMMANDS = [
     "view",
     "dap",
     "run",
+    "interfaces",
     "format",
     "rule",
     "lsp",

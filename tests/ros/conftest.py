@@ -100,6 +100,8 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 def needs_ros1_workspace(item: pytest.Item) -> bool:
     """Whether a test runs what is compiled in the workspace of ROS 1."""
+    if HERE not in item.path.parents:
+        return False
     return "ros1_workspace" in getattr(item, "fixturenames", ()) or "ros1" in parameters(item).values()
 
 

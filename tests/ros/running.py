@@ -98,8 +98,7 @@ def ros2_modules(ros: Ros, folder: Path) -> str:
     """The Python modules of `interfaces/ros2`, made in a folder if they are not there: where they are."""
     modules = folder / "modules"
     if not modules.exists():
-        packages = sorted((HERE / "interfaces" / "ros2").iterdir())
-        _done(ros, [ros.python, "-m", "robosc.runtime.ros2.interfaces", modules, *packages])
+        _done(ros, [ros.python, "-m", "robosc", "interfaces", "build", HERE / "interfaces" / "ros2", "-o", modules])
     return str(modules)
 
 

@@ -59,7 +59,7 @@ def build(workspace: Workspace, *arguments: str) -> subprocess.CompletedProcess[
     return subprocess.run(
         ["catkin_make", *arguments],
         cwd=workspace.folder,
-        env=workspace.ros.environment,
+        env={**workspace.environment(), "ROS_IP": "127.0.0.1", "ROS_HOSTNAME": "127.0.0.1"},
         capture_output=True,
         text=True,
         check=False,
@@ -169,6 +169,27 @@ def test_what_the_package_does_not_declare_is_listed(model_workspace: Workspace)
         assert done.returncode != 0
         listed = [line for line in done.stderr.splitlines() if line.startswith("  <")]
         assert listed == ["  <depend>geometry_msgs</depend>", "  <exec_depend>roscpp</exec_depend>"]
+    assert build(model_workspace).returncode == 0
+
+
+def test_traces_are_played(model_workspace: Workspace) -> None:
+    """Against the node that is part of the package, by the generated test."""
+    package = model_workspace.folder / "src" / "ros1" / "follower_robot"
+    script, manifest = package / "CMakeLists.txt", package / "package.xml"
+    needed = "".join(f"  <test_depend>{name}</test_depend>\n" for name in ("rosgraph_msgs", "rospy", "rostest"))
+    text = manifest.read_text(encoding="utf-8").replace("</package>", f"{needed}</package>")
+    asked = script.read_text(encoding="utf-8").replace(".rscd)", ".rscd TESTS)")
+    with touched_later(script, asked), touched_later(manifest, text):
+        done = build(model_workspace, "run_tests_follower_robot")
+        results = model_workspace.folder / "build" / "test_results"
+        told = subprocess.run(
+            ["catkin_test_results", results],
+            env=model_workspace.environment(),
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        assert "Summary: 2 tests, 0 errors, 0 failures, 0 skipped" in told.stdout, done.stdout + told.stdout
     assert build(model_workspace).returncode == 0
 
 

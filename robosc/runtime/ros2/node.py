@@ -70,7 +70,7 @@ class Ros2Node(Node):
 
     type_hint = (
         "build the package with colcon and source its install/setup, with this same Python; or, without colcon, build"
-        " its modules with `python -m robosc.runtime.ros2.interfaces OUT PACKAGE` and put OUT on PYTHONPATH"
+        " its modules with `robosc interfaces build FOLDER -o OUT` and put OUT on PYTHONPATH"
     )
     refusals = (
         ValueError,

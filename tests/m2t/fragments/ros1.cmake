@@ -65,11 +65,9 @@ install(FILES ${CMAKE_CURRENT_LIST_DIR}/config/porter_controller.yaml
 if(CATKIN_ENABLE_TESTING)
   find_package(rostest REQUIRED)
   # rostest looks for the player among the programs of the package.
-  foreach(script porter_controller_play_trace.py trace_player.py)
-    file(COPY ${CMAKE_CURRENT_LIST_DIR}/test/${script}
-      DESTINATION ${CATKIN_DEVEL_PREFIX}/${CATKIN_PACKAGE_BIN_DESTINATION}
-      FILE_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
-  endforeach()
+  file(MAKE_DIRECTORY ${CATKIN_DEVEL_PREFIX}/${CATKIN_PACKAGE_BIN_DESTINATION})
+  file(CREATE_LINK ${CMAKE_CURRENT_LIST_DIR}/test/porter_controller_play_trace.py
+    ${CATKIN_DEVEL_PREFIX}/${CATKIN_PACKAGE_BIN_DESTINATION}/porter_controller_play_trace.py SYMBOLIC)
   # Each trace is played against a node of its own, also the logs of robots that are put into the package.
   file(GLOB traces CONFIGURE_DEPENDS
     ${CMAKE_CURRENT_LIST_DIR}/test/traces/*.jsonl
