@@ -17,7 +17,15 @@ if TYPE_CHECKING:
 
 @click.group("interfaces")
 def command() -> None:
-    """Messages, services and actions of your own."""
+    """Messages, services and actions of your own.
+
+    \b
+    Examples:
+      robosc interfaces build my_msgs
+      robosc interfaces build --help
+
+    Exit status: 0 done, 2 a wrong call, or packages that can't be built.
+    """
 
 
 @command.command("build")
