@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 #: For each element that a product speaks of, the codes it may have.
 Product: TypeAlias = "dict[Domain, Ranges]"
+#: An element with one value, and where it has it.
+_Literal: TypeAlias = "tuple[Domain, Diagram]"
 
 
 def separating_expression(
@@ -54,6 +56,8 @@ class _Cover:
         self._spared = spared
         self._cube = encoding.diagrams.cube(level for domain in domains for level in domain.levels)
         self._domains = sorted(domains, key=_telling)
+        #: For each domain the variables of the others.
+        self._others: dict[Domain, Diagram] = {}
 
     def products(self) -> Iterator[Product]:
         """Every product covers some state that those before it do not; after the last all are covered."""
@@ -85,28 +89,45 @@ class _Cover:
 
     def _grown(self, state: Mapping[Element, int]) -> Product:
         """The state's product without the elements that need not be spoken of."""
-        literals = [(domain, [(state[domain.element],) * 2]) for domain in self._domains]
-        rest = [self._encoding.diagrams.true]
-        for domain, ranges in reversed(literals):
-            rest.append(rest[-1] & self._values(domain, ranges))
-        hit, kept = self._spared, {}
-        for (domain, ranges), following in zip(literals, reversed(rest[:-1]), strict=True):
-            if (hit & following).satisfiable():
-                hit &= self._values(domain, ranges)
-                kept[domain] = ranges
-        return kept
+        literals = [(domain, self._encoding.has_code(domain.element, state[domain.element])) for domain in self._domains]
+        kept = self._needed(literals, self._spared)
+        return {domain: [(state[domain.element],) * 2] for domain, _ in kept}
+
+    def _needed(self, literals: Sequence[_Literal], spared: Diagram) -> list[_Literal]:
+        """Of literals that leave none of some states those that are left when each is dropped that need not be there.
+
+        From the first to the last, half by half: most are dropped many at once (Junker: QuickXplain, AAAI 2004).
+        """
+        if not spared.satisfiable():
+            return []
+        if len(literals) == 1:
+            return [*literals]
+        middle = len(literals) // 2
+        first, last = literals[:middle], literals[middle:]
+        kept = self._needed(first, spared & self._all(last))
+        return kept + self._needed(last, spared & self._all(kept))
+
+    def _all(self, literals: Sequence[_Literal]) -> Diagram:
+        """Where all of them hold: from the bottom, so that each conjunction makes but one level anew."""
+        ascending = sorted(literals, key=lambda literal: literal[0].levels, reverse=True)
+        return self._encoding.diagrams.all_of(holds for _, holds in ascending)
 
     def _widened(self, product: Product) -> Product:
         """The product with all values for each element that the other elements leave free."""
-        for domain in list(product):
-            others = {other: ranges for other, ranges in product.items() if other is not domain}
-            taken = self._values_in(self._states(others) & self._spared, domain)
-            product[domain] = complement(taken, domain.size)
+        all_after = [self._encoding.diagrams.true]
+        for domain in reversed(product):
+            all_after.append(all_after[-1] & self._values(domain, product[domain]))
+        before = self._spared
+        for domain, after in zip(list(product), reversed(all_after[:-1]), strict=True):
+            product[domain] = complement(self._values_in(before & after, domain), domain.size)
+            before &= self._values(domain, product[domain])
         return product
 
     def _values_in(self, states: Diagram, domain: Domain) -> Ranges:
         """The codes that an element has in the states."""
-        others = self._cube.exists(self._encoding.diagrams.cube(domain.levels))
+        others = self._others.get(domain)
+        if others is None:
+            others = self._others[domain] = self._cube.exists(self._encoding.diagrams.cube(domain.levels))
         return codes(states.exists(others), domain)
 
     def _states(self, product: Product) -> Diagram:
