@@ -148,17 +148,20 @@ class Specification:
     def lookup(self, name: str, read: Any, scope: Scope) -> Name:
         """The same of its text."""
         first, *others = name.lstrip(".^").split(".")
-        known: Scope | None = self.root if name[0] in ".^" else scope
+        known: Scope | None = self._beginning(name, scope)
         found: Name | None = None
         seen: set[str] = set()
         while known is not None and found is None:
             found = known.names.get(first)
             seen.update(known.names)
-            known = known.around
+            known = None if name[0] in ".^" else known.around
         if found is None:
-            raise CifFaultError(
-                read, "unresolved-reference", f"there is no `{first}` here", did_you_mean(first, seen, cutoff=0.7)
-            )
+            repair = did_you_mean(first, seen, cutoff=0.7)
+            if repair is None and name[0] == "." and first in self.root.names:
+                repair = Repair(
+                    f"in a definition `.` begins there; from the file's root it is `^{name[1:]}`", f"^{name[1:]}"
+                )
+            raise CifFaultError(read, "unresolved-reference", f"there is no `{first}` here", repair)
         whole = first
         for part in others:
             inside = self.resolved(found)
@@ -174,6 +177,14 @@ class Specification:
                 raise CifFaultError(read, "unresolved-reference", f"there is no `{part}` in `{inside.path}`", repair)
             found, whole = inside.names[part], f"{whole}.{part}"
         return self.resolved(found)
+
+    def _beginning(self, name: str, scope: Scope) -> Scope:
+        """Where a name is looked up first: with `^` the root, with `.` the definition around, or else the root."""
+        if name[0] == "^":
+            return self.root
+        while name[0] == "." and scope.definition is None and scope.around is not None:
+            scope = scope.around
+        return scope
 
     def resolved(self, found: Name) -> Name:
         """What a parameter that is no algebraic one stands for, through all instances."""

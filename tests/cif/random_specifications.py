@@ -518,9 +518,9 @@ class Specification:
         lines += [f"marked {term.text};" for term in self.marked]
         return [*map(self._absolute, lines), *self.extra]
 
-    def _absolute(self, text: str) -> str:
-        """The text with automata called by where they are."""
-        called = {name: f"h.{name}" if len(self.inside) % 2 else f".h.{name}" for name in self.inside}
+    def _absolute(self, text: str, root: str = ".") -> str:
+        """The text with automata called by where they are; what begins at the root in a definition begins with `^`."""
+        called = {name: f"h.{name}" if len(self.inside) % 2 else f"{root}h.{name}" for name in self.inside}
         return _AUTOMATON.sub(lambda match: called.get(match[0], match[0]), text)
 
     def _automaton(self, one: Automaton, definitions: list[str]) -> list[str]:
@@ -544,7 +544,7 @@ class Specification:
             own = re.compile(rf"(?<![\w.]){first.name}\.")
             body = [re.sub(rf"\bswitch {first.name}\b", "switch self", own.sub("", line)) for line in body]
             header = f"{first.kind} def D{first.name}({'; '.join(declared)}):"
-            definitions += [header, *map(self._absolute, body), "end"]
+            definitions += [header, *(self._absolute(line, "^") for line in body), "end"]
         return [f"{one.name}: D{first.name}({', '.join(given)});"]
 
     def _type(self, name: str) -> str | None:

@@ -71,6 +71,13 @@ COUNTS = {
         "one: P(g.c, g.h.u, 1 < 2, two.a); two: P(g.c, ^g.h.u, true, lone.in1);",
         2,
     ),
+    "names from the root of a definition, and of the file": (
+        "const int n = 0; controllable c;\n"
+        "plant def P(): const int n = 2; disc int[0..3] v = .n;\n"
+        "  location: initial; marked; edge c when v > ^n do v := v - 1; end\n"
+        "p: P();",
+        3,
+    ),
     "a definition of a group": (
         "group def G(int_ p; controllable c): invariants: plant_(c); requirement c needs p.here; end\n"
         "plant def plant_(event e): location: initial; marked; edge e; end\n"
