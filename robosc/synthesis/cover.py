@@ -89,7 +89,8 @@ class _Cover:
 
     def _grown(self, state: Mapping[Element, int]) -> Product:
         """The state's product without the elements that need not be spoken of."""
-        literals = [(domain, self._encoding.has_code(domain.element, state[domain.element])) for domain in self._domains]
+        elements = ((domain, domain.element) for domain in self._domains)
+        literals = [(domain, self._encoding.has_code(element, state[element])) for domain, element in elements]
         kept = self._needed(literals, self._spared)
         return {domain: [(state[domain.element],) * 2] for domain, _ in kept}
 
