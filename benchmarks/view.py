@@ -2,6 +2,7 @@
 
     python benchmarks/view.py [--components 100] [--flood SECONDS]
     python benchmarks/view.py --picture docs/pictures/view.png
+    python benchmarks/view.py --picture docs/pictures/view-robot.png --ros 1 --dark
     python benchmarks/view.py --recording docs/pictures/view.gif
 
 It needs Debian's `chromium`, `playwright` and the built page. Times are medians of five, in milliseconds: from asking
@@ -10,8 +11,9 @@ for the page until all is drawn, and from a call that lets 1,000 random events h
 With `--flood` a node's reports come to the page, 1,000 events a second in 100 reports, for so long: the frames that the
 browser draws a second, the memory of its scripts after each tenth of that time, and the processor time of the server.
 
-`--picture` draws the page of the line follower. `--recording` plays its scenario in the simulator, and films thirty
-seconds of its event log in the page, around the obstacle.
+`--picture` draws the page of the line follower: simulated, or with `--ros` beside `robosc run`, which drives the robot
+of the simulator over a real ROS until it halts for the obstacle. `--recording` plays its scenario in the simulator, and
+films thirty seconds of its event log in the page, around the obstacle.
 """
 
 from __future__ import annotations
@@ -193,25 +195,57 @@ def record(browser: Any, log: Path, film: Path) -> None:
     first.save(film, save_all=True, append_images=others, duration=1000 // _FRAMES, loop=0, optimize=True)
 
 
+def beside_a_robot(page: Any, version: int, folder: Path, picture: Path) -> None:
+    """Draws the page beside a node that drives, when it has halted for the obstacle."""
+    sys.path.insert(0, str(ROOT))
+    from benchmarks.watched import page_served  # noqa: PLC0415  # only here a ROS is needed
+    from tests.ros.installations import find_ros1  # noqa: PLC0415
+    from tests.ros.running import Runner, find_rclpy  # noqa: PLC0415
+    from tests.ros.workspaces import middleware  # noqa: PLC0415
+
+    found = find_ros1() if version == 1 else find_rclpy()
+    assert found.ros is not None, found.missing
+    runner = Runner(found.ros, sys.executable if version == 1 else found.ros.python, folder / "none")
+    with middleware(runner, folder, simulated=True) as processes, page_served(processes, runner, folder) as address:
+        page.goto(address)
+        page.wait_for_selector("body[data-drawn]")
+        processes.start(
+            "node", runner.node("line_follower_controller", *(["use_sim_time:=true"] if version == 2 else []))
+        )
+        options = ["--scenario", "line_follower", "--ros", str(version), "--speed", "5"]
+        processes.start("world", [found.ros.python, ROOT / "examples" / "simulator", *options])
+        command = '#commands > li[data-event="message_move.c_trigger"]'
+        page.wait_for_selector(f"{command}.allowed", timeout=120_000)
+        page.wait_for_selector(f'{command}.forbidden:has-text("Lidar.free")', timeout=120_000)
+        page.wait_for_selector('.current .title:text-is("blocked")', timeout=120_000)
+        page.screenshot(path=picture)
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--components", type=int, default=100)
     parser.add_argument("--picture", type=Path)
+    parser.add_argument("--ros", type=int, choices=[1, 2])
+    parser.add_argument("--dark", action="store_true")
     parser.add_argument("--recording", type=Path)
     parser.add_argument("--flood", type=float, metavar="SECONDS")
     options = parser.parse_args()
     with sync_playwright() as playwright, tempfile.TemporaryDirectory() as folder:
         browser = playwright.chromium.launch(executable_path="/usr/bin/chromium", args=["--no-sandbox"])
         if options.picture is not None:
-            with served(MODEL) as address:
-                page = browser.new_page(viewport={"width": 1280, "height": 760})
-                page.goto(address)
-                page.wait_for_selector("body[data-drawn][data-moment]")
-                page.get_by_role("button", name="20 random").click()
-                page.wait_for_selector('body[data-moment="20"]')
-                page.get_by_role("button", name="What would help?").first.click()
-                page.get_by_text("The shortest way there:").wait_for()
-                page.screenshot(path=options.picture)
+            size = {"width": 1280, "height": 780}
+            page = browser.new_page(viewport=size, color_scheme="dark" if options.dark else "light")
+            if options.ros is None:
+                with served(MODEL) as address:
+                    page.goto(address)
+                    page.wait_for_selector("body[data-drawn][data-moment]")
+                    page.get_by_role("button", name="20 random").click()
+                    page.wait_for_selector('body[data-moment="20"]')
+                    page.get_by_role("button", name="What would help?").first.click()
+                    page.get_by_text("The shortest way there:").wait_for()
+                    page.screenshot(path=options.picture)
+            else:
+                beside_a_robot(page, options.ros, Path(folder) / "run", options.picture)
             return
         if options.recording is not None:
             record(browser, Path(folder) / "events.jsonl", options.recording)

@@ -78,18 +78,24 @@ def _processor(pid: int) -> float:
 
 
 @contextmanager
-def _page(processes: Processes, runner: Runner, folder: Path) -> Iterator[None]:
-    """The page of `robosc view`, with a browser's stream of what it shows, from the first moment on."""
+def page_served(processes: Processes, runner: Runner, folder: Path) -> Iterator[str]:
+    """The address of the page of `robosc view` beside the line follower."""
     path = os.pathsep.join(filter(None, (str(ROOT), processes.environment.get("PYTHONPATH"))))
     command = ["env", f"PYTHONPATH={path}", runner.robosc, "-m", "robosc", "view", MODEL, f"--ros{runner.ros.version}"]
     process, log = processes.start("view", command), folder / "view.log"
     processes.wait_until(lambda: "http" in log.read_text(), "the page is served")
-    address = re.findall(r"^http\S+$", log.read_text(), re.MULTILINE)[-1]
-    with urlopen(f"{address}moments", timeout=60) as stream:  # noqa: S310  # loopback
-        while b'"event"' not in stream.readline():
-            pass
-        yield
+    yield re.findall(r"^http\S+$", log.read_text(), re.MULTILINE)[-1]
     processes.stop(process)
+
+
+@contextmanager
+def _page(processes: Processes, runner: Runner, folder: Path) -> Iterator[None]:
+    """The page, when it has shown what the node tells."""
+    with page_served(processes, runner, folder) as address:
+        with urlopen(f"{address}moments", timeout=60) as stream:  # noqa: S310  # loopback
+            while b'"event"' not in stream.readline():
+                pass
+        yield
 
 
 @contextmanager

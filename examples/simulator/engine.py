@@ -222,6 +222,13 @@ class WorldPort:
         del name
         return 0
 
+    def publish_statuses(self, statuses):
+        """Nobody listens."""
+
+    def status_listeners(self):
+        """Nobody."""
+        return 0
+
     def endpoints(self):
         """All fits."""
         return {}
