@@ -28,6 +28,7 @@ ROOMS = {
     "simulation",
     "debugger",
     "view",
+    "report",
     "diagrams",
     "editor",
     "m2t",
@@ -38,7 +39,7 @@ ROOMS = {
 }
 #: Rooms that see more than the ground, and what: the root is the public API, the command line is on top.
 ALLOWED = {
-    "": ROOMS - {"cli", "debugger", "editor", "view", "__main__"},
+    "": ROOMS - {"cli", "debugger", "editor", "view", "report", "__main__"},
     "__main__": {"cli"},
     "analysis": {"synthesis", "engine", "m2t"},
     "cif": {"language"},
@@ -48,6 +49,7 @@ ALLOWED = {
     "simulation": {"engine", "runtime", "analysis", "language"},
     "debugger": {"m2t", "analysis", "engine", "simulation"},
     "view": {"m2t", "analysis", "engine", "simulation", "diagrams"},
+    "report": {"m2t", "analysis", "engine", "node_tests", "simulation"},
     "cli": ROOMS - {"__main__"},
 }
 #: What executes a model, or generates what does, and so begins with making an engine model.
@@ -68,7 +70,7 @@ LIBRARIES = {
     "genpy": {"runtime"},
     "lsprotocol": {"editor"},
     "mcap": {"recordings"},
-    "jinja2": {"diagrams", "m2t"},
+    "jinja2": {"diagrams", "m2t", "report"},
     "networkx": {"diagrams"},
     "oxidd": {"synthesis"},
     "pydantic": {"configuration"},
@@ -202,6 +204,8 @@ OPENERS = {
     "node_tests.trace_player",  # ships with generated packages, and sees nothing of ours
     "analysis.verify.c_program",  # a temporary folder, here and in the next
     "analysis.verify.c_exploration",
+    "report.digests",  # what ships with the tool
+    "report.rendering",
     "extensions",  # what an installed package declares
 }
 

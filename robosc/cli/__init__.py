@@ -36,6 +36,7 @@ _COMMANDS = {
     "synthesize": "Show the supervisor.",
     "explain": "Say why something can't happen.",
     "verify": "Prove what the supervised robot promises.",
+    "report": "Write what one reads who must sign for the robot.",
     "simulate": "Try the supervised robot.",
     "view": "See the supervised robot decide, in a browser.",
     "dap": "Debug a robot in an editor.",
@@ -46,6 +47,8 @@ _COMMANDS = {
     "lsp": "Serve an editor: findings while typing, completion, and more.",
     "diagram": "Draw a model or a metamodel.",
 }
+#: Where a command stands in another module than that of its name: `report` collects findings.
+_MODULES = {"report": "safety_report"}
 
 
 def say(text: str = "", *, err: bool = False, nl: bool = True) -> None:
@@ -90,7 +93,7 @@ class _Commands(click.Group):
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         if cmd_name not in _COMMANDS:
             return None
-        command: click.Command = import_module(f"{__name__}.{cmd_name}").command
+        command: click.Command = import_module(f"{__name__}.{_MODULES.get(cmd_name, cmd_name)}").command
         return command
 
     def resolve_command(

@@ -21,6 +21,7 @@ COMMANDS = [
     "synthesize",
     "explain",
     "verify",
+    "report",
     "simulate",
     "view",
     "dap",

@@ -1,0 +1,80 @@
+"""`robosc report`; `robosc.cli.report` collects findings."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+import robosc.report as page
+from robosc import __version__
+from robosc.analysis.verify import Outcome, verify
+from robosc.cli import ERRORS_FOUND, interruption, put
+from robosc.cli.options import Paths, configuration, model, paths, synthesizer
+from robosc.cli.progress import progress
+from robosc.cli.reading import read_configuration, read_models, supervise_models
+from robosc.cli.report import Report
+from robosc.files import reading as files
+from robosc.files.writing import refuse, write_file
+
+
+@click.command("report")
+@model
+@click.option("-o", "--output", type=click.Path(dir_okay=False), help="The file.  [default: <robot>.report.html]")
+@click.option("--json", "as_object", is_flag=True, help="Print one JSON object instead of a page.")
+@click.option("--needs", type=click.Path(dir_okay=False), help="Write the needs of sphinx-needs to FILE, too.")
+@configuration
+@synthesizer
+@paths
+def command(
+    model: str,
+    output: str | None,
+    as_object: bool,
+    needs: str | None,
+    chosen: str | None,
+    paths: Paths,
+) -> None:
+    """Write what a person reads who must sign for the robot: one page of HTML that needs nothing else.
+
+    MODEL is what `verify` takes but CIF. The page tells of each requirement what it guards, what synthesis added, where
+    it stands in the generated code, what is proved of it, and where the generated tests saw it; what is assumed; how
+    much of the robot the tests cover; the digests of tool, model and generated files. docs/report.md says more.
+
+    \b
+    Examples:
+      robosc report line_follower.rscd
+      robosc report line_follower.rscd -o report.html --needs needs.json
+      robosc report line_follower.rscd --json | jq .coverage.transitions
+
+    Exit status: 0 done, 1 something is refuted or errors in the model, 2 a wrong call, 3 no supervisor exists.
+    """
+    with Report(aside=True) as report:
+        models = read_models(model, paths, report)
+        settings = read_configuration(model, chosen, report)
+        file = output or f"{models.sct.name}.report.html"
+        for written in (file, needs):
+            if written:
+                refuse(written)
+        supervise_models(models, report)
+        with progress("verifying"):
+            verdicts = verify(models, settings)
+        with progress("generating"):
+            texts = {_relative(model, name): files.read(name) for name in files.inputs()}
+            found = page.report(
+                models, settings, verdicts, texts=texts, version=__version__, interface_paths=paths.interfaces
+            )
+    interruption.check()
+    if needs:
+        write_file(needs, page.as_needs(found))
+    if as_object:
+        put(page.as_json(found), nl=False)
+    else:
+        write_file(file, page.as_html(found))
+    if any(verdict.outcome is Outcome.REFUTED for verdict in verdicts):
+        raise click.exceptions.Exit(ERRORS_FOUND)
+
+
+def _relative(model: str, name: str) -> str:
+    """The path of a file that was read as it is on every machine: below the model's folder, else its name."""
+    path, folder = Path(name).resolve(), Path(model).resolve().parent
+    return path.relative_to(folder).as_posix() if path.is_relative_to(folder) else path.name

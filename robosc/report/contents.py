@@ -1,0 +1,224 @@
+"""Collects the report, as plain data that is the same on every run."""
+
+from __future__ import annotations
+
+from pathlib import PurePath
+from typing import TYPE_CHECKING, Any
+
+from robosc.analysis.verify.properties import requirement_identifier, requirement_name
+from robosc.analysis.wording import words
+from robosc.diagnostics import has_errors
+from robosc.engine import Engine
+from robosc.m2t.targets import TARGETS, together
+from robosc.metamodel import sct
+from robosc.metamodel.places import place
+from robosc.report import digests, printing
+from robosc.report.playing import play
+from robosc.semantics.durations import timer_text
+from robosc.semantics.printing import RobotPrinter
+from robosc.semantics.roles import event_name, plant_of
+from robosc.semantics.walks import copied
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from robosc.analysis.verify import Verdict
+    from robosc.configuration import Configuration
+    from robosc.m2t.models import Models
+    from robosc.metamodel import rosgraph
+    from robosc.report.playing import Shown
+
+#: What the report begins with.
+NOTICE = (
+    "This is not a safety certificate, and the controller is not a safety-rated one: it is ordinary software on "
+    "ordinary hardware. Functions that people's safety depends on belong into safety-rated parts of the robot."
+)
+#: What is generated for the report; where ROS has no part in the model, those that don't need it.
+_TARGETS = ("supervisor", "cif", "ros1", "ros2")
+
+
+def report(  # noqa: PLR0913 - all that a report is of
+    models: Models,
+    configuration: Configuration,
+    verdicts: Sequence[Verdict],
+    *,
+    texts: Mapping[str, str | bytes],
+    version: str,
+    interface_paths: Sequence[str] = (),
+) -> dict[str, Any]:
+    """What is to be read about a model with its supervisor, by these verdicts of `verify`.
+
+    `texts` are the files that it was read from, by path, `version` is that of the tool, ROS types are looked up in
+    `interface_paths`, too. Everything is generated once more, with tests, in memory; what a precondition refuses is
+    left out, and said. Raises what `verify` raises.
+    """
+    outputs, refused, missed = _generated(models, configuration, interface_paths)
+    traces = {path: text for path, text in outputs.items() if path.endswith(".jsonl")}
+    # Packages of both ROS have the same traces.
+    different = {text: path for path, text in reversed(traces.items())}
+    shown = play(models, {path: text for path, text in traces.items() if different[text] == path})
+    told = {path: printing.comments(text) for path, text in outputs.items() if path.endswith((".c", ".h"))}
+    model = models.sct
+    stated = [*model.requirements, *model.invariants, *model.properties]
+    return {
+        "notice": NOTICE,
+        "robot": model.name,
+        "requirements": _requirements(model, stated, verdicts, shown, told),
+        "verdicts": [
+            {
+                "property": verdict.property,
+                "outcome": verdict.outcome.value,
+                "evidence": verdict.evidence,
+                "explanation": verdict.explanation or None,
+                "requirement": verdict.requirement or None,
+            }
+            for verdict in verdicts
+        ],
+        "assumptions": _assumptions(models, configuration),
+        "coverage": {
+            "traces": sorted(different.values()),
+            "missed": missed,
+            **shown.coverage(model, Engine(model).executed),
+        },
+        "digests": {
+            "tool": {"name": "robosc", "version": version, "sha256": digests.of_tool()},
+            "model": digests.of_files(texts),
+            "outputs": digests.of_files(outputs),
+            "refused": refused,
+        },
+    }
+
+
+def _generated(
+    models: Models, configuration: Configuration, interface_paths: Sequence[str]
+) -> tuple[dict[str, str], list[dict[str, str]], list[str]]:
+    """The text of each file by its path; what is not generated, and why; what the tests could show and do not."""
+    missed: dict[str, None] = {}
+    files: dict[str, str] = {}
+    refused = []
+    with together():
+        for target in (TARGETS[name] for name in _TARGETS):
+            if target.needs_graph and models.rosgraph is None:
+                continue
+            found = target.findings(models, configuration)
+            if has_errors(found):
+                refused.append({"target": target.name, "reason": found[0].message})
+                continue
+            tests = target.tests(models, configuration, interface_paths)
+            missed |= dict.fromkeys(tests.missed if tests else ())
+            made = target.files(models, configuration, tests=tests)
+            folder = target.folder(models, configuration)
+            files |= {f"{folder}/{path}" if folder else path: text for path, text in made.items()}
+    return files, refused, list(missed)
+
+
+def _requirements(
+    model: sct.SupervisoryControlModel,
+    stated: Sequence[sct.StatedRequirement],
+    verdicts: Sequence[Verdict],
+    shown: Shown,
+    told: Mapping[str, list[tuple[int, str]]],
+) -> list[dict[str, Any]]:
+    """One entry for each requirement and property of the text: several of the model may come from one."""
+    guards = {guard.event: guard for guard in model.supervisor.guards} if model.supervisor else {}
+    grouped: dict[str, list[sct.StatedRequirement]] = {}
+    for one in stated:
+        grouped.setdefault(requirement_identifier(one), []).append(one)
+    by_property = {verdict.property: verdict.outcome.value for verdict in verdicts}
+    found = []
+    for name, parts in grouped.items():
+        file, span = place(parts[0])
+        generated: dict[str, set[int]] = {}
+        for part in parts:
+            for path, lines in printing.places(part, told).items():
+                generated.setdefault(path, set()).update(lines)
+        about = [verdict for verdict in verdicts if verdict.requirement == name]
+        found.append(
+            {
+                "name": name,
+                "kind": _kind(parts[0]),
+                "texts": list(dict.fromkeys(part.text or requirement_name(part) for part in parts)),
+                "file": PurePath(file).name,
+                "line": span.line,
+                "events": [
+                    {**_guarded(part, guards, shown), "verdict": by_property.get(requirement_name(part))}
+                    for part in parts
+                    if isinstance(part, sct.Requirement)
+                ],
+                "verdicts": [{"property": one.property, "outcome": one.outcome.value} for one in about],
+                "generated": [{"path": path, "lines": sorted(generated[path])} for path in sorted(generated)],
+            }
+        )
+    return found
+
+
+def _kind(stated: sct.StatedRequirement) -> str:
+    match stated:
+        case sct.Requirement():
+            return "requirement"
+        case sct.StateInvariant():
+            return "state requirement"
+    return "property"
+
+
+def _guarded(requirement: sct.Requirement, guards: Mapping[sct.Event, sct.EventGuard], shown: Shown) -> dict[str, Any]:
+    """What the requirement does to its event, what synthesis added to that, and what the tests saw."""
+    guard = guards.get(requirement.event)
+    added = None if guard is None or guard.synthesis is None else RobotPrinter()(copied(guard.synthesis))
+    seen = {}
+    for word, where in (("allowed", shown.allowed), ("forbidden", shown.forbidden)):
+        path, line = where.get(requirement, ("", 0))
+        seen[word] = {"path": path, "line": line} if path else None
+    return {
+        "event": event_name(requirement.event),
+        "meaning": words(requirement.event),
+        "condition": f"{requirement.kind.name} {RobotPrinter()(copied(requirement.condition))}",
+        "added_by_synthesis": added,
+        "why": (guard.explanation or None) if guard and added else None,
+        "tests": seen,
+    }
+
+
+def _assumptions(models: Models, configuration: Configuration) -> dict[str, Any]:
+    model, graph = models.sct, models.rosgraph
+    events = [event for plant in model.plants for event in plant.events]
+    overridden = _overridden(model, graph, configuration.on_shutdown)
+    return {
+        "uncontrollable": [event_name(event) for event in events if not event.controllable],
+        "timeouts": [
+            {"event": event_name(event), "time": timer_text(event.timer)} for event in events if event.timer is not None
+        ],
+        "marked": [
+            {"plant": plant.origin or plant.name, "states": [place.name for place in plant.locations if place.marked]}
+            for plant in model.plants
+            if len(plant.locations) > 1 and plant.kind != sct.PlantKind.data
+        ],
+        "watchdogs": [
+            {"topic": topic, "milliseconds": milliseconds}
+            for topic, milliseconds in sorted(configuration.watchdog_ms.items())
+        ],
+        "watchdog_stops": configuration.watchdog_stops,
+        "on_shutdown": list(configuration.on_shutdown),
+        "overridden": overridden,
+        "deadlines_ms": {
+            "period": configuration.control_loop.period_ms,
+            "service": configuration.services.timeout_ms,
+            "action": configuration.actions.timeout_ms,
+            "retry": configuration.retry_ms,
+        },
+    }
+
+
+def _overridden(
+    model: sct.SupervisoryControlModel, graph: rosgraph.RosGraph | None, messages: Sequence[str]
+) -> list[str]:
+    """The requirements that what goes out on shutdown is sent regardless of."""
+    if graph is None:
+        return []
+    named = {*messages}
+    return [
+        requirement_identifier(requirement)
+        for requirement in model.requirements
+        if plant_of(requirement.event).name.removeprefix("message_") in named
+        or (plant_of(requirement.event).origin or "").rpartition(".")[2] in named
+    ]

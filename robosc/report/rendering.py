@@ -1,0 +1,93 @@
+"""The report as one page of HTML, as JSON, and as needs of sphinx-needs."""
+
+from __future__ import annotations
+
+import json
+import re
+from base64 import b64encode
+from hashlib import sha256
+from typing import TYPE_CHECKING, Any
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+from robosc.diagnostics.visible import visible
+from robosc.files.resources import locate
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+
+def as_json(found: Mapping[str, Any]) -> str:
+    """JSON for programs; its schema is `report.schema.json`."""
+    return json.dumps(found, indent=2, ensure_ascii=False) + "\n"
+
+
+def as_html(found: Mapping[str, Any]) -> str:
+    """One page that needs nothing else: no script, no font, no picture from elsewhere.
+
+    What comes from a model is escaped, and its content security policy lets nothing run or load: the hash of its one
+    style sheet is all that it allows.
+    """
+    folder = locate("report/templates")
+    environment = Environment(
+        loader=FileSystemLoader(folder),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+        autoescape=True,
+    )
+    environment.filters["visible"] = visible
+    style = (folder / "report.css").read_text(encoding="utf-8")
+    allowed = b64encode(sha256(style.encode()).digest()).decode("ascii")
+    page = environment.get_template("report.html.j2")
+    return page.render(**found, style=style, style_hash=allowed, outcomes=_outcomes(found))
+
+
+def _outcomes(found: Mapping[str, Any]) -> dict[str, int]:
+    """How many verdicts there are of each outcome."""
+    told = [verdict["outcome"] for verdict in found["verdicts"]]
+    return {outcome: told.count(outcome) for outcome in ("proved", "sampled", "skipped", "refuted")}
+
+
+def as_needs(found: Mapping[str, Any]) -> str:
+    """The requirements, and a test case for each verdict about one, as sphinx-needs reads them (`needimport`)."""
+    needs: dict[str, dict[str, Any]] = {}
+    names = {one["name"]: _identifier("REQ", found["robot"], one["name"]) for one in found["requirements"]}
+    for requirement in found["requirements"]:
+        outcomes = [verdict["outcome"] for verdict in requirement["verdicts"]]
+        needs[names[requirement["name"]]] = {
+            "id": names[requirement["name"]],
+            "type": "req",
+            "title": requirement["name"],
+            "content": "\n\n".join(map(visible, requirement["texts"])),
+            "status": _status(outcomes),
+            "tags": [requirement["kind"].replace(" ", "_"), found["robot"]],
+            "links": [],
+        }
+    for number, verdict in enumerate(found["verdicts"], 1):
+        identifier = _identifier("TEST", found["robot"], str(number))
+        needs[identifier] = {
+            "id": identifier,
+            "type": "test",
+            "title": visible(verdict["property"]),
+            "content": visible(verdict["explanation"] or verdict["evidence"]),
+            "status": verdict["outcome"],
+            "tags": ["robosc_verify", found["robot"]],
+            "links": [names[verdict["requirement"]]] if verdict["requirement"] in names else [],
+        }
+    version = found["digests"]["tool"]["version"]
+    held = {"needs": needs, "needs_amount": len(needs)}
+    answer = {"project": found["robot"], "current_version": version, "versions": {version: held}}
+    return json.dumps(answer, indent=2, ensure_ascii=False) + "\n"
+
+
+def _identifier(prefix: str, robot: str, name: str) -> str:
+    """An identifier of capital letters, digits and underscores, as sphinx-needs asks for by default."""
+    plain = re.sub(r"[^A-Z0-9]+", "_", f"{prefix}_{robot}_{name}".upper()).strip("_")
+    return f"{plain}_{sha256(name.encode()).hexdigest()[:6].upper()}" if prefix == "REQ" else plain
+
+
+def _status(outcomes: list[str]) -> str:
+    """The worst of the outcomes."""
+    return next((one for one in ("refuted", "skipped", "sampled", "proved") if one in outcomes), "open")

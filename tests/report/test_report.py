@@ -1,0 +1,236 @@
+"""The report says what verify says, what the generated code says, and what the tests show, measured another way."""
+
+import json
+import re
+import shutil
+import subprocess
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import pytest
+from click.testing import CliRunner
+from jsonschema import Draft202012Validator
+
+from robosc.cli import main
+from robosc.configuration import Configuration
+from robosc.engine import Engine
+from robosc.m2t import supervisor
+from robosc.m2t.c.names import CNames
+from robosc.m2t.models import Models
+from robosc.node_tests.trace_test import trace_test
+from robosc.report import as_html, as_needs, digests
+from robosc.simulation import Simulation
+from robosc.simulation.script import read_script
+from tests.chromium import chromium  # noqa: F401  # a fixture
+from tests.examples.conftest import MODELS, PAGES, models_of
+
+ROOT = Path(__file__).parents[2]
+QUICK = "supervised_line_follower"
+#: With other robots, in a run of all tests.
+EACH = [QUICK, *(pytest.param(name, marks=pytest.mark.slow) for name in PAGES if name != QUICK)]
+
+
+@cache
+def told(name: str) -> dict[str, Any]:
+    done = CliRunner().invoke(main, ["report", str(MODELS[name]), "--json"])
+    assert done.exit_code == 0, done.output
+    return json.loads(done.stdout)
+
+
+@pytest.mark.parametrize("name", EACH)
+def test_the_json_keeps_its_schema(name: str) -> None:
+    schema = json.loads((ROOT / "robosc/schemas/report.schema.json").read_text())
+    Draft202012Validator.check_schema(schema)
+    Draft202012Validator(schema).validate(told(name))
+
+
+@pytest.mark.parametrize("name", EACH)
+def test_its_verdicts_are_those_of_verify(name: str) -> None:
+    done = CliRunner().invoke(main, ["verify", str(MODELS[name]), "--json"])
+    keys = ("property", "outcome", "evidence")
+    ours = [[one[key] for key in keys] for one in told(name)["verdicts"]]
+    assert ours == [[one[key] for key in keys] for one in json.loads(done.stdout)["properties"]]
+    by_requirement = [verdict for one in told(name)["requirements"] for verdict in one["verdicts"]]
+    assert len(by_requirement) == sum(one["requirement"] is not None for one in told(name)["verdicts"])
+
+
+@pytest.mark.parametrize("name", EACH)
+def test_the_lines_speak_of_the_requirement(name: str, tmp_path: Path) -> None:
+    targets = "supervisor,ros1,ros2"
+    done = CliRunner().invoke(main, ["transform", str(MODELS[name]), "--to", targets, "-o", str(tmp_path)])
+    assert done.exit_code == 0, done.output
+    robot = models_of(name).sct
+    for one in told(name)["requirements"]:
+        assert one["generated"] or not one["events"]
+        for place in one["generated"]:
+            lines = (tmp_path / place["path"]).read_text().splitlines()
+            for number in place["lines"]:
+                around = " ".join(line.strip(" /*") for line in lines[number - 1 : number + 12])
+                assert any(text in " ".join(around.split()) for text in one["texts"]), (place, one["texts"])
+    assert robot.name == told(name)["robot"]
+
+
+@pytest.mark.parametrize("name", EACH)
+def test_the_digests_are_those_of_what_is_written(name: str, tmp_path: Path) -> None:
+    targets = "supervisor,cif,ros1,ros2"
+    call = ["transform", str(MODELS[name]), "--to", targets, "--with-tests", "-o", str(tmp_path)]
+    assert CliRunner().invoke(main, call).exit_code == 0
+    for file in told(name)["digests"]["outputs"]:
+        assert digests.digest((tmp_path / file["path"]).read_bytes()) == file["sha256"], file
+    read = {file["path"]: file["sha256"] for file in told(name)["digests"]["model"]}
+    assert read[MODELS[name].name] == digests.digest(MODELS[name].read_bytes())
+
+
+def trace_of(models: Models, path: str) -> str:
+    """A trace of the tests of a package, by its path among what is generated."""
+    assert models.rosgraph is not None
+    version = int(path.removeprefix("ros")[0])
+    return trace_test(models.rosgraph, Configuration(), version).files[f"traces/{path.rpartition('/')[2]}"]
+
+
+DRIVER = """\
+#include "{prefix}_supervisor.h"
+#include <stdio.h>
+#include <string.h>
+
+int main(void)
+{{
+    {prefix}_supervisor robot;
+    {prefix}_event event;
+    int number;
+    long value;
+    {prefix}_init(&robot, NULL, NULL{now});
+    do {{
+{asked}
+        if (scanf("%d", &number) != 1) {{
+            return 0;
+        }}
+        event = ({prefix}_event)number;
+{inputs}
+    }} while ({prefix}_perform(&robot, event{now}));
+    return 1;
+}}
+"""
+
+
+@pytest.mark.build
+@pytest.mark.parametrize("name", EACH)
+def test_gcov_counts_as_often_that_a_guard_is_true(name: str, tmp_path: Path) -> None:
+    """The C engine, compiled to count its lines, performs the trace; each guard is asked in each of the states."""
+    if shutil.which("gcc") is None or shutil.which("gcov") is None:
+        pytest.skip("there is no gcc with gcov")
+    models = models_of(name)
+    files = supervisor.generate(models, Configuration())
+    for path, text in files.items():
+        (tmp_path / path).write_text(text)
+    engine, names = Engine(models.sct), CNames(models.sct)
+    numbers = {event.name: number for number, event in enumerate(engine.executed.events)}
+    guards = told(name)["coverage"]["guards"]
+    asked = "".join(
+        f"        if ({names.prefix}_enabled(&robot, ({names.prefix}_event){numbers[guard['event']]})) {{\n"
+        f"            (void)0, number = {place}; /* true {place} */\n"
+        f"        }} else {{\n            (void)0, number = {place}; /* false {place} */\n        }}\n"
+        for place, guard in enumerate(guards)
+    )
+    declared = list(engine.executed.inputs)
+    inputs = "".join(
+        f'        if (scanf("%ld", &value) != 1) {{ return 1; }}\n        robot.inputs.{names.of(one)} = value;\n'
+        for one in declared
+    )
+    driver = DRIVER.format(
+        prefix=names.prefix, asked=asked, inputs=inputs, now=", 0U" if engine.executed.timers else ""
+    )
+    (tmp_path / "driver.c").write_text(driver)
+    source = f"{names.prefix}_supervisor.c"
+    subprocess.run(["gcc", "--coverage", "-O0", "-w", source, "driver.c", "-o", "driver"], cwd=tmp_path, check=True)
+    played = 0
+    for path in told(name)["coverage"]["traces"]:
+        simulation = Simulation(models.sct, models.rosgraph)
+        steps, _ = read_script("trace", trace_of(models, path), simulation.engine.events)
+        script = [
+            " ".join(map(str, (numbers[step.event], *simulation.engine.saved[1])))
+            for step in steps
+            if simulation.perform(step.event, step.data).accepted
+        ]
+        played += len(script)
+        # The counts of all runs are added up.
+        subprocess.run(["./driver"], cwd=tmp_path, input="\n".join(script), text=True, check=True)
+    subprocess.run(["gcov", "driver-driver.gcda"], cwd=tmp_path, check=True, capture_output=True)
+    counted = {}
+    for line in (tmp_path / "driver.c.gcov").read_text().splitlines():
+        found = re.match(r"\s*([\d#]+)\*?:.*/\* (true|false) (\d+) \*/", line)
+        if found:
+            counted[int(found[3]), found[2]] = int(found[1].replace("#####", "0"))
+    assert [[guard["true"], guard["false"]] for guard in guards] == [
+        [counted[place, "true"], counted[place, "false"]] for place in range(len(guards))
+    ]
+    assert told(name)["coverage"]["events"] == played
+
+
+@pytest.mark.parametrize("name", EACH)
+def test_the_page_opens_and_shows_the_numbers(name: str, chromium: Any, tmp_path: Path) -> None:  # noqa: F811
+    found, page = told(name), tmp_path / "report.html"
+    page.write_text(as_html(found), encoding="utf-8")
+    opened = chromium.new_page()
+    faults: list[str] = []
+    opened.on("console", lambda said: faults.append(said.text))
+    opened.on("pageerror", lambda error: faults.append(str(error)))
+    opened.goto(page.as_uri())
+    assert opened.inner_text("body").startswith(found["notice"])
+    shown = opened.eval_on_selector_all("tr[data-property]", "rows => rows.map(row => row.dataset.outcome)")
+    assert shown == [verdict["outcome"] for verdict in found["verdicts"]]
+    guards = opened.eval_on_selector_all("tr[data-guard]", "rows => rows.map(row => row.innerText)")
+    assert [list(map(int, row.split()[-2:])) for row in guards] == [
+        [guard["true"], guard["false"]] for guard in found["coverage"]["guards"]
+    ]
+    assert opened.locator("article").count() == len(found["requirements"])
+    assert opened.evaluate("getComputedStyle(document.querySelector('.notice')).borderLeftWidth") == "6px"
+    opened.close()
+    assert faults == []
+
+
+def test_the_same_on_every_run() -> None:
+    again = CliRunner().invoke(main, ["report", str(MODELS[QUICK]), "--json"])
+    assert json.loads(again.stdout) == told(QUICK)
+
+
+def test_what_a_model_says_is_escaped() -> None:
+    found = json.loads(json.dumps(told(QUICK)))
+    hostile = "</style><script>alert(1)</script>\u202e"
+    found["robot"] = found["requirements"][0]["name"] = found["requirements"][0]["texts"][0] = hostile
+    page = as_html(found)
+    assert "<script>" not in page
+    assert page.count("</style>") == 1
+    assert "\u202e" not in page
+    assert "default-src 'none'" in page
+
+
+def test_the_needs_are_linked() -> None:
+    found = told(QUICK)
+    needs = json.loads(as_needs(found))
+    [version] = needs["versions"].values()
+    made = version["needs"]
+    assert needs["current_version"] in needs["versions"]
+    assert all(re.fullmatch(r"[A-Z0-9_]{5,}", identifier) for identifier in made)
+    requirements = [one for one in made.values() if one["type"] == "req"]
+    assert [one["title"] for one in requirements] == [one["name"] for one in found["requirements"]]
+    linked = {link for one in made.values() for link in one["links"]}
+    assert linked == {one["id"] for one in requirements}
+
+
+def test_a_refuted_property_is_an_error(tmp_path: Path) -> None:
+    text = MODELS[QUICK].read_text()
+    file = tmp_path / "wrong.rscd"
+    file.write_text(text.rstrip().removesuffix("}") + "\n  property never true\n}\n")
+    done = CliRunner().invoke(main, ["report", str(file), "--json"])
+    assert done.exit_code == 1
+    assert [one["outcome"] for one in json.loads(done.stdout)["verdicts"]].count("refuted") == 1
+
+
+def test_files_are_written(tmp_path: Path) -> None:
+    page, needs = tmp_path / "report.html", tmp_path / "needs.json"
+    done = CliRunner().invoke(main, ["report", str(MODELS[QUICK]), "-o", str(page), "--needs", str(needs)])
+    assert done.exit_code == 0, done.output
+    assert page.read_text().startswith("<!DOCTYPE html>")
+    assert json.loads(needs.read_text())["project"] == told(QUICK)["robot"]
