@@ -44,6 +44,15 @@ def published(snapshot: Snapshot, analyses: Iterable[Analysis]) -> dict[Path, li
     }
 
 
+def quickly(snapshot: Snapshot, path: Path) -> list[types.Diagnostic] | None:
+    """What can be said of a large text before it is read in whole; None: nothing."""
+    found = snapshot.quick_findings(path)
+    if found is None:
+        return None
+    text, texts, findings = found
+    return [diagnostic(snapshot, finding, texts) for finding in findings if finding.file == text.file]
+
+
 def diagnostic(snapshot: Snapshot, finding: Diagnostic, texts: Mapping[str, Text]) -> types.Diagnostic:
     """A finding with its hint below, the page of its rule as a link, and the places that it speaks of."""
     page = address(finding.rule)

@@ -18,9 +18,11 @@ from pygls.uris import from_fs_path, to_fs_path
 
 from robosc.checks import check
 from robosc.diagnostics import in_order
+from robosc.editor.slices import LARGE, Slices
 from robosc.files.finding import files_below
 from robosc.language import Documents, Text, read
 from robosc.language.libraries import declared_name
+from robosc.language.text import decode
 from robosc.ros_types import RosTypes
 
 if TYPE_CHECKING:
@@ -165,6 +167,16 @@ class Analysis:
             if name.is_declaration
         }
 
+    @property
+    def is_large(self) -> bool:
+        """Whether typing must not wait until it is read in whole."""
+        return self.text.content.count("\n") >= LARGE
+
+    @cached_property
+    def slices(self) -> Slices:
+        """Its definitions, for what is typed into one of them."""
+        return Slices(self.file, self.findings)
+
     def key(self, element: Any) -> tuple[str, int] | None:
         """What tells an element from all others, in the analysis of any text: the file and offset of its name."""
         found = self.declarations.get(element)
@@ -224,6 +236,29 @@ class Snapshot:
         memory[path] = analysis, contents, self._headers
         self.memory.count()
         return analysis
+
+    def quick_findings(self, path: Path) -> tuple[Text, dict[str, Text], list[Diagnostic]] | None:
+        """What is found in a large text that has changed within one definition, without reading all of it again.
+
+        With the text, and all texts by the files that the findings carry. None where that can't be told so.
+        """
+        document, known = self.documents.get(path), self.memory.analyses.get(path)
+        if document is None or known is None or document.content.count("\n") < LARGE:
+            return None
+        analysis, contents, headers = known
+        others = {file: content for file, content in contents.items() if file != path}
+        if headers != self._headers or any(self._content(file) != content for file, content in others.items()):
+            return None
+        text, faults = decode(analysis.text.file, document.content.encode("utf-8", "surrogatepass"))
+        part = None if faults else analysis.slices.slice(text)
+        if part is None:
+            return None
+        documents = {**self.documents, path: replace(document, content=part.content)}
+        sliced = replace(self, documents=documents, memory=_Memory())
+        reading = read(path, self.libraries, self.ros_types, sliced.texts)
+        found = part.findings([*reading.findings, *check(reading.base, reading.findings, self.ros_types)])
+        texts = {file: other.text for file, other in analysis.reading.files.items()} | {text.file: text}
+        return None if found is None else (text, texts, in_order(found))
 
     def _content(self, path: Path) -> str | None:
         document = self.documents.get(path)

@@ -25,7 +25,7 @@ from robosc.editor.answers import Verdict
 from robosc.editor.changes import incoming_calls, inlay_hints, outgoing_calls, prepare_call_hierarchy
 from robosc.editor.colours import LEGEND, semantic_tokens
 from robosc.editor.completion import OPTIONS, SIGNATURE_OPTIONS, completion, signature_help
-from robosc.editor.findings import ADD_LIBRARY_FOLDER, CODE_ACTION_OPTIONS, code_actions, published
+from robosc.editor.findings import ADD_LIBRARY_FOLDER, CODE_ACTION_OPTIONS, code_actions, published, quickly
 from robosc.editor.places import to_offset
 from robosc.editor.project import Project
 from robosc.editor.renaming import prepare_rename, rename
@@ -42,6 +42,8 @@ if TYPE_CHECKING:
 _Answer = TypeVar("_Answer")
 #: How long after the last key findings are looked for, in seconds, where the editor sets nothing else.
 _PAUSE = 0.15
+#: How long after that a large text is read in whole, if what was typed could be looked at by itself.
+_REST = 0.6
 #: What is asked about one text, and what answers it: of the project, of the text, and of what was asked.
 ANSWERS: Mapping[str, Callable[[Snapshot, Analysis, Any], Any]] = {
     types.TEXT_DOCUMENT_DOCUMENT_SYMBOL: reading.symbols,
@@ -89,6 +91,8 @@ class Server(LanguageServer):
         super().__init__("robosc", version, protocol_cls=_Protocol)
         self.project = Project(libraries, interfaces)
         self._worker = ThreadPoolExecutor(1, "analysis")
+        #: What is typed into a large text is looked at beside the questions about the whole.
+        self._quick = ThreadPoolExecutor(1, "slices")
         self._pause = _PAUSE
         #: Whether the editor has the commands that lenses and quick fixes name.
         self.has_commands = False
@@ -100,7 +104,8 @@ class Server(LanguageServer):
     def shutdown(self) -> None:
         """Ends the server."""
         self.verdicts.cancel()
-        self._worker.shutdown(wait=False, cancel_futures=True)
+        for worker in (self._worker, self._quick):
+            worker.shutdown(wait=False, cancel_futures=True)
         super().shutdown()  # type: ignore[no-untyped-call]
 
     def configure(self, params: types.InitializeParams) -> None:
@@ -151,12 +156,12 @@ class Server(LanguageServer):
 
         return await asyncio.get_running_loop().run_in_executor(self._worker, in_turn)
 
-    def changed(self) -> None:
-        """Looks for findings after a pause, unless something changes before."""
+    def changed(self, typed: Path | None = None) -> None:
+        """Looks for findings after a pause, unless something changes before; `typed` is a text that was typed into."""
         self.verdicts.cancel()
         if self._waiting is not None:
             self._waiting.cancel()
-        self._waiting = asyncio.get_running_loop().create_task(self._find())
+        self._waiting = asyncio.get_running_loop().create_task(self._find(typed))
 
     def verdict(self, asked: Question) -> Verdict | str | None:
         """What synthesis says, as soon as it says it."""
@@ -172,9 +177,11 @@ class Server(LanguageServer):
         """Tells the findings of a text that has been opened, even if they are those of before."""
         self._published.pop(path, None)
 
-    async def _find(self) -> None:
+    async def _find(self, typed: Path | None) -> None:
         await asyncio.sleep(self._pause)
         snapshot, project = self.project.snapshot(), self.project
+        if typed is not None and await self._find_quickly(snapshot, typed):
+            await asyncio.sleep(_REST)
 
         def findings() -> dict[Path, list[types.Diagnostic]] | None:
             analyses = []
@@ -184,7 +191,11 @@ class Server(LanguageServer):
                 analysis = snapshot.analysis(path)
                 if analysis is not None:
                     analyses.append(analysis)
-            return published(snapshot, analyses)
+            told = published(snapshot, analyses)
+            for analysis in analyses:
+                if analysis.is_large:
+                    analysis.slices.prepare()
+            return told
 
         try:
             found = await asyncio.get_running_loop().run_in_executor(self._worker, findings)
@@ -192,6 +203,19 @@ class Server(LanguageServer):
             return  # The server ends.
         if found is not None and self.project.is_current(snapshot):
             self._publish(snapshot, found)
+
+    async def _find_quickly(self, snapshot: Snapshot, path: Path) -> bool:
+        """Tells what is found in the definition in which was typed; whether that can be told."""
+        try:
+            found = await asyncio.get_running_loop().run_in_executor(self._quick, quickly, snapshot, path)
+        except RuntimeError:
+            return False  # The server ends.
+        if found is not None and self.project.is_current(snapshot):
+            version = snapshot.documents[path].version
+            self._published[path] = version, found
+            told = types.PublishDiagnosticsParams(snapshot.uri(str(path)), found, version)
+            self.text_document_publish_diagnostics(told)
+        return found is not None
 
     def _publish(self, snapshot: Snapshot, found: Mapping[Path, list[types.Diagnostic]]) -> None:
         """Tells the editor what has changed: of files that it has not open only what is wrong with them."""
@@ -236,7 +260,7 @@ def _register_texts(server: Server) -> None:
     def did_change(params: types.DidChangeTextDocumentParams) -> None:
         changes = [(_place(change), change.text) for change in params.content_changes]
         server.project.change(params.text_document.uri, params.text_document.version, changes)
-        server.changed()
+        server.changed(server.project.path(params.text_document.uri))
 
     @server.feature(types.TEXT_DOCUMENT_DID_CLOSE)
     def did_close(params: types.DidCloseTextDocumentParams) -> None:

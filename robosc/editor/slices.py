@@ -1,0 +1,243 @@
+"""What is found in the definition in which somebody types, before a whole large text is read again.
+
+A change within one definition is looked at in a slice of the text: this definition, all that it may name, and what
+names it; everything else is blank, so that lines and columns are those of the text. Findings in the definition are
+those of the slice; all others are those of before, moved. As soon as the typing rests the whole text is read.
+"""
+
+from __future__ import annotations
+
+import re
+from bisect import bisect_right
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+from robosc.diagnostics import Span
+from robosc.language.outline import Outline
+from robosc.language.tokens import Tokens
+from robosc.metamodel import robosc as rsc
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from robosc.diagnostics import Diagnostic
+    from robosc.language import File, Text
+
+#: Texts of fewer lines are read in whole.
+LARGE = 400
+_WORD = re.compile(r"[A-Za-z_]\w*")
+#: What other definitions can name without naming the definition around it.
+_VISIBLE = (
+    rsc.Component,
+    rsc.ComplexDataType,
+    rsc.Interface,
+    rsc.NamedExpression,
+    rsc.Function,
+    rsc.CommunicationType,
+    rsc.EnumValue,
+    rsc.AutomatonRequirement,
+)
+#: Components whose communication is declared elsewhere.
+_MADE = (rsc.ImportedComponent, rsc.InstantiatedComponent)
+
+
+class Slices:
+    """The definitions of a text that was read in whole, and what names what in it."""
+
+    def __init__(self, file: File, findings: Sequence[Diagnostic]) -> None:
+        """`findings` are all that was found in the text and in those that it imports from."""
+        self._file = file
+        self._findings = findings
+
+    def prepare(self) -> None:
+        """Finds out what the first slice needs."""
+        self._needed(set(), set())
+        _ = self._naming, self._visible, self._made
+
+    def slice(self, text: Text) -> Slice | None:
+        """The slice for a text that has come of this one by changes within one definition; else None."""
+        before, after = self._file.text.content, text.content
+        same = _common(before, after)
+        most = min(len(before), len(after)) - same
+        ends = _common(before[len(before) - most :][::-1], after[len(after) - most :][::-1]) if most else 0
+        last = len(before) - ends
+        index = next((at for at, (start, end) in enumerate(self._ranges) if start < same and last <= end), None)
+        if index is None:
+            return None
+        start, end = self._ranges[index]
+        grown = len(after) - len(before)
+        # What stands in one line with another definition has columns that move.
+        if "\n" not in before[self._ranges[index - 1][1] if index else 0 : start] or "\n" not in before[end:]:
+            return None
+        if index + 1 < len(self._ranges) and "\n" not in before[end : self._ranges[index + 1][0]]:
+            return None
+        words = set(_WORD.findall(after[start : end + grown]))
+        kept = self._needed({index, *self._naming[index], *self._made, *self._neighbours(index)}, words)
+        parts, at = [], 0
+        for other, (first, behind) in enumerate(self._ranges):
+            moved = grown if other > index else 0
+            own_end = behind + (grown if other >= index else 0)
+            parts.append(after[at : first + moved])
+            own = after[first + moved : own_end]
+            parts.append(own if other in kept else _blank(own))
+            at = own_end
+        parts.append(after[at:])
+        users = [self._ranges[other] for other in sorted(self._naming[index])]
+        return Slice(self, text, "".join(parts), (start, end), grown, users)
+
+    def _neighbours(self, index: int) -> Iterable[int]:
+        return (other for other in (index - 1, index + 1) if 0 <= other < len(self._ranges))
+
+    def _needed(self, wanted: set[int], words: set[str]) -> set[int]:
+        """These definitions, those that words may name, and all that these name."""
+        pending = [*wanted, *(index for word in words for index in self._visible.get(word, ()))]
+        found: set[int] = set()
+        while pending:
+            index = pending.pop()
+            if index not in found:
+                found.add(index)
+                pending += self._named[index]
+        return found
+
+    @cached_property
+    def _ranges(self) -> list[tuple[int, int]]:
+        """Where the definitions stand, those that could not be read, too."""
+        return [(item.start, item.end) for item in Outline(Tokens(self._file.text.content)).file().items]
+
+    @cached_property
+    def _starts(self) -> list[int]:
+        return [start for start, _ in self._ranges]
+
+    def _index(self, offset: int) -> int | None:
+        index = bisect_right(self._starts, offset) - 1
+        return index if index >= 0 and offset < self._ranges[index][1] else None
+
+    @cached_property
+    def _visible(self) -> dict[str, set[int]]:
+        found: dict[str, set[int]] = {}
+        for element, name in self._file.declared_names.items():
+            index = self._index(name.start) if isinstance(element, _VISIBLE) else None
+            if index is not None:
+                found.setdefault(name.text, set()).add(index)
+        return found
+
+    @cached_property
+    def _declared(self) -> dict[Any, int]:
+        found = ((element, self._index(name.start)) for element, name in self._file.declared_names.items())
+        return {element: index for element, index in found if index is not None}
+
+    @cached_property
+    def _named(self) -> list[set[int]]:
+        """By the index of a definition those that it names."""
+        found: list[set[int]] = [set() for _ in self._ranges]
+        for name in self._file.names:
+            target = self._declared.get(name.target) if not name.is_declaration else None
+            index = self._index(name.start) if target is not None else None
+            if index is not None and target is not None and target != index:
+                found[index].add(target)
+        return found
+
+    @cached_property
+    def _naming(self) -> list[set[int]]:
+        """By the index of a definition those that name it."""
+        found: list[set[int]] = [set() for _ in self._ranges]
+        for index, named in enumerate(self._named):
+            for other in named:
+                found[other].add(index)
+        return found
+
+    @cached_property
+    def _made(self) -> set[int]:
+        return {
+            index
+            for element, index in self._declared.items()
+            if isinstance(element, rsc.Component) and isinstance(element.type, _MADE)
+        }
+
+    def has(self, finding: Diagnostic) -> bool:
+        """Whether the same was found somewhere."""
+        return any(finding.message == other.message for other in self._findings)
+
+    def others(self, place: tuple[int, int], last: int, users: Sequence[tuple[int, int]]) -> list[Diagnostic]:
+        """The findings outside of a definition, as they are where it now ends in the line `last`.
+
+        `users` is where those stand that name it: whether names are resolved there, the slice says.
+        """
+        text = self._file.text
+        start, end = (text.span(offset, offset) for offset in place)
+
+        def moved(span: Span) -> Span:
+            by = last - end.line if (span.line, span.column) > (end.line, end.column) else 0
+            return Span(span.line + by, span.column, span.end_line + by, span.end_column)
+
+        found = []
+        for finding in self._findings:
+            if finding.file != text.file:
+                found.append(finding)
+            elif _is_name(finding) and _within(text.offset(finding.span.line, finding.span.column), users):
+                continue
+            elif not (start.line, start.column) <= (finding.span.line, finding.span.column) <= (end.line, end.column):
+                edits = tuple(replace(edit, span=moved(edit.span)) for edit in finding.edits)
+                related = tuple(
+                    replace(other, span=moved(other.span)) if other.file == text.file else other
+                    for other in finding.related
+                )
+                found.append(replace(finding, span=moved(finding.span), edits=edits, related=related))
+        return found
+
+
+@dataclass(frozen=True)
+class Slice:
+    """A text in which all but some definitions are blank, its `content`.
+
+    `before` is where the definition stood that has `grown`, `users` where those stood that name it.
+    """
+
+    slices: Slices
+    text: Text
+    content: str
+    before: tuple[int, int]
+    grown: int
+    users: Sequence[tuple[int, int]]
+
+    def findings(self, found: Iterable[Diagnostic]) -> list[Diagnostic] | None:
+        """The findings of the whole text, given those of the slice; None where they are not of the definition alone."""
+        start, end = self.before[0], self.before[1] + self.grown
+        moved = ((*user, self.grown if user[0] > start else 0) for user in self.users)
+        users = [(first + by, last + by) for first, last, by in moved]
+        own = []
+        for finding in found:
+            if finding.file == self.text.file:
+                at = self.text.offset(finding.span.line, finding.span.column)
+                within = start <= at <= end
+                if finding.rule == "syntax" and not within and not self.slices.has(finding):
+                    return None
+                own += [finding] if within or (_is_name(finding) and _within(at, users)) else []
+        return [*own, *self.slices.others(self.before, self.text.span(end, end).line, self.users)]
+
+
+def _is_name(finding: Diagnostic) -> bool:
+    return finding.rule == "unresolved-reference"
+
+
+def _within(offset: int, ranges: Iterable[tuple[int, int]]) -> bool:
+    return any(start <= offset <= end for start, end in ranges)
+
+
+def _blank(text: str) -> str:
+    """As many lines, the last one as long, with nothing in them."""
+    *lines, last = text.split("\n")
+    return "\n" * len(lines) + " " * len(last)
+
+
+def _common(first: str, second: str) -> int:
+    """How many characters two texts begin with alike."""
+    low, high = 0, min(len(first), len(second))
+    while low < high:
+        middle = (low + high + 1) // 2
+        if first[low:middle] == second[low:middle]:
+            low = middle
+        else:
+            high = middle - 1
+    return low
