@@ -1,4 +1,4 @@
-"""In a large text what is typed into a definition is looked at by itself first, and the whole as soon as typing rests."""
+"""In a large text what is typed into a definition is looked at first, and the whole as soon as typing rests."""
 
 from pathlib import Path
 
