@@ -170,7 +170,7 @@ def _timed_hint(token: Token, before: Token, wanted: Sequence[str]) -> str | Non
     return None
 
 
-def _statement_hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) -> str | None:
+def _statement_hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) -> Repair | str | None:
     """How to mend what depends on the kind of definition that it stands in."""
     token, before, starter = tokens[index], tokens[index - 1], tokens[block.first]
     if starter.is_keyword("after"):
@@ -202,11 +202,13 @@ def _order_hint(tokens: Tokens, index: int, wanted: Sequence[str]) -> str | None
     return None
 
 
-def _requirement_hint(token: Token, before: Token, wanted: Sequence[str]) -> str | None:
+def _requirement_hint(token: Token, before: Token, wanted: Sequence[str]) -> Repair | str | None:
     if ":" in wanted and (before.kind is Kind.STRING or token.is_keyword("automaton")):
         return "write `:` before it"
     if before.kind is Kind.STRING:
         return 'the text stands before the colon: `requirement name "text": …`'
+    if "needs" in wanted and token.text in {"when", "if", "requires", "while"}:
+        return Repair("write `needs`", "needs")
     if before.text == "every":
         return _ORDER
     if token.text in {"on", "transition", "after", "do", "variable"}:

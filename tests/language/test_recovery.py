@@ -117,6 +117,7 @@ FAULTS = [
     ("response: boolean", "respnse: boolean", "respnse", "did you mean `response`?"),
     ("feedback: double", "", "links", "expected `feedback`"),
     ("import EmergencyStop", "", "", "expected `import`"),
+    ("{move, turn} needs", "{move, turn} when", "when", "write `needs`"),
     ("{move, turn} needs", "{move, turn needs", "needs", "expected `,` or `}`"),
     ("and Scanner.driving", "and", "", "expected an expression"),
     ("and Scanner.driving", "and (Scanner.driving", "", "expected an operator or `)`"),
