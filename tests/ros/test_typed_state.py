@@ -1,0 +1,30 @@
+"""The package with the type of a robot's state, made by the generators of ROS 2; ROS 1 builds it with the courier."""
+
+from __future__ import annotations
+
+import subprocess
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from tests.ros.running import Runner
+
+PACKAGE = Path(__file__).parents[1] / "m2t" / "typed_state" / "ros2" / "courier_msgs"
+SCRIPT = """
+from courier_msgs.msg import State
+state = State(scanner=State.SCANNER_IS_TURNING, scanner_seen=State.SCANNER_SEEN_IS_NOTHING, counter_text="a")
+print(state.scanner, state.scanner_seen, state.counter_limited, state.counter_text)
+print(len(State.get_fields_and_field_types()))
+"""
+
+
+def test_it_is_a_type_of_ros_2(run_ros2: Runner, tmp_path: Path) -> None:
+    environment = run_ros2.environment()
+    command = [run_ros2.ros.python, "-m", "robosc", "interfaces", "build", PACKAGE, "-o", tmp_path / "modules"]
+    subprocess.run(command, env=environment, check=True, capture_output=True)
+    environment["PYTHONPATH"] = f"{tmp_path / 'modules'}:{environment['PYTHONPATH']}"
+    done = subprocess.run(
+        [run_ros2.ros.python, "-c", SCRIPT], env=environment, check=True, capture_output=True, text=True
+    )
+    fields = [line for line in (PACKAGE / "msg" / "State.msg").read_text().splitlines() if line and line[0] != "#"]
+    assert done.stdout.split() == ["1", "3", "0", "a", str(sum("=" not in line for line in fields))]
