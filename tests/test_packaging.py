@@ -1,6 +1,7 @@
 """The wheel has all that the tool needs: installed elsewhere it generates the same bytes as the repository does."""
 
 import os
+import shutil
 import subprocess
 import sys
 import tomllib
@@ -59,6 +60,54 @@ def test_what_is_in_the_wheel(wheel: Path) -> None:
     assert not any(name.startswith(("tests/", "examples/")) for name in inside)
 
 
+@pytest.fixture(scope="module")
+def source(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    pytest.importorskip("build", reason="the packages of [release] are not installed")
+    folder = tmp_path_factory.mktemp("source")
+    run(sys.executable, "-m", "build", "--sdist", "--outdir", folder, ROOT, cwd=folder)
+    (built,) = folder.glob("*.tar.gz")
+    return built
+
+
+def test_the_sdist_makes_the_same_wheel(source: Path, wheel: Path, tmp_path: Path) -> None:
+    run(sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "--wheel-dir", tmp_path, source, cwd=tmp_path)
+    (again,) = tmp_path.glob("*.whl")
+
+    def contents(path: Path) -> dict[str, int]:
+        return {entry.filename: entry.CRC for entry in zipfile.ZipFile(path).infolist()}
+
+    assert contents(again) == contents(wheel)
+
+
+def test_registries_take_what_is_built(source: Path, wheel: Path, tmp_path: Path) -> None:
+    pytest.importorskip("twine", reason="the packages of [release] are not installed")
+    run(sys.executable, "-m", "twine", "check", "--strict", source, wheel, cwd=tmp_path)
+
+
+def test_the_dockerfiles_are_in_order() -> None:
+    pytest.importorskip("build", reason="the packages of [release] are not installed")
+    files = sorted((ROOT / "docker").glob("*.Dockerfile"))
+    assert [path.stem for path in files] == ["humble", "jazzy"]
+    run(Path(sys.executable).with_name("hadolint"), *files, cwd=ROOT)
+
+
+def test_a_release_needs_its_section_in_the_changelog(tmp_path: Path) -> None:
+    """Or a trial: the script ends before it builds anything."""
+    for name in ("scripts/release", "scripts/environment", "robosc/__init__.py"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        shutil.copy(ROOT / name, tmp_path / name)
+    (tmp_path / "CHANGELOG.md").write_text("## 0.0.1, unreleased\n")
+    for command in (["init", "--quiet"], ["add", "."]):
+        run("git", *command, cwd=tmp_path)
+    run("git", "-c", "user.name=A", "-c", "user.email=a@b.c", "commit", "--quiet", "-m", "Begin", cwd=tmp_path)
+    done = subprocess.run([tmp_path / "scripts" / "release"], capture_output=True, text=True, check=False)
+    assert done.returncode == 1
+    assert "CHANGELOG.md has no section" in done.stderr
+    (tmp_path / "CHANGELOG.md").write_text("## 0.1.0, 2026-11-25\n")
+    done = subprocess.run([tmp_path / "scripts" / "release"], capture_output=True, text=True, check=False)
+    assert "there are changes that are not committed" in done.stderr
+
+
 def test_the_installed_wheel_generates_the_same(wheel: Path, tmp_path: Path) -> None:
     run(sys.executable, "-m", "venv", "--without-pip", "environment", cwd=tmp_path)
     programs = tmp_path / "environment" / "bin"
@@ -72,6 +121,19 @@ def test_the_installed_wheel_generates_the_same(wheel: Path, tmp_path: Path) -> 
     assert Path(where).is_relative_to(tmp_path)
     run(programs / "robosc", "transform", "line_follower.rscd", "--to", TARGETS, "-o", "out", cwd=model)
     run(programs / "robosc", "rule", "marked-state", cwd=model)
+    if any((ROOT / "robosc" / "view" / "built").glob("page.js")):
+        run(
+            sys.executable,
+            "-m",
+            "pip",
+            "--python",
+            programs / "python",
+            "install",
+            "--quiet",
+            f"{wheel}[view]",
+            cwd=model,
+        )
+        assert "smoke test passed" in run(ROOT / "scripts" / "smoke", tmp_path / "environment", cwd=model)
     packages = Path(run(programs / "robosc", "--cmake-dir", cwd=model).strip())
     assert packages.is_relative_to(tmp_path)
     assert (packages / "robosc" / "robosc-config.cmake").exists()
