@@ -25,7 +25,7 @@ from robosc.semantics.roles import event_name, is_from_cif
 from robosc.synthesis.bdd import Diagrams, with_enough_memory
 from robosc.synthesis.cover import separating_expression
 from robosc.synthesis.encoding import Encoding, Layout
-from robosc.synthesis.fixpoint import SupervisedStates, reachable, supervise
+from robosc.synthesis.fixpoint import SupervisedStates, reachable, supervise, supervise_only
 from robosc.synthesis.guards import Permission, permission
 from robosc.synthesis.projection import Projection
 from robosc.synthesis.relation import EventRelation, event_relations, plant_moves, required_moves, steps, violations
@@ -36,8 +36,10 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from robosc.synthesis.bdd import Diagram
+    from robosc.synthesis.relation import Move
 
     T = TypeVar("T")
+    _Supervising = Callable[[Encoding, Sequence[Move], Diagram], SupervisedStates]
 
 __all__ = [
     "MEMORY",
@@ -144,7 +146,7 @@ def count(model: sct.SupervisoryControlModel, *, memory: int = MEMORY, statistic
         states = encoding.count(controlled) if controlled.satisfiable() else 0
         return Counts(_uncontrolled_states(found), states, controlled.node_count())
 
-    return _with_states(model, counted, memory, statistics or Statistics())
+    return _with_states(model, counted, memory, statistics or Statistics(), supervise_only)
 
 
 def solve(
@@ -159,7 +161,7 @@ def solve(
     `look` may run several times, with room for more nodes each time.
     """
     statistics = statistics or Statistics()
-    return _with_states(model, lambda found: look(_solved(found, statistics)), memory, statistics)
+    return _with_states(model, lambda found: look(_solved(found, statistics)), memory, statistics, supervise)
 
 
 def encoded(model: sct.SupervisoryControlModel, look: Callable[[Encoding], T], memory: int = MEMORY) -> T:
@@ -203,16 +205,26 @@ def _refuse_overlapping(relations: Sequence[EventRelation]) -> None:
 
 
 def _with_states(
-    model: sct.SupervisoryControlModel, use: Callable[[_Found], T], memory: int, statistics: Statistics
+    model: sct.SupervisoryControlModel,
+    use: Callable[[_Found], T],
+    memory: int,
+    statistics: Statistics,
+    supervising: _Supervising,
 ) -> T:
     """What `use` makes of the states that the supervisor of a model leaves it."""
     _refuse_data_of_controllable_events(model)
     with statistics.during(Phase.ORDER):
         layout = Layout(model)
-    return with_enough_memory(lambda capacity: use(_found(model, layout, capacity, statistics)), memory)
+    return with_enough_memory(lambda capacity: use(_found(model, layout, capacity, statistics, supervising)), memory)
 
 
-def _found(model: sct.SupervisoryControlModel, layout: Layout, capacity: int, statistics: Statistics) -> _Found:
+def _found(
+    model: sct.SupervisoryControlModel,
+    layout: Layout,
+    capacity: int,
+    statistics: Statistics,
+    supervising: _Supervising,
+) -> _Found:
     """The states, with room for so many nodes."""
     statistics.begin_again()
     with statistics.during(Phase.ENCODE):
@@ -226,7 +238,7 @@ def _found(model: sct.SupervisoryControlModel, layout: Layout, capacity: int, st
         if not is_from_cif(model):
             uncontrolled = reachable(diagrams, steps(plant_moves(relations)), encoding.initial, diagrams.true)
         violating = diagrams.any_of(violations(model, relations, encoding).values())
-        return _Found(encoding, relations, supervise(encoding, moves, violating), uncontrolled)
+        return _Found(encoding, relations, supervising(encoding, moves, violating), uncontrolled)
 
 
 def _uncontrolled_states(found: _Found) -> int | None:

@@ -39,8 +39,8 @@ class SupervisedStates:
 
     `rounds` are the states still held to be good, from all that are reachable under the requirements to the final ones;
     `alive` of the same round those from which a marked state can be reached within them and without one that violates
-    an invariant: no such state is itself among them. `controlled` are the states
-    that are reachable under the supervisor: none if the supervisor is empty.
+    an invariant: no such state is itself among them. Both are empty where nobody asks for
+    explanations. `controlled` are the states that are reachable under the supervisor: none if the supervisor is empty.
     """
 
     rounds: list[Diagram]
@@ -222,6 +222,29 @@ def supervise(encoding: Encoding, moves: Sequence[Move], violating: Diagram) -> 
     if len(rounds) == 1:
         return SupervisedStates(rounds, alive, good)
     return SupervisedStates(rounds, alive, reachable(diagrams, steps, initial & good, good))
+
+
+def supervise_only(encoding: Encoding, moves: Sequence[Move], violating: Diagram) -> SupervisedStates:
+    """The same controlled states with less work, without the rounds that explanations go back through.
+
+    What violates an invariant is given up before anybody asks what reaches a marked state, and so is, each time, what
+    can't be reached any more: what is left is smaller, and most often final.
+    """
+    steps = [step for _, step in moves]
+    uncontrollable = [step for relation, step in moves if not relation.event.controllable]
+    diagrams, initial = encoding.diagrams, encoding.initial
+    statistics = diagrams.statistics
+    good = reachable(diagrams, steps, initial, diagrams.true)
+    bad = good & violating
+    while True:
+        statistics.rounds += 1
+        statistics.states = encoding.count(good)
+        if bad.satisfiable():
+            good &= ~coreachable(diagrams, uncontrollable, bad, good)
+            good = reachable(diagrams, steps, initial & good, good)
+        bad = good & ~coreachable(diagrams, steps, encoding.all_marked & good, good)
+        if not bad.satisfiable():
+            return SupervisedStates([], [], good)
 
 
 def _level(diagram: Diagram) -> int:

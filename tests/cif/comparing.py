@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from robosc.cif import Reading, read
 from robosc.language.text import Documents
-from robosc.synthesis import synthesize
+from robosc.synthesis import count, synthesize
 
 if TYPE_CHECKING:
     from tests.cif.random_specifications import Specification
@@ -32,4 +32,6 @@ def agrees(specification: Specification) -> int | None:
         return None
     found = synthesize(reading.model).controlled_states
     assert found == specification.controlled_states(), text
+    # Which is found in another way, where only the number is asked for.
+    assert found == count(reading.model).controlled_states, text
     return found

@@ -8,7 +8,7 @@ from hypothesis import HealthCheck, event, given, settings
 from robosc.metamodel import sct
 from robosc.semantics.printing import SctPrinter
 from robosc.semantics.roles import event_name
-from robosc.synthesis import Synthesis, encoding, synthesize
+from robosc.synthesis import Synthesis, count, encoding, synthesize
 from tests.random_sct import sct_models
 from tests.searching import examples
 from tests.synthesis.oracle import Oracle
@@ -24,7 +24,7 @@ def check(model: sct.SupervisoryControlModel, synthesis: Synthesis) -> None:
     """Everything that synthesis says of a model is what the definition says."""
     oracle = Oracle(model)
     assert synthesis.uncontrolled_states == oracle.uncontrolled_states
-    assert synthesis.controlled_states == len(oracle.controlled)
+    assert synthesis.controlled_states == count(model).controlled_states == len(oracle.controlled)
     assert (synthesis.supervisor is None) == (not oracle.controlled)
     if synthesis.supervisor is not None:
         check_guards(oracle, synthesis.supervisor)
