@@ -37,6 +37,7 @@ _COMMANDS = {
     "explain": "Say why something can't happen.",
     "verify": "Prove what the supervised robot promises.",
     "report": "Write what one reads who must sign for the robot.",
+    "test": "Play scenarios, and say what is not as they expect.",
     "simulate": "Try the supervised robot.",
     "view": "See the supervised robot decide, in a browser.",
     "dap": "Debug a robot in an editor.",

@@ -9,82 +9,33 @@ from typing import TYPE_CHECKING, Any
 
 from robosc.engine import Settings as LoopSettings
 from robosc.node_tests.coverage import Coverage, Watcher
+from robosc.node_tests.drive import Drive, DrivenController, MeetingTimesError
 from robosc.node_tests.messages import message
 from robosc.node_tests.plan import WAIT, Place, Plan, Step, Stimulus
-from robosc.node_tests.robot import Robot
-from robosc.node_tests.samples import all_incoming
-from robosc.node_tests.trace_player import START, Pace
-from robosc.runtime.core.controller import Controller
-from robosc.runtime.core.event_log import EventLog, nested
-from robosc.runtime.core.event_loop import EventLoop
-from robosc.runtime.core.json_text import json_text
+from robosc.runtime.core.event_log import nested
 from robosc.runtime.core.port import Outcome
-from robosc.runtime.core.settings import Settings
 from robosc.runtime.core.times import RESOLUTION_MS
 from robosc.semantics.operators import UnreadableError
-from robosc.semantics.parameters import Value, controller_parameters
 from robosc.semantics.roles import event_name
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from robosc.configuration import Configuration
-    from robosc.metamodel import rosgraph, sct
+    from robosc.metamodel import rosgraph
     from robosc.node_tests.coverage import Goal
+    from robosc.node_tests.drive import Act
     from robosc.node_tests.samples import Class, Incoming
     from robosc.ros_types import RosDistribution
 
-    #: Lets something come in; the fields of what it is, None where it has none.
-    Act = Callable[[], "dict[str, Any] | None"]
-
 _SEED = 1
-_DAY = 24 * 3600 * 1000
 #: So many periods at most are waited for a time that is up, a failure or the pause after it.
 _LONGEST = 600
 #: A state that is never come back to can be left in one way only: others take other runs, at most so many.
 _TRACES = 8
-#: So many milliseconds after its time a timer has rung for sure.
-_MARGIN = 1.01
 
 
-def parameters(graph: rosgraph.RosGraph, configuration: Configuration) -> dict[str, bool | int]:
-    """With what a node is started for a test: every deadline is a multiple of the period, so that it falls on no tick.
-
-    A robot whose topics are silent between two lines of a trace is not stopped.
-    """
-    period = configuration.control_loop.period_ms
-    declared = _defaults(graph, configuration)
-    most = _DAY // period * period
-    rounded: dict[str, bool | int] = {
-        name: min(-(-int(value) // period) * period, most)
-        for name, value in declared.items()
-        if name in ("service_timeout_ms", "action_timeout_ms", "retry_ms")
-    }
-    return {"period_ms": period, **rounded, "watchdog_stops": False}
-
-
-def _defaults(graph: rosgraph.RosGraph, configuration: Configuration) -> dict[str, Value]:
-    return {parameter.name: parameter.default for parameter in controller_parameters(graph, configuration, "")}
-
-
-class MeetingTimesError(Exception):
-    """A time is up when a tick is due."""
-
-
-class _Lines(EventLog):
-    """Keeps the lines of a log."""
-
-    active = True
-
-    def __init__(self) -> None:
-        super().__init__("")
-        self.kept: list[str] = []
-
-    def append(self, line: str) -> None:
-        self.kept.append(line.removesuffix("\n"))
-
-
-class _Controller(Controller):
+class _Controller(DrivenController):
     """A controller that is watched."""
 
     def watch(self, shown: set[Goal]) -> None:
@@ -103,17 +54,6 @@ class _Controller(Controller):
         self._shown |= self._watcher.at_rest()
         return plan.place(self._control.saved, pauses=self.pauses)
 
-    @property
-    def pauses(self) -> bool:
-        """Whether it waits after a failure."""
-        return any(failure.pause is not None for failure in self._failures.values())
-
-    @property
-    def up(self) -> int | None:
-        """At how many milliseconds the next time is up; None where none runs."""
-        timers = self._control.timers
-        return None if timers.wait is None else timers.now + timers.wait
-
     def reads(self, receptions: Sequence[rosgraph.Reception], data: Any) -> bool:
         """Whether what the transitions of the present state need of a message can be read."""
         try:
@@ -124,26 +64,22 @@ class _Controller(Controller):
         return True
 
 
-class Tour:
+class Tour(Drive):
     """Runs of one controller, each from its start: `traces` are the lines of each, `coverage` is what they show."""
 
+    _controller: _Controller
+
     def __init__(self, graph: rosgraph.RosGraph, configuration: Configuration, distribution: RosDistribution) -> None:
-        self._graph = graph
-        self._distribution = distribution
-        self._configuration = configuration
+        super().__init__(graph, configuration, distribution)
         self._choice = random.Random(_SEED)  # noqa: S311  # the same each time
-        self._parameters = parameters(graph, configuration)
-        self._period = self._parameters["period_ms"] / 1000
         self._used: Counter[object] = Counter()
-        #: What each event that comes in shows, and the messages to choose from; the events of one topic share it.
-        self.incoming: dict[sct.Event, Incoming] = all_incoming(graph, distribution)
         self._acts = self._all_acts()
         control = configuration.control_loop
         self.plan = Plan(
             graph.model,
             LoopSettings(control.events_per_tick, control.reactions_per_tick, control.react_immediately, RESOLUTION_MS),
             [*self._acts, WAIT],
-            _LONGEST * self._parameters["period_ms"],
+            _LONGEST * self.parameters["period_ms"],
         )
         self._shown: set[Goal] = set()
         self._steps = 0
@@ -160,15 +96,8 @@ class Tour:
 
     def _run(self) -> None:
         """Runs the controller from its start to where nothing new can be seen any more."""
-        self._pace = Pace(self._period)
-        self._now = START * self._period
-        settings = Settings(_defaults(self._graph, self._configuration) | self._parameters, self._configuration)
-        self._robot = Robot(self._graph, self._distribution, lambda: self._now)
-        self._event_loop = EventLoop(lambda: self._now)
-        self._lines = _Lines()
-        self._controller = _Controller(self._graph, settings, self._robot, self._event_loop)
+        self._controller = self._begin(_Controller)
         self._controller.watch(self._shown)
-        self._controller.log_to(self._lines)
         self._controller.start()
         try:
             self._pass_period()
@@ -195,14 +124,6 @@ class Tour:
                 break
         return self._controller.place(self.plan) != step.end
 
-    def _let_in(self, act: Act) -> None:
-        before = len(self._lines.kept)
-        sent = act()
-        _work(self._event_loop)
-        if sent is not None and len(self._lines.kept) > before:
-            line = self._lines.kept[before]
-            self._lines.kept[before] = f'{line[:-1]},"message":{json_text(sent)}}}'
-
     def _waiting(self, stimulus: Stimulus) -> Callable[[], bool]:
         """Whether what the stimulus waits for is still to come."""
         if stimulus.fails:
@@ -213,29 +134,6 @@ class Tour:
             return lambda: self._controller.pauses
         up = self._controller.up
         return lambda: up is not None and self._now * 1000 < up
-
-    # Time
-
-    def _pass_period(self) -> None:
-        """As the player lets it pass: where a time is up on the way, the clock stops there.
-
-        Raises MeetingTimesError where that is when the node has its tick: which of them comes first, ROS does not say.
-        """
-        over = False
-        while not over:
-            self._robot.end_cancelled()
-            _work(self._event_loop)
-            up = self._controller.up
-            stop = self._pace.next if up is None else self._pace.before((up + _MARGIN) / 1000)
-            if stop is None:
-                assert up is not None
-                self._now = (up + _MARGIN) / 1000
-            else:
-                self._now = stop
-                over = self._pace.advance()
-                if not over and up is not None and up < stop * 1000:
-                    raise MeetingTimesError
-            _work(self._event_loop)
 
     # What comes in
 
@@ -323,8 +221,3 @@ class Tour:
             return None
         self._used["unreadable", reception] += 1
         return data, {}
-
-
-def _work(event_loop: EventLoop) -> None:
-    while event_loop.run_pending() == 0:
-        pass

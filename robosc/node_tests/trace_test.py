@@ -9,7 +9,7 @@ from robosc.analysis.wording import words
 from robosc.files.resources import locate
 from robosc.m2t.models import TraceTest
 from robosc.metamodel import sct
-from robosc.node_tests.tour import Tour, parameters
+from robosc.node_tests.tour import Tour
 from robosc.ros_types import RosTypes
 from robosc.runtime.core.event_log import nested
 from robosc.semantics.roles import event_name
@@ -38,10 +38,10 @@ def trace_test(
     """
     distribution = next(known for known in RosTypes(interface_paths).distributions if known.name == f"ROS {version}")
     tour = Tour(graph, configuration, distribution)
-    started = parameters(graph, configuration)
-    described = json.dumps(_connections(graph, configuration, started, tour.incoming), indent=1) + "\n"
+    started = tour.parameters
+    connected = json.dumps(_connections(graph, configuration, started, tour.incoming), indent=1) + "\n"
     player = locate("node_tests/trace_player.py").read_text(encoding="utf-8")
-    files = {"connections.json": described, "trace_player.py": player}
+    files = {"connections.json": connected, "trace_player.py": player}
     for number, lines in enumerate(tour.traces, 1):
         files[f"traces/tour_{number}.jsonl"] = "".join(f"{line}\n" for line in lines)
     return TraceTest(started, files, str(tour.coverage), [told(goal) for goal in tour.coverage.missed])
@@ -68,7 +68,7 @@ def _connections(
         "period": started["period_ms"] / 1000,
         "timed": any(event.timer is not None for plant in graph.model.plants for event in plant.events),
         "subscriptions": [
-            {"topic": topic.topic, "type": _type(topic.interface), **_described(incoming[topic.receptions[0].event])}
+            {"topic": topic.topic, "type": _type(topic.interface), **described(incoming[topic.receptions[0].event])}
             for topic in graph.subscriptions
         ],
         "publishers": [
@@ -84,7 +84,7 @@ def _connections(
             {
                 **_client(service, started),
                 "timeout": started["service_timeout_ms"] / 1000,
-                "response": _described(incoming[service.response.event]),
+                "response": described(incoming[service.response.event]),
             }
             for service in graph.serviceClients
         ],
@@ -92,8 +92,8 @@ def _connections(
             {
                 **_client(action, started),
                 "cancel": event_name(action.cancel),
-                "feedback": _described(incoming[action.feedback.event]),
-                "response": _described(incoming[action.response.event]),
+                "feedback": described(incoming[action.feedback.event]),
+                "response": described(incoming[action.response.event]),
             }
             for action in graph.actionClients
         ],
@@ -111,7 +111,8 @@ def _client(client: Client, started: Mapping[str, bool | int]) -> dict[str, Any]
     }
 
 
-def _described(kind: Incoming) -> dict[str, Any]:
+def described(kind: Incoming) -> dict[str, Any]:
+    """What the player has to know of one kind of data that comes in."""
     return {
         "events": [
             {

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from robosc.node_tests.drive import parameters
 from robosc.node_tests.messages import message
 from robosc.node_tests.robot import Robot, RunningGoal
 from robosc.node_tests.samples import all_incoming
-from robosc.node_tests.tour import parameters
 from robosc.node_tests.trace_player import START, Port, cancelled, leaves
 from robosc.ros_types import RosTypes
 from robosc.runtime.core.controller import Controller

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 import subprocess
 import sys
 from typing import TYPE_CHECKING
@@ -65,6 +66,18 @@ def test_the_log_of_a_drive_is_a_trace(ros1_workspace: Workspace, tmp_path: Path
     events = [json.loads(line)["event"] for line in log.read_text(encoding="utf-8").splitlines()]
     assert {"message_halt.c_trigger", "message_move.c_trigger"} <= set(events)
     assert rostest(ros1_workspace, package, tmp_path, "drive") == (0, "")
+
+
+@pytest.mark.parametrize("number", [1, 2, 3])
+def test_a_scenario_is_played_against_the_compiled_node(ros1_workspace: Workspace, tmp_path: Path, number: int) -> None:
+    package, example = "line_follower_controller", EXAMPLES / "line_follower"
+    traces = ros1_workspace.folder / "src" / package / "test" / "traces"
+    files = [example / "line_follower.rscd", example / "line_follower.scenarios"]
+    command = [sys.executable, "-m", "robosc", "test", *files, "--traces", tmp_path / "traces"]
+    subprocess.run(command, check=True, capture_output=True)
+    name = f"scenario_{number}"
+    shutil.copy(tmp_path / "traces" / f"{name}.jsonl", traces)
+    assert rostest(ros1_workspace, package, tmp_path, name) == (0, "")
 
 
 def test_catkin_knows_the_tests(ros1_workspace: Workspace) -> None:

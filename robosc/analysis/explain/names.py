@@ -29,6 +29,8 @@ class NamingError(ValueError):
 
     def __init__(self, message: str, hint: str) -> None:
         super().__init__(f"{message}; {hint}" if hint else message)
+        self.message = message
+        self.hint = hint
 
 
 def event_named(model: sct.SupervisoryControlModel, name: str) -> sct.Event:

@@ -1,0 +1,149 @@
+"""`robosc test`."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+import robosc
+from robosc.analysis.verify.c_program import CProgram, c_compiler
+from robosc.checks import check
+from robosc.cli import CallError, say
+from robosc.cli.options import FILE, Paths, configuration, findings_format, model, paths, synthesizer
+from robosc.cli.progress import progress
+from robosc.cli.reading import read_configuration, read_models, supervise_models
+from robosc.cli.report import Report
+from robosc.files import reading as files
+from robosc.files.writing import temporary_folder, write
+from robosc.language import Documents
+from robosc.language import read as read_text
+from robosc.language.text import decode
+from robosc.m2t.models import Models
+from robosc.ros_types import RosTypes
+from robosc.scenario_tests import RULE, Player, read_scenarios, unknown_events
+from robosc.scenario_tests.conditions import extended
+from robosc.scenario_tests.operations import Operations
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from robosc.configuration import Configuration
+    from robosc.diagnostics import Diagnostic
+    from robosc.metamodel import expression as ex
+    from robosc.metamodel import robosc as rsc
+    from robosc.scenario_tests import Scenario
+    from robosc.scenario_tests.reading import Holds
+
+
+@click.command("test")
+@model
+@click.argument("scenarios", nargs=-1, required=True, type=FILE, metavar="FILE...")
+@click.option("--engine", type=click.Choice(["python", "c"]), default="python", show_default=True, help="What plays.")
+@click.option("--traces", type=click.Path(file_okay=False), help="Write the event log of each scenario to FOLDER, too.")
+@configuration
+@findings_format
+@synthesizer
+@paths
+def command(
+    model: str,
+    scenarios: Sequence[str],
+    engine: str,
+    traces: str | None,
+    chosen: str | None,
+    form: str,
+    paths: Paths,
+) -> None:
+    """Play scenarios: what comes from the robot, and what is expected of its controller then.
+
+    MODEL is a .rscd file with a robot. docs/scenarios.md says what stands in a FILE. They are played with the robot's
+    controller in Python; with `--engine c` its control loop is also compared with that of the generated C, compiled, in
+    every step. Traces in the folder test/traces of a generated package are played against the node by its own tests.
+
+    \b
+    Examples:
+      robosc test line_follower.rscd line_follower.scenarios
+      robosc test line_follower.rscd *.scenarios --engine c
+      robosc test line_follower.rscd line_follower.scenarios --traces ros2/line_follower_controller/test/traces
+
+    Exit status: 0 all is as expected, 1 something is not, or errors, 2 a wrong call, 3 no supervisor exists.
+    """
+    if not model.endswith(".rscd"):
+        raise CallError(f"{model} is no text: scenarios speak of a robot in a .rscd file")
+    with Report(form, aside=form != "text") as report:
+        models, expressions, played = _read(model, scenarios, paths, report)
+        settings = read_configuration(model, chosen, report)
+        report.stop_on_errors()
+        supervise_models(models, report)
+        report.stop_on_errors()
+        assert models.rosgraph is not None
+        distribution = RosTypes(paths.interfaces).distributions[0]
+        player = Player(models.rosgraph, settings, distribution, expressions)
+        logs: dict[str, str] = {}
+        with progress("playing"):
+            failed = 0
+            runs = []
+            for number, scenario in enumerate(played, 1):
+                operations = Operations()
+                found = player.play(scenario, operations)
+                runs.append(operations)
+                failed += bool(found)
+                report.add(found)
+                logs[f"scenario_{number}.jsonl"] = "".join(f"{line}\n" for line in player.trace)
+            if engine == "c":
+                report.add(_compared(models, settings, runs))
+        if traces is not None:
+            write({Path(traces): logs})
+        say(f"{len(played)} scenario{'s' * (len(played) != 1)}, {failed} failed", err=True)
+
+
+def _read(
+    path: str, names: Sequence[str], paths: Paths, report: Report
+) -> tuple[Models, Mapping[Holds, ex.Expression], list[Scenario]]:
+    """The models of a robot, scenarios, and what their conditions mean; what is wrong goes to the report."""
+    plain = read_models(path, paths, report)
+    scenarios: list[Scenario] = []
+    conditions: list[Holds] = []
+    for name in names:
+        text, faults = decode(name, files.read(name))
+        found, expected, findings = read_scenarios(name, text.content)
+        report.add([*(replace(fault, rule=RULE) for fault in faults), *findings], {name: text.content})
+        scenarios += found
+        conditions += expected
+    report.add(unknown_events(plain.sct, scenarios))
+    return (*_meant(path, plain, conditions, paths, report), scenarios)
+
+
+def _meant(
+    path: str, plain: Models, conditions: Sequence[Holds], paths: Paths, report: Report
+) -> tuple[Models, Mapping[Holds, ex.Expression]]:
+    """The models with which conditions can be evaluated, and what these mean there."""
+    if not conditions:
+        return plain, {}
+    text, _ = decode(path, files.read(path))
+    assert plain.robosc is not None
+    span = plain.robosc.source.span  # type: ignore[union-attr]  # what was read from a text has its place
+    longer = extended(text.content, text.offset(span.end_line, span.end_column), conditions)
+    types = RosTypes(paths.interfaces)
+    reading = read_text(path, paths.libraries, types, Documents({path: longer.text}))
+    findings = [*reading.findings, *(check(reading.base, reading.findings, types) if reading.base else ())]
+    report.add(told for told in map(longer.told, findings) if told.rule == RULE)
+    report.stop_on_errors()
+    robot: rsc.Robot = reading.base  # type: ignore[assignment]  # it is the same but for the properties
+    model = robosc.to_sct(robot)
+    meant = dict(zip(conditions, longer.expressions(model), strict=True))
+    return Models(model, robosc.to_rosgraph(robot, paths.interfaces), robot), meant
+
+
+def _compared(models: Models, settings: Configuration, runs: Sequence[Operations]) -> list[Diagnostic]:
+    """Where the generated control loop does something else. Raises CallError where it can't be compiled here."""
+    compiler = c_compiler()
+    if compiler is None:
+        raise CallError("there is no C compiler to play scenarios with")
+    generated = robosc.generate("supervisor", models, settings)
+    with temporary_folder() as folder:
+        program = CProgram(models.sct, folder, compiler, generated)
+        differences = [run.compared(program) for run in runs]
+    return [difference for difference in differences if difference is not None]

@@ -1,0 +1,144 @@
+"""A controller that runs in Python without ROS, with a robot that does what it is told, and a clock that is set."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from robosc.node_tests.robot import Robot
+from robosc.node_tests.samples import all_incoming
+from robosc.node_tests.trace_player import START, Pace
+from robosc.runtime.core.controller import Controller
+from robosc.runtime.core.event_log import EventLog
+from robosc.runtime.core.event_loop import EventLoop
+from robosc.runtime.core.json_text import json_text
+from robosc.runtime.core.settings import Settings
+from robosc.semantics.parameters import Value, controller_parameters
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from robosc.configuration import Configuration
+    from robosc.metamodel import rosgraph, sct
+    from robosc.node_tests.samples import Incoming
+    from robosc.ros_types import RosDistribution
+
+    #: Lets something come in; the fields of what it is, None where it has none.
+    Act = Callable[[], "dict[str, Any] | None"]
+
+_Made = TypeVar("_Made", bound="DrivenController")
+
+_DAY = 24 * 3600 * 1000
+#: So many milliseconds after its time a timer has rung for sure.
+_MARGIN = 1.01
+
+
+def parameters(graph: rosgraph.RosGraph, configuration: Configuration) -> dict[str, bool | int]:
+    """With what a node is started for a test: every deadline is a multiple of the period, so that it falls on no tick.
+
+    A robot whose topics are silent between two lines of a trace is not stopped.
+    """
+    period = configuration.control_loop.period_ms
+    declared = _defaults(graph, configuration)
+    most = _DAY // period * period
+    rounded: dict[str, bool | int] = {
+        name: min(-(-int(value) // period) * period, most)
+        for name, value in declared.items()
+        if name in ("service_timeout_ms", "action_timeout_ms", "retry_ms")
+    }
+    return {"period_ms": period, **rounded, "watchdog_stops": False}
+
+
+def _defaults(graph: rosgraph.RosGraph, configuration: Configuration) -> dict[str, Value]:
+    return {parameter.name: parameter.default for parameter in controller_parameters(graph, configuration, "")}
+
+
+class MeetingTimesError(Exception):
+    """A time is up when a tick is due."""
+
+
+class _Lines(EventLog):
+    """Keeps the lines of a log."""
+
+    active = True
+
+    def __init__(self) -> None:
+        super().__init__("")
+        self.kept: list[str] = []
+
+    def append(self, line: str) -> None:
+        self.kept.append(line.removesuffix("\n"))
+
+
+class DrivenController(Controller):
+    """A controller that can be asked for its times."""
+
+    @property
+    def pauses(self) -> bool:
+        """Whether it waits after a failure."""
+        return any(failure.pause is not None for failure in self._failures.values())
+
+    @property
+    def up(self) -> int | None:
+        """At how many milliseconds the next time is up; None where none runs."""
+        timers = self._control.timers
+        return None if timers.wait is None else timers.now + timers.wait
+
+
+class Drive:
+    """Runs of one controller, one after the other; what a run does is its trace, `_lines.kept`."""
+
+    _controller: DrivenController
+
+    def __init__(self, graph: rosgraph.RosGraph, configuration: Configuration, distribution: RosDistribution) -> None:
+        self._graph = graph
+        self._distribution = distribution
+        self._configuration = configuration
+        self.parameters = parameters(graph, configuration)
+        self._period = self.parameters["period_ms"] / 1000
+        #: What each event that comes in shows, and the messages to choose from; the events of one topic share it.
+        self.incoming: dict[sct.Event, Incoming] = all_incoming(graph, distribution)
+
+    def _begin(self, kind: type[_Made]) -> _Made:
+        """Makes the controller of a new run, which is still to be started."""
+        self._pace = Pace(self._period)
+        self._now = START * self._period
+        settings = Settings(_defaults(self._graph, self._configuration) | self.parameters, self._configuration)
+        self._robot = Robot(self._graph, self._distribution, lambda: self._now)
+        self._event_loop = EventLoop(lambda: self._now)
+        self._lines = _Lines()
+        controller = kind(self._graph, settings, self._robot, self._event_loop)
+        controller.log_to(self._lines)
+        return controller
+
+    def _let_in(self, act: Act) -> None:
+        before = len(self._lines.kept)
+        sent = act()
+        self._work()
+        if sent is not None and len(self._lines.kept) > before:
+            line = self._lines.kept[before]
+            self._lines.kept[before] = f'{line[:-1]},"message":{json_text(sent)}}}'
+
+    def _pass_period(self) -> None:
+        """As the player lets it pass: where a time is up on the way, the clock stops there.
+
+        Raises MeetingTimesError where that is when the node has its tick: which of them comes first, ROS does not say.
+        """
+        over = False
+        while not over:
+            self._robot.end_cancelled()
+            self._work()
+            up = self._controller.up
+            stop = self._pace.next if up is None else self._pace.before((up + _MARGIN) / 1000)
+            if stop is None:
+                assert up is not None
+                self._now = (up + _MARGIN) / 1000
+            else:
+                self._now = stop
+                over = self._pace.advance()
+                if not over and up is not None and up < stop * 1000:
+                    raise MeetingTimesError
+            self._work()
+
+    def _work(self) -> None:
+        while self._event_loop.run_pending() == 0:
+            pass

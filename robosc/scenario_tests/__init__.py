@@ -1,0 +1,6 @@
+"""Scenarios: what comes from a robot, step by step, and what is expected of its controller then."""
+
+from robosc.scenario_tests.playing import Player, unknown_events
+from robosc.scenario_tests.reading import RULE, Scenario, read_scenarios
+
+__all__ = ["RULE", "Player", "Scenario", "read_scenarios", "unknown_events"]

@@ -1,0 +1,60 @@
+"""The conditions that scenarios expect, read by the language itself: as properties at the end of the robot's text."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from robosc.diagnostics import Diagnostic, Span
+from robosc.scenario_tests.reading import RULE
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from robosc.metamodel import expression as ex
+    from robosc.metamodel import sct
+    from robosc.scenario_tests.reading import Holds
+
+
+@dataclass(frozen=True)
+class Extended:
+    """A robot's text with a property for each condition, in lines of their own from `first` on."""
+
+    text: str
+    first: int
+    conditions: Sequence[Holds]
+
+    def told(self, finding: Diagnostic) -> Diagnostic:
+        """A finding as the user is told it: one about a condition stands where that is written."""
+        number = finding.span.line - self.first
+        if not 0 <= number < len(self.conditions):
+            return finding
+        condition = self.conditions[number]
+        shift = condition.span.column - len(_before(number)) - 1
+        line = condition.span.line
+        end = min(finding.span.end_column + shift, condition.span.end_column)
+        span = Span(line, min(finding.span.column + shift, end - 1), line, end)
+        return replace(finding, file=condition.file, span=span, edits=(), hint=finding.hint, rule=RULE)
+
+    def expressions(self, model: sct.SupervisoryControlModel) -> list[ex.Expression]:
+        """The conditions as the model made of the text has them; its properties are what they were then."""
+        named = {declared.name: declared for declared in model.properties}
+        found = [named[_name(number)] for number in range(len(self.conditions))]
+        for declared in found:
+            model.properties.remove(declared)
+        return [declared.condition for declared in found]
+
+
+def extended(text: str, end: int, conditions: Sequence[Holds]) -> Extended:
+    """The text of a robot that ends at an offset, with its closing brace, and the conditions."""
+    brace = text.rindex("}", 0, end)
+    lines = "".join(f"{_before(number)}{condition.text})\n" for number, condition in enumerate(conditions))
+    return Extended(f"{text[:brace]}\n{lines}{text[brace:]}", text.count("\n", 0, brace) + 2, conditions)
+
+
+def _name(number: int) -> str:
+    return f"expected_in_line_of_scenario_{number}"
+
+
+def _before(number: int) -> str:
+    return f"property {_name(number)}: always ("

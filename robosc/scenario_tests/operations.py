@@ -1,0 +1,99 @@
+"""What a controller asks of its control loop, so that the generated one can be asked the same."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from robosc.analysis.verify.loop_lockstep import DifferenceError, Lockstep
+from robosc.diagnostics import Span
+from robosc.engine.state import Domain
+from robosc.scenario_tests.reading import Line
+
+if TYPE_CHECKING:
+    from robosc.analysis.verify.c_program import CProgram
+    from robosc.diagnostics import Diagnostic
+    from robosc.engine import ControlLoop, Settings
+
+#: The calls of a loop that take nothing, by what the follower calls them.
+_CALLS = {"begin": "b", "end": "e", "tick": "t", "expire": "x"}
+
+
+@dataclass
+class _Operation:
+    name: str
+    line: Line
+    now: int
+    arguments: tuple[Any, ...] = ()
+    withheld: set[str] = field(default_factory=set)
+
+
+class Operations:
+    """All calls of one control loop, with the line of the scenario that brought them about."""
+
+    def __init__(self) -> None:
+        self.line = Line("", Span(1, 1, 1, 1))
+        self._operations: list[_Operation] = []
+        self._depth = 0
+
+    def attach(self, loop: ControlLoop) -> None:
+        """Notes the calls of a loop from now on; those that a call makes itself belong to it."""
+        self._settings: Settings = loop.settings
+        for name in (*_CALLS, "perform"):
+            self._note(loop, name, loop)
+        self._note(loop.timers, "restart", loop)
+
+    def _note(self, owner: Any, name: str, loop: ControlLoop) -> None:
+        call = getattr(owner, name)
+
+        def noted(*arguments: Any) -> Any:
+            if self._depth == 0:
+                self._operations.append(_Operation(name, self.line, loop.timers.now, arguments))
+            self._depth += 1
+            try:
+                return call(*arguments)
+            finally:
+                self._depth -= 1
+
+        setattr(owner, name, noted)
+
+    def withheld(self, event: str) -> None:
+        """The event is withheld in the call that is under way."""
+        if self._operations:
+            self._operations[-1].withheld.add(event)
+
+    def compared(self, program: CProgram) -> Diagnostic | None:
+        """Where the generated loop does something else, None where it does all the same."""
+        with program.running([program.follower]) as process:
+            lockstep = Lockstep(program.model, process)
+            lockstep.begin(self._settings)
+            began = lockstep.loop.timers.now
+            for operation in self._operations:
+                passed = began + operation.now - lockstep.loop.timers.now
+                if passed and lockstep.loop.timers.exist:
+                    lockstep.pass_time(passed)
+                for number in lockstep.withheld:
+                    if lockstep.names[number] not in operation.withheld:
+                        lockstep.withhold(number)
+                for name in sorted(operation.withheld):
+                    number = lockstep.names.index(name)
+                    if number not in lockstep.withheld:
+                        lockstep.withhold(number)
+                self._repeat(lockstep, operation)
+                try:
+                    lockstep.compare()
+                except DifferenceError as error:
+                    return operation.line.fault(f"{error}")
+        return None
+
+    @staticmethod
+    def _repeat(lockstep: Lockstep, operation: _Operation) -> None:
+        if operation.name == "perform":
+            event, *data = operation.arguments
+            number = lockstep.names.index(event)
+            given = data[0] or {} if data else {}
+            domains = [(parameter.name, Domain(parameter.type)) for parameter in lockstep.events[number].inputs]
+            codes = (domain.internal(given[name]) - domain.low if name in given else 0 for name, domain in domains)
+            lockstep.perform(number, tuple(codes))
+        else:
+            lockstep.operate({**_CALLS, "restart": "r"}[operation.name])

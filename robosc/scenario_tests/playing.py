@@ -1,0 +1,253 @@
+"""Scenarios played against the controller in Python, without ROS, in time that is set; and against the generated C."""
+
+from __future__ import annotations
+
+import json
+import math
+from typing import TYPE_CHECKING, Any
+
+from robosc.analysis.explain import NamingError, event_named
+from robosc.analysis.wording import called, words
+from robosc.engine import Blocked
+from robosc.metamodel import sct
+from robosc.node_tests.drive import Drive, DrivenController, MeetingTimesError
+from robosc.node_tests.messages import message
+from robosc.node_tests.trace_player import Incoming as Reader
+from robosc.node_tests.trace_player import Line as TraceLine
+from robosc.node_tests.trace_player import TraceError, leaves, same
+from robosc.node_tests.trace_test import described
+from robosc.runtime.core.port import Outcome
+from robosc.scenario_tests.reading import Allowed, Holds, Incoming, Sent, Wait
+from robosc.semantics.evaluation import evaluate
+from robosc.semantics.roles import event_name
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator, Mapping
+
+    from robosc.configuration import Configuration
+    from robosc.diagnostics import Diagnostic
+    from robosc.metamodel import expression as ex
+    from robosc.metamodel import rosgraph
+    from robosc.ros_types import RosDistribution
+    from robosc.scenario_tests.operations import Operations
+    from robosc.scenario_tests.reading import Line, Scenario
+
+
+class _Controller(DrivenController):
+    """A controller that can be asked what it would do."""
+
+    @property
+    def engine(self) -> Any:
+        """What runs the supervised system."""
+        return self._control.engine
+
+    def note(self, operations: Operations) -> None:
+        """Notes from now on what is asked of the control loop."""
+        self._operations = operations
+        operations.attach(self._control)
+
+    def _before(self, name: str) -> bool:
+        may_happen = super()._before(name)
+        if not may_happen:
+            self._operations.withheld(name)
+        return may_happen
+
+
+#: The kinds of events that a step may name.
+_FROM_THE_ROBOT = (sct.EventKind.response, sct.EventKind.error, sct.EventKind.feedback)
+
+
+def unknown_events(model: sct.SupervisoryControlModel, scenarios: Iterable[Scenario]) -> Iterator[Diagnostic]:
+    """What scenarios name that the robot does not have, or that does not come from it."""
+    for line in (line for scenario in scenarios for line in scenario.steps):
+        if not isinstance(line, (Incoming, Allowed, Sent)):
+            continue
+        try:
+            event = event_named(model, line.event)
+        except NamingError as error:
+            yield line.fault(error.message, error.hint or None)
+            continue
+        if isinstance(line, Incoming) and event.kind not in _FROM_THE_ROBOT:
+            hint = "a step names a message, an answer or an error; time goes by with `wait`"
+            yield line.fault(f"the {words(event)} does not come from the robot", hint)
+
+
+class Player(Drive):
+    """Plays scenarios of one robot, each from its start.
+
+    `conditions` are what their `expect` lines ask for, as the sct model has them. Of the last scenario played `trace`
+    is the event log, and `operations` what was asked of the control loop.
+    """
+
+    _controller: _Controller
+
+    def __init__(
+        self,
+        graph: rosgraph.RosGraph,
+        configuration: Configuration,
+        distribution: RosDistribution,
+        conditions: Mapping[Holds, ex.Expression],
+    ) -> None:
+        super().__init__(graph, configuration, distribution)
+        self._conditions = conditions
+        self._acts: dict[sct.Event, tuple[sct.Event, Callable[[Any, bool], None]]] = {}
+        for topic in graph.subscriptions:
+            for reception in topic.receptions:
+                self._acts[reception.event] = (reception.event, self._published(topic))
+        for service in graph.serviceClients:
+            self._acts[service.response.event] = (service.response.event, self._answered(service))
+            self._acts[service.error] = (service.response.event, self._failed(service))
+        for action in graph.actionClients:
+            self._acts[action.feedback.event] = (action.feedback.event, self._fed_back(action))
+            self._acts[action.response.event] = (action.response.event, self._ended(action, Outcome.SUCCEEDED))
+            self._acts[action.error] = (action.response.event, self._ended(action, Outcome.ABORTED))
+
+    @property
+    def trace(self) -> list[str]:
+        """The lines of the event log."""
+        return self._lines.kept
+
+    def play(self, scenario: Scenario, operations: Operations) -> list[Diagnostic]:
+        """What is not as the scenario expects it; after something that can't be played nothing is tried any more."""
+        self._controller = self._begin(_Controller)
+        self._controller.note(operations)
+        self._controller.start()
+        findings: list[Diagnostic] = []
+        self._since = 0
+        try:
+            self._pass_period()
+            for line in scenario.steps:
+                operations.line = line
+                fault = self._played(line)
+                if fault is not None:
+                    findings.append(fault)
+                    if isinstance(line, (Incoming, Wait)):
+                        break
+        except MeetingTimesError:
+            findings.append(operations.line.fault("here a time is up at the moment of a tick: wait a little longer"))
+        finally:
+            self._controller.close()
+        return findings
+
+    def _played(self, line: Line) -> Diagnostic | None:
+        try:
+            match line:
+                case Wait(seconds=seconds):
+                    self._since = len(self._lines.kept)
+                    for _ in range(math.ceil(round(seconds / self._period, 6))):
+                        self._pass_period()
+                case Incoming():
+                    self._since = len(self._lines.kept)
+                    self._come_in(line)
+                case Holds(text=text):
+                    if not evaluate(self._conditions[line], self._controller.engine.read):
+                        return line.fault(f"`{text}` does not hold", self._state())
+                case Allowed():
+                    return self._verdict(line, event_named(self._graph.model, line.event))
+                case Sent():
+                    return self._sent(line, event_named(self._graph.model, line.event))
+        except NamingError as error:
+            return line.fault(error.message, error.hint or None)
+        except TraceError as error:
+            return line.fault(str(error).partition(": ")[2] or str(error))
+        return None
+
+    # Steps
+
+    def _come_in(self, line: Incoming) -> None:
+        event = event_named(self._graph.model, line.event)
+        source, act = self._acts[event]
+        if not self._controller.engine.enabled(event_name(event)):
+            raise NamingError(f"the {words(event)} can't come now: nothing that it ends is under way", "")
+        described_kind = Reader(described(self.incoming[source]))
+        data = {"value": line.data} if line.data is not None and not line.is_message else None
+        given = dict(line.data) if line.is_message else None
+        fields = described_kind.message([TraceLine(line.span.line, 0.0, "in", event_name(source), data, given)])
+        made = message(self.incoming[source].fields, dict(leaves(_by_index(fields))) if fields else {})
+
+        def come_in() -> dict[str, Any] | None:
+            act(made, line.data is not None)
+            return fields
+
+        self._let_in(come_in)
+
+    def _published(self, topic: rosgraph.Subscription) -> Callable[[Any, bool], None]:
+        return lambda data, _: self._controller.receive(topic, data)
+
+    def _answered(self, service: rosgraph.ServiceClient) -> Callable[[Any, bool], None]:
+        return lambda data, _: self._robot.calls.pop(service)[1].answered(data)
+
+    def _failed(self, service: rosgraph.ServiceClient) -> Callable[[Any, bool], None]:
+        def fail(data: Any, is_given: bool) -> None:
+            _, handlers = self._robot.calls.pop(service)
+            if is_given:
+                handlers.answered(data)
+            else:
+                handlers.failed("")
+
+        return fail
+
+    def _fed_back(self, action: rosgraph.ActionClient) -> Callable[[Any, bool], None]:
+        return lambda data, _: self._robot.goals[action].handlers.feedback(data)
+
+    def _ended(self, action: rosgraph.ActionClient, outcome: Outcome) -> Callable[[Any, bool], None]:
+        return lambda data, _: self._robot.goals.pop(action).handlers.ended(outcome, data, "")
+
+    # Expectations
+
+    def _verdict(self, line: Allowed, event: sct.Event) -> Diagnostic | None:
+        engine = self._controller.engine
+        by, told = engine.blocked_by(event_name(event)), words(event)
+        failing = engine.failing(event_name(event))
+        if not line.forbidden:
+            if by is None:
+                return None
+            why = f"{called(failing)} forbids it" if failing else _WHY[by]
+            return line.fault(f"the {told} is not allowed: {why}", self._state())
+        if by in (None, Blocked.PLANT):
+            why = "it is allowed" if by is None else _WHY[Blocked.PLANT]
+            return line.fault(f"the {told} is not forbidden: {why}", self._state())
+        if line.by is None or any(line.by in (one.name, one.text) or line.by in (one.text or "") for one in failing):
+            return None
+        others = called(failing) if failing else "synthesis"
+        return line.fault(f"the {told} is not forbidden by `{line.by}`, but by {others}", self._state())
+
+    def _sent(self, line: Sent, event: sct.Event) -> Diagnostic | None:
+        sent = [json.loads(text) for text in self._lines.kept[self._since :]]
+        found = [one.get("data", {}).get("value") for one in sent if one["event"] == event_name(event)]
+        told = words(event)
+        if not line.expected:
+            return line.fault(f"the {told} was sent") if found else None
+        if not found:
+            return line.fault(f"the {told} was not sent since the last step", self._state())
+        if line.data is None or any(_agrees(line.data, data) for data in found):
+            return None
+        return line.fault(f"the {told} was sent with other data", f"sent was {json.dumps(found[-1])}")
+
+    def _state(self) -> str:
+        engine = self._controller.engine
+        plants = [plant for plant in self._graph.model.plants if plant.kind == sct.PlantKind.behaviour]
+        told = [f"{plant.origin}.{plant.locations[engine.location(plant)].name}" for plant in plants]
+        told += [f"{plant.origin}.{one.name} = {engine.value(one)}" for plant in plants for one in plant.variables]
+        return f"the robot is in {', '.join(told)}" if told else ""
+
+
+_WHY = {
+    Blocked.PLANT: "the robot is not ready for it",
+    Blocked.REQUIREMENT: "its requirements forbid it",
+    Blocked.SYNTHESIS: "synthesis forbids it",
+}
+
+
+def _agrees(expected: Any, found: Any) -> bool:
+    """Whether data has what is expected of it; fields that are not named may be anything."""
+    if isinstance(expected, dict) and isinstance(found, dict):
+        return all(name in found and _agrees(value, found[name]) for name, value in expected.items())
+    return same(expected, found)
+
+
+def _by_index(value: Any) -> Any:
+    """Fields in which arrays are objects from index to element."""
+    if isinstance(value, list):
+        value = {str(index): inner for index, inner in enumerate(value)}
+    return {name: _by_index(inner) for name, inner in value.items()} if isinstance(value, dict) else value

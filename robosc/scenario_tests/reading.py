@@ -1,0 +1,214 @@
+"""The text of scenarios: a line for each step and each expectation."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from difflib import get_close_matches
+from typing import TYPE_CHECKING, Any
+
+from robosc.diagnostics import Diagnostic, Severity, Span
+from robosc.files.json_reading import JsonError, json_value
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+RULE = "scenario"
+_SCENARIO = re.compile(r'scenario\s+"([^"]+)"')
+_WAIT = re.compile(r"wait\s+(\d+(?:\.\d+)?)\s*(ms|s|min)")
+_SECONDS = {"ms": 0.001, "s": 1.0, "min": 60.0}
+#: A day: what is longer is a mistake.
+_LONGEST = 86_400
+_EVENT = r"(?:(?P<kind>request|response|error|feedback|cancel)\s+(?:to|from)\s+)?(?P<name>\^?[A-Za-z_]\w*(?:\.\^?\w+)*)"
+_STEP = re.compile(_EVENT + r"(?:\s+with\s+(?P<message>message\s+)?(?P<data>.+))?")
+_EXPECTED = re.compile(
+    _EVENT + r"\s+(?:(?P<verdict>allowed)|(?P<forbidden>forbidden)(?:\s+by\s+(?P<by>.+))?"
+    r"|(?P<sent>(?:not\s+)?sent)(?:\s+with\s+(?P<data>.+))?)"
+)
+#: What else a line may begin with.
+_WORDS = ("scenario", "wait", "expect")
+
+
+@dataclass(frozen=True)
+class Line:
+    """A line that says something, and where that stands: from its first word to its end."""
+
+    file: str
+    span: Span
+
+    def fault(self, message: str, hint: str | None = None) -> Diagnostic:
+        """A finding about it."""
+        return Diagnostic(self.file, self.span, Severity.ERROR, RULE, message, hint)
+
+
+@dataclass(frozen=True)
+class Incoming(Line):
+    """Something comes from the robot; `event` is as `explain` takes it, such as `scan` or `dock.error`.
+
+    `data` is that of the event as the event log has it; `is_message`: all fields of what ROS brings.
+    """
+
+    event: str
+    data: Any = None
+    is_message: bool = False
+
+
+@dataclass(frozen=True)
+class Wait(Line):
+    """Time goes by."""
+
+    seconds: float
+
+
+@dataclass(frozen=True)
+class Holds(Line):
+    """A condition is expected to hold; `number` is its place among those of the file."""
+
+    text: str
+    number: int
+
+
+@dataclass(frozen=True)
+class Allowed(Line):
+    """An event is expected to be possible, or forbidden, by a certain requirement where one is named."""
+
+    event: str
+    forbidden: bool = False
+    by: str | None = None
+
+
+@dataclass(frozen=True)
+class Sent(Line):
+    """A command is expected to have been sent since the last step, or not; with this data where some is given."""
+
+    event: str
+    expected: bool = True
+    data: Any = None
+
+
+@dataclass
+class Scenario:
+    """A run of the robot from its start."""
+
+    name: str
+    line: Line
+    steps: list[Line] = field(default_factory=list)
+
+
+def read_scenarios(file: str, text: str) -> tuple[list[Scenario], list[Holds], list[Diagnostic]]:
+    """The scenarios of a text, all conditions that they expect, and what is wrong with the text."""
+    reader = _Reader(file)
+    for number, line in enumerate(text.split("\n"), 1):
+        words = _without_comment(line).rstrip()
+        start = len(words) - len(words.lstrip())
+        if words:
+            reader.read(words[start:], Line(file, Span(number, start + 1, number, len(words) + 1)))
+    for scenario in reader.scenarios:
+        if not any(isinstance(step, (Holds, Allowed, Sent)) for step in scenario.steps):
+            reader.findings.append(scenario.line.fault("nothing is expected in this scenario", "write `expect …`"))
+    return reader.scenarios, reader.conditions, sorted(reader.findings, key=lambda finding: finding.span.line)
+
+
+def _without_comment(line: str) -> str:
+    """A line up to `//`, unless that stands in a text."""
+    quoted = False
+    for position, character in enumerate(line):
+        quoted ^= character == '"'
+        if not quoted and line.startswith("//", position):
+            return line[:position]
+    return line
+
+
+class _Reader:
+    def __init__(self, file: str) -> None:
+        self._file = file
+        self.scenarios: list[Scenario] = []
+        self.conditions: list[Holds] = []
+        self.findings: list[Diagnostic] = []
+
+    def read(self, text: str, line: Line) -> None:
+        word, _, rest = text.partition(" ")
+        if word == "scenario":
+            named = _SCENARIO.fullmatch(text)
+            if named is None:
+                self.findings.append(line.fault("a scenario needs a name", 'write `scenario "stops for an obstacle"`'))
+            self.scenarios.append(Scenario(named[1] if named else "", line))
+            return
+        if not self.scenarios:
+            self.findings.append(line.fault("this stands before the first scenario", 'begin with `scenario "…"`'))
+            self.scenarios.append(Scenario("", line))
+        steps = self.scenarios[-1].steps
+        if word == "wait":
+            steps += self._wait(text, line)
+        elif word == "expect":
+            steps += self._expected(rest.strip(), line)
+        else:
+            steps += self._step(text, line)
+
+    def _wait(self, text: str, line: Line) -> Iterator[Line]:
+        given = _WAIT.fullmatch(text)
+        seconds = float(given[1]) * _SECONDS[given[2]] if given else -1.0
+        if 0 <= seconds <= _LONGEST:
+            yield Wait(line.file, line.span, seconds)
+        else:
+            self.findings.append(
+                line.fault("`wait` needs a time of at most a day", "write `wait 500 ms` or `wait 3.0 s`")
+            )
+
+    def _step(self, text: str, line: Line) -> Iterator[Line]:
+        given = _STEP.fullmatch(text)
+        if given is None:
+            close = get_close_matches(text.split(maxsplit=1)[0], _WORDS, n=1)
+            hint = (
+                f"did you mean `{close[0]}`?"
+                if close
+                else "write `response from scan with clear`, `wait 1 s` or `expect …`"
+            )
+            self.findings.append(line.fault("this is neither a step nor an expectation", hint))
+            return
+        data = self._data(given["data"], line)
+        if given["message"] and not isinstance(data, dict):
+            self.findings.append(
+                line.fault("a message is an object with fields", 'write `with message {"ranges": [1.0]}`')
+            )
+            return
+        yield Incoming(line.file, line.span, _event(given), data, bool(given["message"]))
+
+    def _expected(self, text: str, line: Line) -> Iterator[Line]:
+        given = _EXPECTED.fullmatch(text)
+        if given is None:
+            if not text:
+                self.findings.append(
+                    line.fault("`expect` needs what is expected", "write `expect move allowed`, or a condition")
+                )
+                return
+            column = line.span.end_column - len(text)
+            span = Span(line.span.line, column, line.span.line, line.span.end_column)
+            self.conditions.append(Holds(line.file, span, text, len(self.conditions)))
+            yield self.conditions[-1]
+        elif given["sent"]:
+            expected = given["sent"] == "sent"
+            data = self._data(given["data"], line)
+            if not expected and data is not None:
+                self.findings.append(line.fault("what is not sent has no data", "leave out `with …`"))
+            yield Sent(line.file, line.span, _event(given), expected, data)
+        else:
+            by = given["by"].strip().strip('"') if given["by"] else None
+            yield Allowed(line.file, line.span, _event(given), bool(given["forbidden"]), by)
+
+    def _data(self, text: str | None, line: Line) -> Any:
+        """JSON, or the name of a literal as it stands."""
+        if text is None or re.fullmatch(r"(?!true$|false$|null$)[A-Za-z_]\w*", text):
+            return text
+        try:
+            return json_value(text)
+        except JsonError as error:
+            column = line.span.end_column - len(text) + error.position
+            span = Span(line.span.line, column, line.span.line, line.span.end_column)
+            self.findings.append(Line(line.file, span).fault(str(error), "data is JSON, or the name of a literal"))
+            return None
+
+
+def _event(given: re.Match[str]) -> str:
+    name = given["name"].replace("^", "")
+    return f"{name}.{given['kind']}" if given["kind"] else name

@@ -1,0 +1,179 @@
+"""Scenarios of users: what they say, what is wrong with them, and where the robot does not do as they expect."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+
+import robosc
+from robosc.cli import main
+
+HERE = Path(__file__).parent
+EXAMPLE = HERE.parents[1] / "examples" / "line_follower"
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    shutil.copy(HERE / "dock.rscd", tmp_path)
+    return tmp_path
+
+
+def played_files(*arguments: str) -> Result:
+    return CliRunner().invoke(main, ["test", *arguments], catch_exceptions=False)
+
+
+def played(text: str, *options: str) -> Result:
+    Path("dock.scenarios").write_text(text, encoding="utf-8")
+    return played_files("dock.rscd", "dock.scenarios", *options)
+
+
+def findings(text: str, *options: str) -> list[tuple[int, int, str]]:
+    answer = played(text, "--format", "json", *options)
+    said = json.loads(answer.stdout)
+    assert answer.exit_code == any(one["severity"] == "error" for one in said), answer.output
+    return [(one["line"], one["column"], one["message"]) for one in said if one["rule"] == "scenario"]
+
+
+GOOD = """
+scenario "docks"
+  wait 100 ms
+  expect Dock.docking
+  feedback from dock
+  response from dock with {"slot": 3}
+  expect Dock.docked and not_pressed
+  wait 100 ms
+  expect lamp sent with 0.5
+
+scenario "another slot, an error and a pause"
+  wait 0.1 s
+  response from dock with {"slot": 1}
+  expect dock sent
+  error from dock
+  expect Dock.pausing
+  expect dock not sent
+  wait 1900 ms
+  expect Dock.pausing
+  wait 3 s
+  expect dock sent
+
+scenario "not while the bumper is pressed"
+  hit with true
+  wait 0.2 s
+  expect dock forbidden by SR1
+  expect dock forbidden by "nobody is run over"
+""".replace(" and not_pressed", " and !Bumper.pressed")
+
+
+@pytest.mark.parametrize("engine", ["python", pytest.param("c", marks=pytest.mark.build)])
+def test_what_is_as_expected(engine: str) -> None:
+    answer = played(GOOD, "--engine", engine)
+    assert answer.exit_code == 0, answer.output
+    assert "3 scenarios, 0 failed\n" in answer.stderr
+
+
+@pytest.mark.parametrize("engine", ["python", pytest.param("c", marks=pytest.mark.build)])
+def test_the_example(engine: str) -> None:
+    files = [str(EXAMPLE / "line_follower.rscd"), str(EXAMPLE / "line_follower.scenarios")]
+    answer = played_files(*files, "--engine", engine)
+    assert answer.exit_code == 0, answer.output
+    assert "3 scenarios, 0 failed\n" in answer.stderr
+
+
+@pytest.mark.parametrize(
+    ("expectation", "why"),
+    [
+        ("Dock.docked", "`Dock.docked` does not hold"),
+        (
+            "lamp allowed",
+            "the request to `Lamp.lamp` is not allowed: `requirement lamp needs Dock.docked` (line 58) forbids it",
+        ),
+        ("dock allowed", "the request to `Dock.dock` is not allowed: the robot is not ready for it"),
+        ("hit forbidden", "the response from `Bumper.hit` is not forbidden: it is allowed"),
+        ("lamp forbidden by SR1", "the request to `Lamp.lamp` is not forbidden by `SR1`, but by `requirement lamp"),
+        ("lamp sent", "the request to `Lamp.lamp` was not sent since the last step"),
+        ("dock not sent", "the request to `Dock.dock` was sent"),
+    ],
+)
+def test_what_is_not_as_expected(expectation: str, why: str) -> None:
+    [(line, column, message)] = findings(f'scenario "one"\n\n  expect {expectation}\n')
+    assert (line, column) == (3, 10 if "does not hold" in why else 3)
+    assert message.startswith(why)
+
+
+def test_other_data() -> None:
+    text = GOOD.replace("lamp sent with 0.5", "lamp sent with 0.25")
+    [(line, _, message)] = findings(text)
+    assert (line, message) == (9, "the request to `Lamp.lamp` was sent with other data")
+
+
+def test_what_can_not_come() -> None:
+    """Nothing that follows it is tried; other scenarios are."""
+    failing = "  error from dock\n  error from dock\n  expect Dock.docked\n"
+    text = f'scenario "one"\n{failing}scenario "two"\n  expect Dock.docked\n'
+    told = findings(text)
+    assert [line for line, _, _ in told] == [3, 6]
+    assert told[0][2].endswith("can't come now: nothing that it ends is under way")
+
+
+def test_all_faults_are_told_in_one_run() -> None:
+    text = """expect Dock.away
+scenario docks
+  wait 3 hours
+  wait 200 min
+  expect
+  hit with {"a": }
+  hti with true
+  expect Dock.dockd
+  expect Dock.docked and
+  dock
+  expect dock not sent with 1
+  §
+"""
+    told = findings(text)
+    assert [line for line, _, _ in told] == [1, 2, 3, 5, 6, 7, 8, 9, 10, 11, 12]
+    assert "no variable or state `dockd`" in told[6][2]
+    assert told[6][1] == 15
+
+
+def test_a_scenario_without_expectations() -> None:
+    assert findings('scenario "one"\n  wait 1 s\n') == [(1, 1, "nothing is expected in this scenario")]
+
+
+def test_conditions_know_the_language() -> None:
+    assert findings('scenario "one"\n  expect Dock.away => !(Bumper.pressed) and 1 + 1 = 2 // so it is\n') == []
+
+
+def test_traces_are_event_logs(folder: Path) -> None:
+    assert played(GOOD, "--traces", "traces").exit_code == 0
+    names = sorted(path.name for path in (folder / "traces").iterdir())
+    assert names == ["scenario_1.jsonl", "scenario_2.jsonl", "scenario_3.jsonl"]
+    lines = [json.loads(line) for line in (folder / "traces" / "scenario_1.jsonl").read_text().splitlines()]
+    assert [line["event"] for line in lines if line["direction"] == "out"] == [
+        "action_dock.c_trigger",
+        "message_lamp.c_trigger",
+        "message_lamp.c_trigger",
+    ]
+    assert next(line for line in lines if line["event"] == "action_dock.u_response")["message"] == {"slot": 3}
+
+
+@pytest.mark.build
+def test_a_generated_loop_that_differs_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It happens at the step where the scenario comes to it."""
+
+    def forgetful(target: str, models: robosc.Models, configuration: robosc.Configuration) -> dict[str, str]:
+        files = generate(target, models, configuration)
+        text = files["porter_supervisor.c"]
+        assert mutated in text
+        return {**files, "porter_supervisor.c": text.replace(mutated, ";")}
+
+    mutated = "\n            && state->component_Bumper == porter_component_Bumper_clear;"
+    generate = robosc.generate
+    monkeypatch.setattr(robosc, "generate", forgetful)
+    [(line, _, message)] = findings(GOOD, "--engine", "c")
+    assert GOOD.splitlines()[line - 1].strip() == "wait 0.2 s"
+    assert message.startswith("in the control loop of the generated C")
