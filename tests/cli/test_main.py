@@ -22,6 +22,7 @@ COMMANDS = [
     "explain",
     "verify",
     "report",
+    "test",
     "simulate",
     "view",
     "dap",
