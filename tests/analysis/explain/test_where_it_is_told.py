@@ -82,7 +82,8 @@ def test_a_generated_layer_says_it_when_it_blocks(porter: rosgraph.RosGraph, tar
     [literal] = [line.strip() for line in text.splitlines() if "add_consequence" in line]
     assert literal == f'reasons.add_consequence("{WHY}");'
     entering = text.partition("bool pass_enter()")[2].partition("\n  }\n\n")[0]
-    assert literal in entering
+    assert "against_enter()" in entering
+    assert literal in text.partition("BlockReasons against_enter() const")[2].partition("\n  }\n\n")[0]
 
 
 def test_so_does_a_layer_that_runs(porter: rosgraph.RosGraph, tmp_path: Path) -> None:
