@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from robosc.language import File, Text
 
 #: Texts of fewer lines are read in whole.
-LARGE = 400
+LARGE = 200
 _WORD = re.compile(r"[A-Za-z_]\w*")
 #: What other definitions can name without naming the definition around it.
 _VISIBLE = (
