@@ -48,8 +48,8 @@ if TYPE_CHECKING:
 
 #: Seconds of the processor that a mutant may take, and bytes of memory beside what the program takes itself.
 LIMIT, MEMORY = 10, 10**9
-#: Seconds of the processor for a valid robot: the second opinions of the tests take most of them.
-VALID_LIMIT = 60
+#: Seconds of the processor for a valid robot: synthesis of a few in which everything meets everything takes minutes.
+VALID_LIMIT = 600
 CHUNKS = {"mutants": 100, "valid": 25, "cif": 50, "cif-mutants": 50}
 CALLED_EACH, SAVED_EACH, SPECIAL_EACH, BROKEN_OFF_EACH = 100, 5, 50, 100
 #: What is tried of a number that stands for no text of a model.
