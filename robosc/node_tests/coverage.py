@@ -5,10 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from robosc.engine import Blocked
 from robosc.engine.transitions import Transitions
 from robosc.metamodel import engine as en
+from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 from robosc.semantics.edges import edges_of
+from robosc.semantics.evaluation import evaluate
 from robosc.semantics.roles import event_name
 
 if TYPE_CHECKING:
@@ -24,11 +27,13 @@ _QUEUED, _SILENT = (en.Role.cancel, en.Role.trigger), en.Role.silent
 class Goal:
     """Something to see: an event's guard that is true, or false; a transition that is taken (true).
 
-    A transition `on … if …` is false where its event happens in its state and its condition does not hold.
+    A transition `on … if …` is false where its event happens in its state and its condition does not hold. A guard may
+    be false for one `cause` alone: a condition that its requirements join with others by `and`, all of which hold.
     """
 
     of: sct.Event | sct.Edge
     value: bool = True
+    cause: ex.Expression | None = None
 
 
 def goals(loop: ControlLoop) -> list[Goal]:
@@ -53,7 +58,22 @@ def goals(loop: ControlLoop) -> list[Goal]:
         if executed.role in (*_QUEUED, _SILENT, en.Role.data) and executed not in never_asked:
             event = events[executed.name]
             found += [Goal(event), *([Goal(event, value=False)] if executed.guard.terms else [])]
+            found += [Goal(event, value=False, cause=cause) for cause in causes(loop.engine.model, event)]
     return found
+
+
+def causes(model: sct.SupervisoryControlModel, event: sct.Event) -> list[ex.Expression]:
+    """The conditions that the requirements on an event join by `and`; none where there is one."""
+    supervisor = model.supervisor
+    required = [guard.requirement for guard in supervisor.guards if guard.event is event] if supervisor else []
+    pending, found = [one for one in required if one is not None], []
+    while pending:
+        condition = pending.pop()
+        if isinstance(condition, ex.Conjunction):
+            pending += (condition.right, condition.left)
+        else:
+            found.append(condition)
+    return found if len(found) > 1 else []
 
 
 class Watcher:
@@ -67,6 +87,9 @@ class Watcher:
         executed = loop.engine.executed
         self._queued = [event.name for event in executed.events if event.role in _QUEUED]
         self._silent = [event.name for event in executed.events if event.role == _SILENT]
+        self._causes = {
+            name: found for name in self._queued if (found := causes(loop.engine.model, self._events[name]))
+        }
         self._choices = [[alternative.event.name for alternative in one.alternatives] for one in executed.choices]
         self._seen_at_rest: dict[tuple[int, ...], frozenset[Goal]] = {}
 
@@ -88,8 +111,17 @@ class Watcher:
                     asked.append((event, self._engine.enabled(event)))
                     if asked[-1][1]:
                         break  # those that follow are not asked
-            self._seen_at_rest[cells] = frozenset(Goal(self._events[event], value) for event, value in asked)
+            seen = [Goal(self._events[event], value) for event, value in asked]
+            self._seen_at_rest[cells] = frozenset([*seen, *self._alone()])
         return self._seen_at_rest[cells]
+
+    def _alone(self) -> Iterator[Goal]:
+        """The conditions that keep an event from happening for which the robot is ready, each by itself."""
+        for event, conditions in self._causes.items():
+            if self._engine.blocked_by(event) == Blocked.REQUIREMENT:
+                false = [condition for condition in conditions if not evaluate(condition, self._engine.read)]
+                if len(false) == 1:
+                    yield Goal(self._events[event], value=False, cause=false[0])
 
 
 @dataclass(frozen=True)

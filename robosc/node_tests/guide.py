@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from robosc.analysis.system import GuardedSystem
 from robosc.engine.state import Domain
 from robosc.metamodel import sct
+from robosc.node_tests.coverage import causes
 from robosc.semantics.roles import SILENT, event_name, plant_of
 
 if TYPE_CHECKING:
@@ -38,6 +39,7 @@ class Guide:
         goals: Iterable[Goal],
         data: Mapping[str, list[dict[str, Value]]],
     ) -> None:
+        self._model = model
         self._encoding = encoding
         self._data = data
         self._system = GuardedSystem(model, encoding)
@@ -69,6 +71,10 @@ class Guide:
         event = goal.of if isinstance(goal.of, sct.Event) else goal.of.event
         silent = event.kind in (*SILENT, sct.EventKind.data)
         at_rest = [] if silent else [~allowed[other] for other in allowed if other.kind == sct.EventKind.tau]
+        if isinstance(goal.of, sct.Event) and goal.cause is not None:
+            others = [self._encoding.holds(one) for one in causes(self._model, goal.of) if one is not goal.cause]
+            ready = self._system.relations[goal.of].enabled
+            return all_of([*at_rest, ready, ~self._encoding.holds(goal.cause), *others])
         if isinstance(goal.of, sct.Event):
             asked = all_of([*at_rest, *(~allowed[other] for other in earlier(event))])
             return asked & (allowed[event] if goal.value else ~allowed[event])

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 #: Where there are no more steps all are looked at.
 _ALL = 30_000
 #: So often a tour is planned, each time with other choices between what is as near; the shortest is taken.
-_PLANS = 12
+_PLANS = 60
 #: So long may the way be that takes the place of a part of a tour.
 _DETOUR = 4
 #: So many ways that lead to where something can be seen may not show it.
@@ -199,16 +199,17 @@ class Plan:
         return self._shortened(start, tour, wanted, _DETOUR)
 
     def _way_to_any(self, start: Place, wanted: int, choice: random.Random) -> list[Step]:
-        """The shortest way to something wanted; of several one that shows the most."""
+        """The shortest way to something wanted; of several by chance one that shows much."""
         ways: dict[Place, list[Step]] = {start: []}
         layer = [start]
         while layer:
-            found: list[tuple[int, float, list[Step]]] = []
+            found: list[tuple[float, float, list[Step]]] = []
             onwards: list[Place] = []
             for place in layer:
                 for step in self.steps(place):
                     if step.shows & wanted:
-                        found.append(((step.shows & wanted).bit_count(), choice.random(), [*ways[place], step]))
+                        much = (step.shows & wanted).bit_count() * (1 + choice.random())
+                        found.append((much, choice.random(), [*ways[place], step]))
                     if step.end not in ways:
                         ways[step.end] = [*ways[place], step]
                         onwards.append(step.end)

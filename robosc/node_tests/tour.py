@@ -49,9 +49,13 @@ class _Controller(DrivenController):
             self._shown.update(self._watcher.happening(name))
         return may_happen
 
+    def look(self) -> None:
+        """Notes what there is to see now that it has done what it can do at once."""
+        self._shown |= self._watcher.at_rest()
+
     def place(self, plan: Plan) -> Place:
         """Where it is, now that it has done what it can do at once."""
-        self._shown |= self._watcher.at_rest()
+        self.look()
         return plan.place(self._control.saved, pauses=self.pauses)
 
     def reads(self, receptions: Sequence[rosgraph.Reception], data: Any) -> bool:
@@ -108,6 +112,10 @@ class Tour(Drive):
         finally:
             self._controller.close()
         self.traces.append(self._lines.kept)
+
+    def _work(self) -> None:
+        super()._work()
+        self._controller.look()
 
     def _tour(self) -> list[Step]:
         return self.plan.tour(self._controller.place(self.plan), self._shown)

@@ -12,6 +12,7 @@ from robosc.metamodel import sct
 from robosc.node_tests.tour import Tour
 from robosc.ros_types import RosTypes
 from robosc.runtime.core.event_log import nested
+from robosc.semantics.printing import SctPrinter
 from robosc.semantics.roles import event_name
 
 if TYPE_CHECKING:
@@ -50,7 +51,8 @@ def trace_test(
 def told(goal: Goal) -> str:
     """What there is to see, in words: `the guard of the request to move is false`."""
     if isinstance(goal.of, sct.Event):
-        return f"the guard of the {words(goal.of)} is {str(goal.value).lower()}"
+        alone = f" for `{SctPrinter()(goal.cause)}` alone" if goal.cause is not None else ""
+        return f"the guard of the {words(goal.of)} is {str(goal.value).lower()}{alone}"
     line = f" (line {goal.of.source.span.line})" if goal.of.source else ""
     return f"the transition on the {words(goal.of.event)}{line} is {'' if goal.value else 'not '}taken"
 
