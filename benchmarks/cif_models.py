@@ -1,27 +1,56 @@
-"""Synthesis of models that others wrote in CIF: how long it takes, and how many states they are left.
+"""Synthesis of models in CIF, most of them written by others, beside CIF's own tool; writes `docs/cif-models.md`.
 
-    python benchmarks/cif_models.py FOLDER [--more FILE.cif ...] [--seconds 300] [--guards]
+    python benchmarks/cif_models.py FOLDER [--more FILE.cif ...] [--rounds 3] [--seconds 300] [--output FOLDER]
 
 FOLDER holds the models that Eclipse ESCET times for synthesis (`cif/org.eclipse.escet.cif.examples/benchmarks` in its
 repository), which are no part of this one: its scripts `benchmark_*.tooldef` say which these are. `--more` are files
-beside them. Each is synthesized by a process of its own, with `--counts`; with `--guards` as `robosc synthesize` does.
-Ends with 1 where one has no answer in the given seconds.
+beside them. Robots of our own families are added, as the CIF that is generated of them.
+
+Where ESCET_HOME names a folder with CIF's tools (docs/coming-from-cif.md), they take each model in the same run, one
+tool after the other. Ends with 1 where robosc has no answer in the given seconds, or another one than CIF's tool.
+What was measured is kept in `benchmarks/cif_models.json`; `--output` writes it and the page elsewhere.
 """
 
 from __future__ import annotations
 
 import argparse
 import json
+import os
 import re
+import shutil
 import subprocess
 import sys
+import tempfile
+from contextlib import suppress
 from pathlib import Path
+from threading import Timer
 from time import perf_counter
 from typing import Any
 
 ROOT = Path(__file__).parent.parent
+sys.path.insert(0, str(ROOT))
+
+from benchmarks.cif_models_page import agree, page, plot  # noqa: E402
+from benchmarks.families import FAMILIES  # noqa: E402
+from tests.cif.escet import SYNTHESIS, Tools, class_path, home  # noqa: E402
+
 #: What a script calls: the name of the benchmark, its folder, its file.
 _SCRIPT = re.compile(r'^benchmark\("([^"]*)", "([^"]*)", "([^"]*)"\)', re.MULTILINE)
+#: The robots of our families.
+_ROBOTS = {
+    "cells": (8, 32),
+    "sensors": (16, 64),
+    "line": (32,),
+    "philosophers": (10, 20),
+    "warehouse": (8, 10),
+    "services": (32,),
+}
+#: What CIF's tool is told: its fastest settings.
+_OPTIONS = ("--bdd-output=nodes", "--forward-reach=yes", "--event-warn=no", "--stats=ctrl-sys-states,timing")
+#: What its synthesis consists of, from the order of the variables on, as it names it.
+_PHASES = ("Convert input model", "Pre synthesis", "Main synthesis loop", "Post synthesis")
+
+Results = dict[str, Any]
 
 
 def models(folder: Path) -> dict[str, Path]:
@@ -32,42 +61,140 @@ def models(folder: Path) -> dict[str, Path]:
     return {match[1]: folder / match[2] / match[3] for match in found if match is not None}
 
 
-def synthesized(path: Path, seconds: float, *options: str) -> tuple[float, dict[str, Any] | None]:
-    """The seconds of the whole process, and what it says; None where it takes longer, or finds a fault."""
-    command = [sys.executable, "-m", "robosc", "synthesize", str(path.resolve()), "--json", *options]
-    began = perf_counter()
-    try:
-        done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=seconds, check=False)
-    except subprocess.TimeoutExpired:
-        return perf_counter() - began, None
-    if done.returncode not in {0, 3}:
-        print(done.stderr, file=sys.stderr)
-        return perf_counter() - began, None
-    return perf_counter() - began, json.loads(done.stdout)
+def robots(folder: Path) -> dict[str, Path]:
+    """Robots of our families as CIF, written into a folder."""
+    found = {}
+    for family, numbers in _ROBOTS.items():
+        for number in numbers:
+            name = f"{family}_{number}"
+            path = folder / f"{name}.rscd"
+            path.write_text(FAMILIES[family].text(number), encoding="utf-8")
+            command = [sys.executable, "-m", "robosc", "transform", str(path), "--to", "cif", "-o", str(folder / name)]
+            subprocess.run(
+                [*command, "--interface-path", str(ROOT / "benchmarks" / "interfaces")], cwd=ROOT, check=True
+            )
+            [found[name]] = [file for file in (folder / name).glob("*.cif") if ".supervised." not in file.name]
+    return found
+
+
+def run(command: list[str], seconds: float) -> tuple[float, float, str] | None:
+    """The seconds that a process takes, its megabytes at the most, and what it says; None where it takes too long."""
+    with tempfile.TemporaryFile("w+") as said:
+        began = perf_counter()
+        process = subprocess.Popen(command, cwd=ROOT, stdout=said, stderr=subprocess.STDOUT, text=True)
+        timer = Timer(seconds, process.kill)
+        timer.start()
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+        took = perf_counter() - began
+        timer.cancel()
+        said.seek(0)
+        output = said.read()
+    if process.returncode < 0:
+        return None
+    if process.returncode not in {0, 3}:
+        print(" ".join(command), output, sep="\n", file=sys.stderr)
+        return None
+    return took, usage.ru_maxrss / 1000, output
+
+
+def robosc_measured(path: Path, rounds: int, seconds: float) -> Results | None:
+    """What robosc finds and takes."""
+    cold = run([sys.executable, "-m", "robosc", "synthesize", str(path), "--counts", "--json"], seconds)
+    script = str(ROOT / "benchmarks" / "cif_models_run.py")
+    warm = None if cold is None else run([sys.executable, script, str(path), str(rounds)], rounds * seconds)
+    if cold is None or warm is None:
+        return None
+    said = json.loads(warm[2])
+    return said | {"seconds": min(said["seconds"]), "cold": cold[0], "memory": cold[1]}
+
+
+class Cif:
+    """CIF's tool, cold in a Java of its own each time, and warm in one that goes on."""
+
+    def __init__(self, folder: Path, seconds: float) -> None:
+        self._folder = folder
+        self._seconds = seconds
+        self._scratch = tempfile.TemporaryDirectory()
+        self._output = str(Path(self._scratch.name) / "out.cif")
+        self._tools = Tools(folder)
+        self._calls = Path(self._scratch.name)
+        script = Path(sys.modules[Tools.__module__].__file__ or "").with_name("Calls.java")
+        compiler = shutil.which("javac") or "javac"
+        subprocess.run([compiler, "-cp", class_path(folder), "-d", str(self._calls), str(script)], check=True)
+
+    def measured(self, path: Path, rounds: int) -> Results:
+        """What it finds and takes; without `cold` where it takes too long, without `seconds` where it does then."""
+        found: Results = {}
+        call = "\t".join([SYNTHESIS, str(path), *_OPTIONS, "-o", self._output, "--gui=off"])
+        command = [
+            shutil.which("java") or "java",
+            "-Xmx3g",
+            "-cp",
+            f"{class_path(self._folder)}{os.pathsep}{self._calls}",
+            "Calls",
+        ]
+        began = perf_counter()
+        with suppress(subprocess.TimeoutExpired):
+            subprocess.run(
+                command, input=f"{call}\n", capture_output=True, text=True, timeout=self._seconds, check=True
+            )
+            found["cold"] = perf_counter() - began
+            timer = Timer(rounds * self._seconds, self._tools.kill)
+            timer.start()
+            calls = [self._tools.call(SYNTHESIS, str(path), *_OPTIONS, "-o", self._output) for _ in range(rounds)]
+            timer.cancel()
+            found["seconds"] = min(_synthesis(call.output) * call.processor for call in calls)
+            text = re.search(r"Controlled system: (?:exactly )?([\d,.\u00a0]+) state", calls[0].output)
+            assert text is not None or "Empty supervisor" in calls[0].output, calls[0].output
+            found["states"] = 0 if text is None else int(re.sub(r"\D", "", text[1]))
+        return found
+
+    def close(self) -> None:
+        """Ends it."""
+        self._tools.__exit__()
+        self._scratch.cleanup()
+
+
+def _synthesis(output: str) -> float:
+    """The share that synthesis has in all that CIF's tool does."""
+
+    def taken(phase: str) -> int:
+        found = re.search(rf"^ *{phase} +([\d,]+) ms$", output, re.MULTILINE)
+        return 0 if found is None else int(found[1].replace(",", ""))
+
+    return sum(map(taken, _PHASES)) / max(1, taken("Total"))
 
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path)
     parser.add_argument("--more", type=Path, nargs="*", default=[])
-    parser.add_argument("--seconds", type=float, default=300, help="for each model")
-    parser.add_argument("--guards", action="store_true", help="writes the guards out, too")
+    parser.add_argument("--rounds", type=int, default=3, help="of synthesis in one process")
+    parser.add_argument("--seconds", type=float, default=300, help="for each model and tool")
+    parser.add_argument("--machine", default=f"{os.cpu_count()} cores", help="where it runs, for the page")
+    parser.add_argument("--output", type=Path)
     options = parser.parse_args()
-    asked = models(options.folder) | {path.stem: path for path in options.more}
-    print("| model | controlled states | s, all in all | s of synthesis | most nodes | operations | MB |")
-    print("|---|---:|---:|---:|---:|---:|---:|")
-    lacking = 0
-    for name, path in asked.items():
-        seconds, said = synthesized(path, options.seconds, *([] if options.guards else ["--counts"]))
-        if said is None:
-            lacking += 1
-            print(f"| {name} | no answer | {seconds:.1f} | | | | |", flush=True)
-            continue
-        states, nodes, operations = (said[key] for key in ("controlled_states", "peak_nodes", "operations"))
-        memory = (said["peak_bytes"] or 0) / 1e6
-        times = f"{seconds:.2f} | {said['seconds']:.2f}"
-        print(f"| {name} | {states:,} | {times} | {nodes:,} | {operations:,} | {memory:.0f} |", flush=True)
-    return int(lacking > 0)
+    folder = home()
+    cif = None if folder is None else Cif(folder, options.seconds)
+    results: Results = {"machine": options.machine, "rounds": options.rounds, "seconds": options.seconds, "models": {}}
+    failed = 0
+    with tempfile.TemporaryDirectory() as scratch:
+        asked = models(options.folder) | {path.stem.lower(): path for path in options.more}
+        results["escet"] = len(models(options.folder))
+        for name, path in (asked | robots(Path(scratch))).items():
+            ours = robosc_measured(path.resolve(), options.rounds, options.seconds)
+            theirs = None if cif is None else cif.measured(path.resolve(), options.rounds)
+            print(name, ours, theirs, flush=True)
+            failed += ours is None or (bool(theirs) and "states" in theirs and not agree(ours, theirs))
+            results["models"][name] = {"robosc": ours, "cif": theirs}
+    if cif is not None:
+        cif.close()
+    kept, pages = (options.output or ROOT / part for part in ("benchmarks", "docs"))
+    (kept / "cif_models.json").write_text(json.dumps(results, indent=1) + "\n", encoding="utf-8")
+    (pages / "cif-models.md").write_text(page(results), encoding="utf-8")
+    (pages / "cif-models.svg").write_text(plot(results), encoding="utf-8")
+    return int(failed > 0)
 
 
 if __name__ == "__main__":

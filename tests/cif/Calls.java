@@ -1,5 +1,7 @@
 import java.io.BufferedReader;
 import java.io.InputStreamReader;
+import java.lang.management.ManagementFactory;
+import java.lang.management.ThreadMXBean;
 import java.lang.reflect.Method;
 import java.nio.charset.StandardCharsets;
 import java.util.Arrays;
@@ -12,14 +14,18 @@ public class Calls {
         // Outside of Eclipse nothing registers what annotations mean: CIF warns of each then, and reads on.
         IExtensionRegistry empty = RegistryFactory.createRegistry(null, null, null);
         RegistryFactory.setDefaultRegistryProvider(() -> empty);
+        ThreadMXBean thread = ManagementFactory.getThreadMXBean();
         BufferedReader lines = new BufferedReader(new InputStreamReader(System.in, StandardCharsets.UTF_8));
         for (String line = lines.readLine(); line != null; line = lines.readLine()) {
             String[] parts = line.split("\t");
             Object tool = Class.forName(parts[0]).getConstructor().newInstance();
             Method run = tool.getClass().getMethod("run", String[].class, boolean.class);
             long began = System.nanoTime();
+            long before = thread.getCurrentThreadCpuTime();
             Object status = run.invoke(tool, Arrays.copyOfRange(parts, 1, parts.length), false);
-            System.out.println("called: " + status + " " + (System.nanoTime() - began) / 1_000_000);
+            long processor = thread.getCurrentThreadCpuTime() - before;
+            long took = System.nanoTime() - began;
+            System.out.println("called: " + status + " " + took / 1_000_000 + " " + processor / 1_000_000);
             System.out.flush();
         }
     }

@@ -14,7 +14,7 @@ EXPLORER = "org.eclipse.escet.cif.explorer.app.ExplorerApplication"
 SYNTHESIS = "org.eclipse.escet.cif.datasynth.CifDataSynthesisApp"
 TRANSFORMER = "org.eclipse.escet.cif.cif2cif.app.CifToCifApp"
 _COUNT = re.compile(r"Controlled system: exactly ([\d,.\u00a0]+) states?\.")
-_CALLED = re.compile(r"called: (\d+) (\d+)\n")
+_CALLED = re.compile(r"called: (\d+) (\d+) (\d+)\n")
 
 
 def home() -> Path | None:
@@ -30,11 +30,15 @@ def class_path(folder: Path) -> str:
 
 
 class Call(NamedTuple):
-    """What a call of a tool said, its exit status, and how long it took in a Java that was running."""
+    """What a call of a tool said, its exit status, and how long it took in a Java that was running.
+
+    `processor` are the seconds of the processor that the tool's thread took, without what Java does beside it.
+    """
 
     status: int
     output: str
     seconds: float
+    processor: float
 
 
 class Counted(NamedTuple):
@@ -59,6 +63,10 @@ class Tools:
     def __exit__(self, *_: object) -> None:
         self._java.communicate()
 
+    def kill(self) -> None:
+        """Ends it at once: a call that goes on raises AssertionError."""
+        self._java.kill()
+
     def call(self, tool: str, *arguments: str) -> Call:
         """Calls a tool."""
         assert self._java.stdin is not None
@@ -70,7 +78,7 @@ class Tools:
         for line in self._java.stdout:
             called = _CALLED.fullmatch(line)
             if called is not None:
-                return Call(int(called[1]), "".join(lines), int(called[2]) / 1000)
+                return Call(int(called[1]), "".join(lines), int(called[2]) / 1000, int(called[3]) / 1000)
             lines.append(line)
         raise AssertionError(f"Java ended: {''.join(lines)[-2000:]}")
 

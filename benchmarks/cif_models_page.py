@@ -1,0 +1,129 @@
+"""The page of the documentation with what `cif_models.py` has measured, and its plot."""
+
+from __future__ import annotations
+
+from io import StringIO
+from math import isclose
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+Results = dict[str, Any]
+
+HEAD = """\
+# Synthesis beside CIF's tool
+
+`python benchmarks/cif_models.py FOLDER` measured this on {machine} and wrote this page. CIF's tool is
+that of ESCET 5.0-dev (September 2024) with JavaBDD 8.0.0, on OpenJDK 17. Both took each model in the same run, one
+after the other.
+
+The first {escet} models are those that ESCET itself times for synthesis, from its repository. Then come models of cats
+and mice from [CASE21_enforce_requirements](https://github.com/sbthuijsman/CASE21_enforce_requirements), and robots of
+[our own families](benchmarks.md), as the CIF that is generated of them. Only the last are part of this repository.
+
+*Synthesis* goes from the order of the variables to the number of controlled states, in a process that has done it
+before: the least of {rounds} rounds, in seconds of the processor; of CIF's tool those of its own thread alone. *Cold*
+is the whole command, once, in seconds that went by: `robosc synthesize --counts`, and CIF's tool with
+`--bdd-output=nodes --forward-reach=yes`. Neither writes guards out. No command had more than {seconds:.0f} s.
+"""
+
+NOTES = """\
+CIF's tool counts with floating-point numbers: up to their precision the counts are the same. Nodes and operations
+are the same on every run.
+"""
+
+
+def page(results: Results) -> str:
+    """The page, in Markdown, of all that was measured; `note` of the results, if any, is what is to be said of it."""
+    head = HEAD.format(**results)
+    head += f"\n{results['note']}\n" if "note" in results else ""
+    return "\n".join(
+        [head, _aims(results), "![Seconds of both tools for each model](cif-models.svg)\n", _table(results)]
+    )
+
+
+def _aims(results: Results) -> str:
+    found = results["models"]
+    theirs = [one for one in list(found.values())[: results["escet"]] if one["robosc"]]
+    both = [one for one in found.values() if one["robosc"] and one["cif"] is not None]
+    timed = [one for one in both if "cold" in one["cif"]]
+    rows = [
+        ("all of ESCET's models, synthesis and all", f"{sum(one['robosc']['cold'] for one in theirs):.1f} s"),
+        ("models that both tools finished, with the same number of states", f"{_agreeing(timed)} of {len(timed)}"),
+        ("models of which CIF's tool is not done in the time that a command had", str(len(both) - len(timed))),
+        ("models of which robosc is faster, cold", f"{_faster(both, 'cold')} of {len(both)}"),
+        ("models of which robosc is faster, warm", f"{_faster(both, 'seconds')} of {len(both)}"),
+    ]
+    lines = "".join(f"| {what} | {value} |\n" for what, value in rows)
+    return f"| | |\n|---|---:|\n{lines}"
+
+
+def agree(ours: Results, theirs: Results) -> bool:
+    """Whether both found as many states: CIF's tool counts with floating-point numbers."""
+    return isclose(ours["states"], theirs["states"], rel_tol=1e-12)
+
+
+def _agreeing(models: Iterable[Results]) -> int:
+    return sum(agree(one["robosc"], one["cif"]) for one in models)
+
+
+def _faster(models: Iterable[Results], what: str) -> int:
+    return sum(what not in one["cif"] or one["robosc"][what] < one["cif"][what] for one in models)
+
+
+def _table(results: Results) -> str:
+    rows = [
+        "| model | controlled states | synthesis | CIF | cold | CIF | operations | most nodes | MB |",
+        "|---|---:|---:|---:|---:|---:|---:|---:|---:|",
+    ]
+    over = f"over {results['seconds']:.0f}"
+    for name, found in results["models"].items():
+        ours, cif = found["robosc"], found["cif"]
+        if ours is None:
+            rows.append(f"| {name} | {over} s | | | | | | | |")
+            continue
+        warm, cold = ("" if cif is None else f"{cif[key]:.2f}" if key in cif else over for key in ("seconds", "cold"))
+        states = f"{ours['states']:,}" if ours["states"] < 10**15 else f"{ours['states']:.1e}".replace("e+", "·10^")
+        numbers = f"{ours['operations']:,} | {ours['nodes']:,} | {ours['memory']:.0f}"
+        rows.append(f"| {name} | {states} | {ours['seconds']:.2f} | {warm} | {ours['cold']:.1f} | {cold} | {numbers} |")
+    return "\n".join([*rows, "", NOTES])
+
+
+def plot(results: Results) -> str:
+    """The plot, as SVG: the same for the same results. Raises ImportError where matplotlib is not installed."""
+    import matplotlib as mpl  # noqa: PLC0415  # it may be missing
+    from matplotlib.figure import Figure  # noqa: PLC0415
+
+    mpl.rcParams |= {"svg.hashsalt": "robosc", "svg.fonttype": "none", "font.family": "sans-serif", "font.size": 9}
+    names = [name for name, found in results["models"].items() if found["robosc"]]
+    figure = Figure(figsize=(9, 0.19 * len(names) + 1), layout="constrained")
+    axes = figure.subplots(1, 2, sharey=True)
+    for place, (axis, what, title) in enumerate(
+        zip(axes, ("seconds", "cold"), ("synthesis, warm", "the whole command"), strict=True)
+    ):
+        for tool, label, marker in (("robosc", "RoboSC", "o"), ("cif", "CIF", "s")):
+            points = [
+                (results["models"][name][tool][what], row)
+                for row, name in enumerate(names)
+                if what in (results["models"][name][tool] or {})
+            ]
+            axis.plot(
+                [seconds for seconds, _ in points],
+                [row for _, row in points],
+                marker,
+                markersize=4,
+                label=label,
+                linestyle="",
+            )
+        axis.set_xscale("log")
+        axis.set_xlabel("s")
+        axis.set_title(title)
+        axis.grid(axis="y", alpha=0.3)
+        if place == 0:
+            axis.set_yticks(range(len(names)), names)
+            axis.invert_yaxis()
+            axis.legend()
+    text = StringIO()
+    figure.savefig(text, format="svg", metadata={"Date": None})
+    return "".join(f"{line.rstrip()}\n" for line in text.getvalue().splitlines())

@@ -1,0 +1,35 @@
+"""Synthesis of one model of CIF, several times in one process: prints what it found and took, as JSON.
+
+    python benchmarks/cif_models_run.py MODEL.cif ROUNDS
+
+Seconds are those of the processor, from the order of the variables to the number of states.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from time import process_time
+
+sys.path.insert(0, str(Path(__file__).parent.parent))
+
+from robosc.cif import read
+from robosc.synthesis import Statistics, count
+
+
+def main() -> None:
+    model = read(sys.argv[1]).model
+    assert model is not None
+    seconds = []
+    for _ in range(int(sys.argv[2])):
+        statistics = Statistics()
+        began = process_time()
+        counts = count(model, statistics=statistics)
+        seconds.append(process_time() - began)
+    found = {"states": counts.controlled_states, "seconds": seconds}
+    print(json.dumps(found | {"nodes": statistics.peak_nodes, "operations": statistics.operations}))
+
+
+if __name__ == "__main__":
+    main()
