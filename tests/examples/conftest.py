@@ -8,11 +8,12 @@ from robosc.m2t.models import Models
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 #: Every model, by its name.
-MODELS = {path.stem: path for path in sorted(EXAMPLES.rglob("*.rscd"))}
+#: The workspaces have copies of one of them.
+MODELS = {path.stem: path for path in sorted(EXAMPLES.rglob("*.rscd")) if "workspace" not in path.parts}
 #: Robots of the second edition; too large to look at every state.
 SHOWCASES = ["sprayer", "warehouse_robot"]
 #: All examples: folders with a page.
-PAGES = sorted(path.parent.name for path in EXAMPLES.glob("*/README.md"))
+PAGES = sorted(path.parent.name for path in EXAMPLES.glob("*/README.md") if path.parent.name in MODELS)
 #: The eight scenarios of the thesis.
 SCENARIOS = [name for name in PAGES if name not in SHOWCASES]
 
