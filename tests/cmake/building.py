@@ -26,9 +26,10 @@ def built_again(output: str) -> list[str]:
 
 
 def no_work_is_done(output: str) -> bool:
-    """Whether make says nothing but that all is built, and CMake nothing at all."""
+    """Whether make says nothing but that all is built, and CMake at most that what is installed is as it was."""
     lines = [line for line in output.splitlines() if re.match(r"(\[|-- )", line)]
-    return bool(lines) and all(re.match(r"\[ *\d+%\] Built target ", line) for line in lines)
+    idle = r"\[ *\d+%\] Built target |-- Install configuration|-- Up-to-date: "
+    return any("Built target" in line for line in lines) and all(re.match(idle, line) for line in lines)
 
 
 @contextmanager
