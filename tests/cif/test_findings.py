@@ -1,4 +1,4 @@
-"""Issue 13, point 1: what is wrong with a specification is said where it is, how to mend it, and all in one run."""
+"""What is wrong with a specification is said where it is, how to mend it, and all in one run."""
 
 import random
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Issue 13, point 1: what a CIF specification may say, each construct with its count of controlled states.
+"""What a CIF specification may say, each construct with its count of controlled states.
 
 The numbers are those of CIF's data-based synthesis (ESCET 5.0-dev, forward reachability), but where a comment says that
 CIF's own tool refuses the construct.

@@ -1,4 +1,4 @@
-"""Issue 13: random CIF specifications agree with synthesis by the definition, state by state."""
+"""Random CIF specifications agree with synthesis by the definition, state by state."""
 
 import pytest
 

@@ -242,6 +242,7 @@ def middleware(workspace: Workspace, folder: Path, *, simulated: bool = False) -
 def _answers(master: ServerProxy, *, simulated: bool) -> bool:
     """Whether a master of ROS 1 is there, and has been told where its nodes have their time from."""
     try:
+        master.setParam("/test", "/run_id", "test")  # without it `roslaunch --wait` waits for ever
         master.setParam("/test", "/use_sim_time", simulated)
     except OSError:
         return False
