@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from benchmarks.cif_models import models, synthesized
+from benchmarks.cif_models import models, robosc_measured
 
 
 def test_models_are_those_that_the_scripts_name(tmp_path: Path) -> None:
@@ -15,8 +15,8 @@ def test_models_are_those_that_the_scripts_name(tmp_path: Path) -> None:
 def test_each_is_counted_by_a_process_of_its_own(tmp_path: Path) -> None:
     path = tmp_path / "lamp.cif"
     path.write_text("controllable c; plant P: location a: initial; marked; edge c goto b; location b: marked; end")
-    _, said = synthesized(path, 60, "--counts")
+    said = robosc_measured(path, 1, 60)
     assert said is not None
     assert said["controlled_states"] == 2
     path.write_text("controllable c")
-    assert synthesized(path, 60)[1] is None
+    assert robosc_measured(path, 1, 60) is None
