@@ -97,7 +97,9 @@ WRONG = {
 }
 
 
-@pytest.mark.parametrize("name", WRONG)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.slow] if name == "too long" else []) for name in WRONG]
+)
 def test_a_fault_is_said_at_its_place(name: str) -> None:
     text, wanted = WRONG[name]
     found = findings(text)

@@ -27,7 +27,14 @@ def answer(path: Path) -> Mapping[str, Any]:
     return json.loads(done.stdout)
 
 
-@pytest.mark.parametrize("path", [*MODELS.values(), *LISTED], ids=lambda path: path.stem)
+#: The showcases take more of the processor than all others together.
+CASES = [
+    pytest.param(path, id=path.stem, marks=[pytest.mark.slow] if path.stem in SHOWCASES else [])
+    for path in (*MODELS.values(), *LISTED)
+]
+
+
+@pytest.mark.parametrize("path", CASES)
 def test_all_is_proved(path: Path) -> None:
     said = answer(path)
     assert said["proved"]
