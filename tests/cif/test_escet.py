@@ -14,7 +14,7 @@ from robosc.configuration import Configuration
 from robosc.m2t import cif
 from robosc.metamodel import expression as ex
 from tests.cif.comparing import reading_of
-from tests.cif.escet import CONTROLLER_CHECK, Tools, home
+from tests.cif.escet import CONTROLLER_CHECK, TRANSFORMER, Tools, home
 from tests.cif.random_specifications import Specification
 from tests.fuzz.valid import checked
 
@@ -52,6 +52,8 @@ def test_synthesis_counts_as_many_states(tools: Tools, tmp_path: Path, start: in
         path = _written(tmp_path, specification)
         text = "\n".join(specification.files.values())
         theirs = tools.synthesize(path)
+        if "Definition/use cycle" in theirs.call.output:
+            continue  # A location that names itself in its own predicates: docs/coming-from-cif.md.
         reading = reading_of(specification)
         if reading.model is None:
             # What is refused here and not there are plant invariants that an event can break in several ways.
@@ -71,6 +73,8 @@ def test_what_is_written_of_specifications_is_valid(tools: Tools, tmp_path: Path
         result = CliRunner().invoke(main, ["transform", str(path), "--to", "cif", "-o", str(tmp_path)])
         if result.exit_code == 0:
             call = tools.is_valid(tmp_path / "random.supervised.cif")
+            if "Definition/use cycle" in call.output:
+                continue
             assert call.status == 0, call.output
             valid += 1
     assert valid > 10
@@ -112,6 +116,11 @@ def test_what_is_written_of_robots(tools: Tools, tmp_path: Path, path: Path) -> 
     [plants] = set(tmp_path.glob("*.cif")) - {supervised}
     checked = tools.is_valid(supervised)
     assert checked.status == 0, checked.output
-    assert tools.synthesize(plants).states == tools.synthesize(supervised).states
+    # Synthesis takes no supervisors: as plants they leave what they left before.
+    as_plants = tmp_path / "as_plants.cif"
+    tools.call(TRANSFORMER, str(supervised), "-t", "relabel-supervisors-as-plants", "-o", str(as_plants))
+    counted = tools.synthesize(as_plants)
+    assert counted.states is not None, counted.call.output
+    assert counted.states == tools.synthesize(plants).states
     properties = tools.call(CONTROLLER_CHECK, str(supervised), "-o", str(tmp_path / "checked.cif"))
     assert "CONCLUSION" in properties.output, properties.output
