@@ -111,7 +111,7 @@ def message(fields: Mapping[Path, Field], values: Mapping[Path, Leaf]) -> Any:
     """
     heads = list(dict.fromkeys(path[0] for path in fields if path))
     if () in fields and not heads:
-        return values.get((), fields[()].default)
+        return _whole(values.get(()), fields[()])
     if not heads or not all(head.isdigit() for head in heads):
         return Record(
             **{head: message(_below(head, fields), _below(head, values)) for head in heads},
@@ -122,8 +122,13 @@ def message(fields: Mapping[Path, Field], values: Mapping[Path, Leaf]) -> Any:
         element |= _below(head, fields)
     length = 1 + max((int(path[0]) for path in values if int(path[0]) < LONGEST), default=-1)
     if () in element:
-        return [values.get((str(index),), element[()].default) for index in range(length)]
+        return [_whole(values.get((str(index),)), element[()]) for index in range(length)]
     return [message(element, _below(str(index), values)) for index in range(length)]
+
+
+def _whole(value: Leaf | None, field: Field) -> Any:
+    """A value as ROS has it: of an object nothing is known; what is not given is the default."""
+    return field.default if value is None or isinstance(value, dict) else value
 
 
 def fields_sent(assignment: rosgraph.FieldAssignment) -> Iterator[tuple[Path, ex.Type]]:

@@ -17,6 +17,6 @@ def test_each_is_counted_by_a_process_of_its_own(tmp_path: Path) -> None:
     path.write_text("controllable c; plant P: location a: initial; marked; edge c goto b; location b: marked; end")
     said = robosc_measured(path, 1, 60)
     assert said is not None
-    assert said["controlled_states"] == 2
+    assert said["states"] == 2
     path.write_text("controllable c")
     assert robosc_measured(path, 1, 60) is None

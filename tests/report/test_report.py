@@ -149,7 +149,7 @@ def test_gcov_counts_as_often_that_a_guard_is_true(name: str, tmp_path: Path) ->
         simulation = Simulation(models.sct, models.rosgraph)
         steps, _ = read_script("trace", trace_of(models, path), simulation.engine.events)
         script = [
-            " ".join(map(str, (numbers[step.event], *simulation.engine.saved[1])))
+            " ".join(str(int(number)) for number in (numbers[step.event], *simulation.engine.saved[1]))
             for step in steps
             if simulation.perform(step.event, step.data).accepted
         ]

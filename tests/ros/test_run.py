@@ -36,6 +36,7 @@ def delivered(nodes: Workspace | Runner, folder: Path) -> tuple[dict[str, Any], 
         header = step["sent"].get("target", {}).get("header", {})
         for counted in ("seq", "stamp"):  # what depends on how many ticks there were, and when
             header.pop(counted, None)
+        step.pop("typed", None)  # only packages that are built have its type
     return results, {line.partition(",")[2] for line in log.read_text(encoding="utf-8").splitlines()}
 
 

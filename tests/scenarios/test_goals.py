@@ -18,7 +18,7 @@ EACH = pytest.mark.parametrize("name", SCENARIOS)
 
 
 def test_there_is_a_scenario_for_each_example() -> None:
-    assert {*SCENARIOS} == {page.parent.name for page in EXAMPLES.glob("*/README.md")}
+    assert {*SCENARIOS} == {model.stem for model in EXAMPLES.glob("*/*.rscd")}
     assert list(SCENARIOS) == list(BOOKS)
 
 
