@@ -13,7 +13,7 @@ from click.testing import CliRunner
 from jsonschema import Draft202012Validator
 
 from robosc.cli import main
-from robosc.configuration import Configuration
+from robosc.configuration import Configuration, find, read
 from robosc.engine import Engine
 from robosc.m2t import supervisor
 from robosc.m2t.c.names import CNames
@@ -82,11 +82,14 @@ def test_the_digests_are_those_of_what_is_written(name: str, tmp_path: Path) -> 
     assert read[MODELS[name].name] == digests.digest(MODELS[name].read_bytes())
 
 
-def trace_of(models: Models, path: str) -> str:
+def trace_of(name: str, models: Models, path: str) -> str:
     """A trace of the tests of a package, by its path among what is generated."""
     assert models.rosgraph is not None
     version = int(path.removeprefix("ros")[0])
-    return trace_test(models.rosgraph, Configuration(), version).files[f"traces/{path.rpartition('/')[2]}"]
+    near = find(MODELS[name].parent)
+    return trace_test(models.rosgraph, read(near) if near else Configuration(), version).files[
+        f"traces/{path.rpartition('/')[2]}"
+    ]
 
 
 DRIVER = """\
@@ -147,7 +150,7 @@ def test_gcov_counts_as_often_that_a_guard_is_true(name: str, tmp_path: Path) ->
     played = 0
     for path in told(name)["coverage"]["traces"]:
         simulation = Simulation(models.sct, models.rosgraph)
-        steps, _ = read_script("trace", trace_of(models, path), simulation.engine.events)
+        steps, _ = read_script("trace", trace_of(name, models, path), simulation.engine.events)
         script = [
             " ".join(str(int(number)) for number in (numbers[step.event], *simulation.engine.saved[1]))
             for step in steps
