@@ -23,6 +23,11 @@ def test_there_is_a_scenario_for_each_example() -> None:
 
 
 @EACH
+def test_the_readme_says_how_to_run_it(name: str) -> None:
+    assert f"/simulator --scenario {name}" in (EXAMPLES / name / "README.md").read_text(encoding="utf-8")
+
+
+@EACH
 def test_reaches_its_goal(name: str) -> None:
     simulation = run_of(name).simulation
     assert simulation.reached
