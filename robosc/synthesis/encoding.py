@@ -87,11 +87,12 @@ class Layout:
         self.plants = list(model.plants)
         self.domains: dict[Element, Domain] = {}
         self.levels = 0
-        together = _groups_of_wide(model)
+        wide = [element for element in elements if domain_size(element) >= _WIDE]
+        together = _groups_of_wide(model) if wide else {}
         self.wide: dict[Element, list[Element]] = {
             element: [other for other in together.get(element, [element]) if not isinstance(other, sct.Input)]
-            for element in elements
-            if domain_size(element) >= _WIDE and not isinstance(element, sct.Input)
+            for element in wide
+            if not isinstance(element, sct.Input)
         }
         for vertex in order:
             if elements[vertex] not in self.domains:

@@ -9,13 +9,17 @@ DSM-based variable ordering heuristic for reduced computational effort of symbol
 from __future__ import annotations
 
 from collections import Counter
+from functools import cache
 from itertools import permutations
+from operator import itemgetter
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Mapping, Sequence
 
-    _Order = tuple[tuple[int, ...], list[int], list[int]]
+    #: The members of an edge in a window, and whether it goes on above and below.
+    _Kind = tuple[int, bool, bool]
+    _Places = Callable[[Sequence[int]], Sequence[int]]
 
 _WINDOW = 4
 #: How many times as long the total span of the order by breadth may be.
@@ -24,8 +28,7 @@ _LONGER = 1.25
 
 def total_span(order: Sequence[int], edges: Sequence[Sequence[int]]) -> int:
     """The sum over all edges of the distance between their first and their last vertex in the order."""
-    place = _places(order)
-    return sum(last - first for first, last in (_ends(edge, place) for edge in edges))
+    return _span(_places(order), [itemgetter(*edge) for edge in edges if len(edge) > 1])
 
 
 def variable_order(size: int, edges: Sequence[Sequence[int]]) -> list[int]:
@@ -58,6 +61,11 @@ def _places(order: Sequence[int]) -> list[int]:
     for index, vertex in enumerate(order):
         place[vertex] = index
     return place
+
+
+def _span(place: Sequence[int], places_of: Sequence[_Places]) -> int:
+    """The total span, with what takes the places of each edge."""
+    return sum(max(places) - min(places) for places in (own(place) for own in places_of))
 
 
 def _ends(edge: Sequence[int], place: Sequence[int]) -> tuple[int, int]:
@@ -106,80 +114,102 @@ def _layers(
 
 
 def _force(order: list[int], edges: Sequence[Sequence[int]]) -> list[int]:
-    """Moves every vertex to the mean of the centres of its edges until that no longer helps."""
+    """Moves every vertex to the mean of the centres of its edges, again and again, as long as orders are new."""
     edges_of = _incidence(len(order), edges)
-    best, least = order, total_span(order, edges)
+    places_of: list[_Places] = [itemgetter(*edge) for edge in edges]
+    place = _places(order)
+    best, least = order, _span(place, places_of)
+    seen = {tuple(order)}
     for _ in range(10 * max(1, len(order).bit_length())):
-        place = _places(order)
-        centre = [sum(place[vertex] for vertex in edge) / len(edge) for edge in edges]
+        centre = [sum(places) / len(places) for places in (own(place) for own in places_of)]
         pull = [
-            sum(centre[edge] for edge in edges_of[vertex]) / len(edges_of[vertex])
-            if edges_of[vertex]
-            else float(place[vertex])
-            for vertex in range(len(order))
+            sum(map(centre.__getitem__, own)) / len(own) if own else float(place[vertex])
+            for vertex, own in enumerate(edges_of)
         ]
-        moved = sorted(order, key=lambda vertex: (pull[vertex], place[vertex]))
-        span = total_span(moved, edges)
+        # Of vertices that are pulled alike, the order stays.
+        order = sorted(order, key=pull.__getitem__)
+        place = _places(order)
+        span = _span(place, places_of)
         if span < least:
-            best, least = moved, span
-        if moved == order:
+            best, least = order, span
+        # From here on it goes round in a circle.
+        if tuple(order) in seen:
             break
-        order = moved
+        seen.add(tuple(order))
     return best
 
 
-def _permutations(size: int) -> list[_Order]:
-    """Each order of so many neighbours, with the first and the last place of each set of them, given by its bits."""
-    found = []
-    for order in permutations(range(size)):
-        places = [
-            [place for place, vertex in enumerate(order) if members >> vertex & 1] for members in range(1, 1 << size)
-        ]
-        found.append((order, [0, *map(min, places)], [0, *map(max, places)]))
-    return found
+@cache
+def _permutations(size: int) -> tuple[list[tuple[int, ...]], Mapping[_Kind, list[int]]]:
+    """Each order of so many neighbours, and for each kind of edge how long it is in each of these orders.
+
+    The members of an edge are given by their bits. What goes on above and below is as long in each order, and left out.
+    """
+    orders = list(permutations(range(size)))
+    spans: dict[_Kind, list[int]] = {}
+    for members in range(1, 1 << size):
+        places = [[place for place, vertex in enumerate(order) if members >> vertex & 1] for order in orders]
+        first, last = [min(one) for one in places], [max(one) for one in places]
+        spans[members, False, False] = [end - start for start, end in zip(first, last, strict=True)]
+        spans[members, True, False] = last
+        spans[members, False, True] = [-start for start in first]
+    return orders, spans
 
 
-def _shortest(orders: Iterable[_Order], edges: Mapping[tuple[int, bool, bool], int]) -> tuple[int, ...]:
+def _shortest(size: int, edges: Iterable[tuple[_Kind, int]]) -> tuple[int, ...]:
     """The first of the orders of a window in which the edges, so many of each kind, have the least total span."""
-    kinds = [(*kind, number) for kind, number in edges.items()]
-    best: tuple[int, ...] = ()
-    least = None
-    for candidate, first, last in orders:
-        span = 0
-        for inside, above, below, number in kinds:
-            span += number * ((0 if below else last[inside]) - (0 if above else first[inside]))
-        if least is None or span < least:
-            best, least = candidate, span
-    return best
+    orders, spans = _permutations(size)
+    rows = [
+        spans[kind] if number == 1 else [number * span for span in spans[kind]]
+        for kind, number in edges
+        if kind in spans
+    ]
+    if not rows:
+        return orders[0]
+    total = list(map(sum, zip(*rows, strict=True)))
+    return orders[total.index(min(total))]
 
 
 def _slide(order: list[int], edges: Sequence[Sequence[int]]) -> list[int]:
-    """Puts the vertices of each window in their best order, window by window, until none changes."""
+    """Puts the vertices of each window in their best order, window by window, until none changes.
+
+    A window stays as it is, and is not looked at, as long as nothing in those changes that overlap with it.
+    """
     order = list(order)
     edges_of = _incidence(len(order), edges)
     place = _places(order)
     ends = [_ends(edge, place) for edge in edges]
-    orders = {size: _permutations(size) for size in range(2, _WINDOW + 1)}
-    changed = True
-    while changed:
-        changed = False
-        for start in range(len(order) - 1):
+    known: dict[tuple[int, frozenset[tuple[_Kind, int]]], tuple[int, ...]] = {}
+    pending = [True] * (len(order) - 1)
+    while True in pending:
+        for start in range(len(pending)):
+            if not pending[start]:
+                continue
+            pending[start] = False
             window = order[start : start + _WINDOW]
-            members: dict[int, int] = {}
-            for index, vertex in enumerate(window):
-                for edge in edges_of[vertex]:
-                    members[edge] = members.get(edge, 0) | 1 << index
+            members = _members(window, edges_of)
             # What matters of an edge: its members in the window, and whether it goes on above and below.
-            alike = Counter(
-                (inside, ends[edge][0] < start, ends[edge][1] >= start + len(window))
-                for edge, inside in members.items()
-            )
-            moved = [window[index] for index in _shortest(orders[len(window)], alike)]
+            end = start + len(window)
+            alike = Counter((inside, ends[edge][0] < start, ends[edge][1] >= end) for edge, inside in members.items())
+            key = len(window), frozenset(alike.items())
+            if key not in known:
+                known[key] = _shortest(*key)
+            moved = [window[index] for index in known[key]]
             if moved != window:
-                order[start : start + _WINDOW] = moved
+                order[start:end] = moved
                 for index, vertex in enumerate(moved, start):
                     place[vertex] = index
                 for edge in members:
                     ends[edge] = _ends(edges[edge], place)
-                changed = True
+                first, last = max(0, start + 1 - _WINDOW), min(len(pending), end)
+                pending[first:last] = [other != start for other in range(first, last)]
     return order
+
+
+def _members(window: Sequence[int], edges_of: Sequence[Sequence[int]]) -> dict[int, int]:
+    """The edges of the vertices in a window, each with those by their bits."""
+    members: dict[int, int] = {}
+    for index, vertex in enumerate(window):
+        for edge in edges_of[vertex]:
+            members[edge] = members.get(edge, 0) | 1 << index
+    return members
