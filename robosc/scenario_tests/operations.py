@@ -80,6 +80,7 @@ class Operations:
                     if number not in lockstep.withheld:
                         lockstep.withhold(number)
                 self._repeat(lockstep, operation)
+                lockstep.keep()
                 try:
                     lockstep.compare()
                 except DifferenceError as error:

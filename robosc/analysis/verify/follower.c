@@ -1,12 +1,12 @@
 /* Does with a generated control loop what its input says, and tells what happens.
  *
  * Each operation of the loop is told as a letter, the events that happened, whether what was asked for did, in models
- * with times when the next is up, and the state after it. `k` and `K` end the line:
+ * with times when the next is up, and the state after it. `k` ends the line:
  *
  *     n EVENTS REACTIONS REACT RESOLUTION NOW   begins anew with these settings
  *     p EVENT   b   e   t   s   x   r   performs; a batch begins, ends; a tick; settling; a time ends; times start anew
  *     i INPUT CODE   w EVENT   d DURATION MILLISECONDS   c NOW   what holds from now on
- *     k   keeps how the loop is, unless that is kept, and says under which number;  K  does so in any case
+ *     k   keeps how the loop is; says under which number, and which is the first that is like it
  *     g NUMBER   goes back there
  *
  * Two loops are alike where all bytes are, times counted from now. A value is told as its code: how far it is from the
@@ -134,7 +134,7 @@ static void *enough(void *memory)
     return memory;
 }
 
-static void keep(bool always)
+static void keep(void)
 {
     memset(chosen, 0, sizeof chosen);
     put_inputs();
@@ -156,12 +156,11 @@ static void keep(bool always)
     one->now = now;
 #endif
     const size_t place = place_of(one);
-    if (table[place] != 0U && !always) {
-        printf(" %zu\n", table[place] - 1U);
-    } else {
-        printf(" %zu\n", count++);
-        table[place] = table[place] == 0U ? count : table[place];
+    if (table[place] == 0U) {
+        table[place] = count + 1U;
     }
+    printf(" %zu %zu\n", count, table[place] - 1U);
+    ++count;
     fflush(stdout);
 }
 
@@ -263,8 +262,7 @@ static void follow(char operation)
     }
 #endif
     case 'k':
-    case 'K':
-        keep(operation == 'K');
+        keep();
         break;
     case 'g':
         go_back();

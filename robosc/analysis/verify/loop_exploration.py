@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from robosc.analysis.system import counted
 from robosc.analysis.verify.differences import refuted
-from robosc.analysis.verify.loop_lockstep import DifferenceError, Lockstep
+from robosc.analysis.verify.loop_lockstep import DifferenceError, Kept, Lockstep
 from robosc.analysis.verify.verdict import Outcome, Verdict
 from robosc.engine import Settings
 from robosc.semantics.roles import Roles
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 
     from robosc.analysis.paths import TraceStep
     from robosc.analysis.verify.c_program import CProgram
-    from robosc.engine.control_loop import SavedLoop
 
     #: What is done with both loops; False where it has no meaning in the state they are in, and was not done.
     Operation = Callable[[Lockstep], bool]
@@ -68,7 +67,7 @@ def explore_loop(program: CProgram, effort: LoopEffort | None = None) -> Verdict
             seen = _explored(lockstep, min(effort.explored, most))
             walked = _walked(lockstep, min(effort.walked, most))
         except DifferenceError as error:
-            return refuted(PROPERTY, str(error), tuple(error.way))
+            return refuted(PROPERTY, str(error), tuple(error.seen))
         finally:
             _end(process)
     evidence = f"{counted(seen.states, 'state')}, {counted(seen.operations, 'operation')}"
@@ -99,17 +98,15 @@ class _Seen:
 class _Node:
     """Both loops as they were, and how they came there: from where, by what happened."""
 
-    saved: SavedLoop
-    kept: int
+    kept: Kept
     before: _Node | None = None
-    happened: tuple[TraceStep, ...] = ()
 
     def way(self) -> list[TraceStep]:
         """What happened from the start on."""
         steps: list[TraceStep] = []
         node: _Node | None = self
         while node is not None:
-            steps[:0] = node.happened
+            steps[:0] = node.kept.seen
             node = node.before
         return steps
 
@@ -127,39 +124,41 @@ def _explored(lockstep: Lockstep, operations: int) -> _Seen:
 def _breadth_first(lockstep: Lockstep, seen: _Seen, operations: int) -> None:
     """From where both are on. A node stands where a batch has begun, which leaves least of what was before."""
     tried = _operations(lockstep)
-    first = _Node(lockstep.loop.saved, lockstep.compare(always=True), None, tuple(lockstep.seen))
-    reached = {(_key(first.saved), first.kept)}
-    pending = deque([first])
+    lockstep.keep()
+    pending = deque(_Node(kept) for kept in lockstep.compare())
+    reached = {_key(node.kept) for node in pending}
     while pending:
         node = pending.popleft()
         seen.states += 1
+        spent = False
         for operation in tried:
-            if seen.operations >= operations:
-                seen.complete = False
-                return
+            if spent := seen.operations >= operations:
+                break
             lockstep.seen.clear()
-            lockstep.go_back(node.kept, node.saved)
-            try:
-                if not operation(lockstep):
-                    continue
+            lockstep.go_back(node.kept)
+            if operation(lockstep):
                 seen.operations += 1
                 lockstep.operate("b")
-                kept = lockstep.compare()
-            except DifferenceError as error:
-                error.way = [*node.way(), *lockstep.seen]
-                raise
-            key = _key(lockstep.loop.saved), kept
-            if key not in reached:
+                lockstep.keep()
+        try:
+            found = lockstep.compare()
+        except DifferenceError as error:
+            error.seen = [*node.way(), *error.seen]
+            raise
+        if spent:
+            seen.complete = False
+            return
+        for kept in found:
+            if (key := _key(kept)) not in reached:
                 reached.add(key)
-                # Another state of ours may be like one that the generated loop has kept at another time of the clock.
-                kept = lockstep.compare(always=True)
-                pending.append(_Node(lockstep.loop.saved, kept, node, tuple(lockstep.seen)))
+                pending.append(_Node(kept, node))
 
 
-def _key(saved: SavedLoop) -> tuple[Any, ...]:
+def _key(kept: Kept) -> tuple[Any, ...]:
     """What two states have in common that go on alike: times count from now."""
-    now, up = saved.timers
-    return saved.cells, saved.rest, tuple((number, until - now) for number, until in sorted(up.items()))
+    now, up = kept.saved.timers
+    times = tuple((number, until - now) for number, until in sorted(up.items()))
+    return kept.saved.cells, kept.saved.rest, times, kept.first
 
 
 def _operations(lockstep: Lockstep) -> list[Operation]:
@@ -275,8 +274,12 @@ def _walked(lockstep: Lockstep, operations: int) -> int:
             walk.batch()
         while walk.operations * len(parts) < operations * part:
             walk.step()
-            # What happened so far is not told: it is no shortest way.
-            lockstep.compare(always=True)
+            lockstep.keep()
+        try:
+            lockstep.compare()
+        except DifferenceError as error:
+            error.seen = ()  # What happened so far is not told: it is no shortest way.
+            raise
     return walk.operations
 
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import signal
 import sys
+from dataclasses import dataclass
+from itertools import accumulate
 from typing import TYPE_CHECKING, Any
 
 from robosc.analysis.paths import TraceStep
@@ -33,20 +35,47 @@ OPERATIONS = {
 #: Where the clock starts: it soon wraps from its largest value to 0.
 _START = 2**32 - 20_000
 _NEVER = 2**32 - 1
+#: So many characters fit into every pipe.
+_PORTION = 4096
 
 
 class DifferenceError(Exception):
-    """The loops did different things, as the message says; `way` is what happened before."""
+    """The loops did different things, as the message says; `seen` is what happened before."""
 
-    way: Sequence[TraceStep] = ()
+    def __init__(self, message: str, seen: Sequence[TraceStep]) -> None:
+        super().__init__(message)
+        self.seen = seen
+
+
+@dataclass(frozen=True)
+class Kept:
+    """Both loops as they were, and what was `seen` until then.
+
+    The generated one has a number; another that is like it but for the time of the clock is the first of its kind.
+    """
+
+    saved: SavedLoop
+    number: int
+    first: int
+    seen: tuple[TraceStep, ...]
+
+
+@dataclass(frozen=True)
+class _Noted:
+    """The operations, what the Python loop said in them, and how it is then."""
+
+    script: str
+    said: list[str]
+    saved: SavedLoop
+    seen: tuple[TraceStep, ...]
 
 
 class Lockstep:
     """Both loops of one model. Events are told by their number, in the order of the model, data by codes.
 
-    `operate`, `perform`, `withhold`, `pass_time` and the like are done by the Python loop at once. `compare` lets the
-    generated one do them, too, raises DifferenceError where it did something else, and says under which number it kept
-    how it is then.
+    `operate`, `perform`, `withhold`, `pass_time` and the like are done by the Python loop at once, `keep` notes how it
+    is then. `compare` lets the generated one do all of that, too, and raises DifferenceError where it did something
+    else. Whoever compares after many operations waits for the other process once.
     """
 
     def __init__(self, model: sct.SupervisoryControlModel, follower: Popen[str]) -> None:
@@ -59,9 +88,10 @@ class Lockstep:
         self._follower = follower
         self._script: list[str] = []
         self._said: list[str] = []
+        self._noted: list[_Noted] = []
         self._happened: list[str] = []
         self._withheld: set[str] = set()
-        #: What happened in the operations since the last comparison.
+        #: What happened since whoever reads this cleared it.
         self.seen: list[TraceStep] = []
         #: The event that is performed, and with which data.
         self._performed: tuple[str, Mapping[str, Any]] = ("", {})
@@ -141,31 +171,49 @@ class Lockstep:
         timers.at(timers.now + milliseconds)
         self._script.append(f"c {timers.now % 2**32}")
 
-    def go_back(self, number: int, saved: SavedLoop) -> None:
+    def go_back(self, kept: Kept) -> None:
         """Both are as they were when this was kept."""
-        self.loop.restore(saved)
-        self._script.append(f"g {number}")
+        self.loop.restore(kept.saved)
+        self._script.append(f"g {kept.number}")
 
-    def compare(self, *, always: bool = False) -> int:
-        """Lets the generated loop do what the Python one did; keeps how it is, or, if not `always`, finds it kept."""
+    def keep(self) -> None:
+        """Both keep how they are, to `go_back` there."""
+        self._script.append("k")
+        self._noted.append(_Noted("\n".join([*self._script, ""]), self._said, self.loop.saved, tuple(self.seen)))
+        self._script, self._said = [], []
+
+    def compare(self) -> list[Kept]:
+        """Lets the generated loop do what the Python one did; says what was kept since the last comparison."""
+        noted, self._noted = self._noted, []
+        kept: list[Kept] = []
+        while len(kept) < len(noted):
+            kept += self._compared(noted[len(kept) :])
+        return kept
+
+    def _compared(self, noted: Sequence[_Noted]) -> list[Kept]:
+        """The first of these, as many as the pipe takes at once: nobody reads there while we write."""
         pipe, answers = self._follower.stdin, self._follower.stdout
         assert pipe is not None
         assert answers is not None
+        lengths = accumulate(len(one.script) for one in noted)
+        portion = noted[: max(sum(length <= _PORTION for length in lengths), 1)]
         try:
-            pipe.write("\n".join([*self._script, "K" if always else "k", ""]))
+            pipe.write("".join(one.script for one in portion))
             pipe.flush()
-            answer = answers.readline()
         except BrokenPipeError:
-            answer = ""
-        if not answer:
-            raise DifferenceError(self._end())
-        *theirs, number = answer.split(";")
-        for ours, told in zip(self._said, theirs, strict=True):
-            if ours != told:
-                raise DifferenceError(self._difference(ours, told))
-        self._script.clear()
-        self._said.clear()
-        return int(number)
+            pass  # What it has said tells how far it came.
+        kept = []
+        for one in portion:
+            answer = answers.readline()
+            if not answer:
+                raise DifferenceError(self._end(one.said), one.seen)
+            *theirs, numbers = answer.split(";")
+            for ours, told in zip(one.said, theirs, strict=True):
+                if ours != told:
+                    raise DifferenceError(self._difference(ours, told), one.seen)
+            number, first = map(int, numbers.split())
+            kept.append(Kept(one.saved, number, first, one.seen))
+        return kept
 
     def _say(self, operation: str, result: bool) -> None:
         state = self.loop.state
@@ -190,9 +238,9 @@ class Lockstep:
             for word, is_event in zip(words, known, strict=True)
         ]
 
-    def _end(self) -> str:
+    def _end(self, said: Sequence[str]) -> str:
         status = self._follower.wait()
         endless = sys.platform != "win32" and status == -signal.SIGALRM
         how = "does not come to an end" if endless else f"ends with status {status}"
-        where = ", ".join(OPERATIONS[line[0]] for line in self._said) or "the start"
+        where = ", ".join(OPERATIONS[line[0]] for line in said) or "the start"
         return f"the control loop of {TEXT} {how}, at one of these: {where}"
