@@ -3,7 +3,8 @@
 It has the decision diagrams of a model, the states that can be reached under its supervisor, where each event can
 happen in them, and shortest paths through them. There are two ways to come by one. `SynthesizedSystem` is the system as
 the fixpoint of synthesis found it. `GuardedSystem` is the system that a controller executes: it is read from the guards
-of a model's supervisor alone, so that verification does not trust the fixpoint.
+of a model's supervisor alone, so that verification does not trust the fixpoint. `ExplainedSystem` has both: what the
+supervisor of a model does, whichever tool found it, and why synthesis forbids what it forbids.
 """
 
 from __future__ import annotations
@@ -26,7 +27,6 @@ from robosc.synthesis.run_to_completion import Completion, completion, internal_
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
     from collections.abc import Set as AbstractSet
-    from typing import Self
 
     from robosc.analysis.paths import Path, TraceStep
     from robosc.metamodel import expression as ex
@@ -65,6 +65,8 @@ class SupervisedSystem:
         self.diagrams = encoding.diagrams
         self.relations = relations
         self.moves = moves
+        #: The events that happen under the supervisor: those of `moves`, where they lead from and to controlled states.
+        self.supervised_moves = moves
         self.plant_moves = plant_moves(relations.values())
         #: The states that violate a requirement whatever a supervisor does, reachable or not.
         self.violations = violations(model, relations.values(), encoding)
@@ -92,11 +94,11 @@ class SupervisedSystem:
     @cached_property
     def layers(self) -> Layers:
         """The controlled states by their distance from the initial one."""
-        return Layers(self.encoding, self.moves, self.initial, self.controlled)
+        return Layers(self.encoding, self.supervised_moves, self.initial, self.controlled)
 
     def layers_from(self, start: Codes) -> Layers:
         """The controlled states by their distance from one of them."""
-        return Layers(self.encoding, self.moves, self.encoding.state(start), self.controlled)
+        return Layers(self.encoding, self.supervised_moves, self.encoding.state(start), self.controlled)
 
     def path_to(self, states: Diagram) -> Path:
         """A shortest path from the initial state to one of these controlled states."""
@@ -173,7 +175,7 @@ class SynthesizedSystem(SupervisedSystem):
         self.found = supervise(encoding, self.moves, self.violating) if found is None else found
         self.controlled = self.found.controlled
 
-    def without(self, requirements: AbstractSet[sct.StatedRequirement]) -> Self:
+    def without(self, requirements: AbstractSet[sct.StatedRequirement]) -> SynthesizedSystem:
         """The system that there would be without some requirements.
 
         An action that is cancelled where a requirement on it no longer holds is then cancelled for the others alone.
@@ -189,6 +191,7 @@ class SynthesizedSystem(SupervisedSystem):
                 other.required[event] = ~self.started_where(trigger, requirements)
         moves = ((relation, relation.step_where(other.required[event])) for event, relation in self.relations.items())
         other.moves = [(relation, step) for relation, step in moves if step is not None]
+        other.supervised_moves = other.moves
         other.violations = {one: states for one, states in self.violations.items() if one not in requirements}
         other.found = supervise(self.encoding, other.moves, other.violating)
         other.controlled = other.found.controlled
@@ -242,19 +245,29 @@ class GuardedSystem(SupervisedSystem):
     where the model has no supervisor.
     """
 
-    def __init__(self, model: sct.SupervisoryControlModel, encoding: Encoding, *, guards: bool = True) -> None:
+    def __init__(
+        self,
+        model: sct.SupervisoryControlModel,
+        encoding: Encoding,
+        relations: Sequence[EventRelation] | None = None,
+        *,
+        guards: bool = True,
+    ) -> None:
+        """Without `relations` they are made anew."""
         if model.supervisor is None:
             raise ValueError(f"{model.name} has no supervisor: synthesize it first")
         self.supervisor = model.supervisor
         self.guards = {guard.event: guard for guard in model.supervisor.guards if guards}
-        relations = {relation.event: relation for relation in event_relations(model, encoding)}
-        super().__init__(model, encoding, relations, [])
+        known = event_relations(model, encoding) if relations is None else relations
+        super().__init__(model, encoding, {relation.event: relation for relation in known}, [])
         #: Where an event can happen, in reachable states and in all others.
-        self.allowed = {event: relation.enabled & self.guard(event) for event, relation in relations.items()}
+        self.allowed = {event: relation.enabled & self.guard(event) for event, relation in self.relations.items()}
         supervised = [
-            (relations[event], allowed, relations[event].step_where(allowed)) for event, allowed in self.allowed.items()
+            (self.relations[event], allowed, self.relations[event].step_where(allowed))
+            for event, allowed in self.allowed.items()
         ]
         self.moves = [(relation, step) for relation, _, step in supervised if step is not None]
+        self.supervised_moves = self.moves
         self.internal = internal_events(supervised, self.guards.values())
 
     @cached_property
@@ -273,6 +286,29 @@ class GuardedSystem(SupervisedSystem):
     def completion(self) -> Completion:
         """How many internal events can happen in a row, and where there is no end to them."""
         return completion(self.diagrams, self.internal, self.controlled, _EFFORT)
+
+
+class ExplainedSystem(SynthesizedSystem):
+    """The system under the supervisor that its model has; `moves` and `found` are those of synthesis all the same.
+
+    Raises ValueError where the model has no supervisor.
+    """
+
+    def __init__(self, model: sct.SupervisoryControlModel, encoding: Encoding) -> None:
+        relations = event_relations(model, encoding)
+        super().__init__(model, encoding, relations)
+        self._guarded = GuardedSystem(model, encoding, relations)
+        self.supervised_moves = self._guarded.moves
+        self.initial, self.controlled = self._guarded.initial, self._guarded.controlled
+
+    def allowed(self, event: sct.Event) -> Diagram:
+        """The controlled states in which the event can happen."""
+        return self.controlled & self._guarded.allowed[event]
+
+    def without(self, requirements: AbstractSet[sct.StatedRequirement]) -> SynthesizedSystem:
+        """The system that synthesis would find without some requirements."""
+        own = SynthesizedSystem(self.model, self.encoding, list(self.relations.values()), self.found)
+        return own.without(requirements)
 
 
 def whole_state(model: sct.SupervisoryControlModel, codes: Codes) -> dict[str, Value]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from robosc.cli import CallError, say
-from robosc.cli.options import Paths
+from robosc.cli.options import Paths, synthesizer
 from robosc.cli.parameters import set_parameters
 from robosc.cli.reading import read_models, supervise_models
 from robosc.cli.report import Report
@@ -32,6 +32,7 @@ class _Kept(Report):
 @click.command("dap")
 @click.option("--port", type=click.IntRange(0, 65535), help="Listen on a port of this machine; 0: a free one.")
 @click.option("--once", is_flag=True, help="With --port: end after the first client.")
+@synthesizer
 def command(port: int | None, once: bool) -> None:
     """Debug robots in an editor, by the Debug Adapter Protocol: step by event, step back, stop, look, ask why.
 

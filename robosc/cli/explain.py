@@ -20,9 +20,9 @@ from robosc.analysis.explain import (
 )
 from robosc.analysis.supervise import supervise
 from robosc.cli import CallError, put, say
-from robosc.cli.options import Paths, model, paths
+from robosc.cli.options import Paths, model, paths, synthesizer
 from robosc.cli.progress import progress
-from robosc.cli.reading import read_models
+from robosc.cli.reading import read_models, supervise_otherwise
 from robosc.cli.report import Report
 from robosc.diagnostics.visible import visible
 from robosc.metamodel.places import place
@@ -46,6 +46,7 @@ if TYPE_CHECKING:
 @click.option("--why-empty", is_flag=True, help="Why the robot has no supervisor.")
 @click.option("--why-never", metavar="EVENT", help="Why EVENT can never happen, in whatever state.")
 @click.option("--json", "as_data", is_flag=True, help="Print one JSON object.")
+@synthesizer
 @paths
 def command(
     model: str,
@@ -61,7 +62,8 @@ def command(
     MODEL is a .rscd file with a robot, or an .xmi file that `transform --to xmi` wrote. An event is a communication's
     name for what it is there for (`move`, `Platform.move`), or one of its events (`drive.cancel`, `grip.error`), or the
     name in `synthesize --json` (`message_move.c_trigger`). What a state leaves open is chosen so that the robot gets
-    there soonest; the answer shows the state and the way to it.
+    there soonest; the answer shows the state and the way to it. What is explained is the supervisor that a saved model
+    has, that of --synthesizer, else ours; what would have to be loosened is told of ours.
 
     \b
     Examples:
@@ -79,6 +81,7 @@ def command(
         raise click.UsageError("--state needs --event")
     with Report(aside=True) as report:
         plants = read_models(model, paths, report, cif=True).sct
+        supervise_otherwise(plants)
         with progress("exploring what the robot can do"):
             answer = explored(plants, emptiness if why_empty else _question(plants, event, state, why_never))
         if answer is None and not why_empty:

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from robosc.cli.options import Paths
     from robosc.cli.report import Report
     from robosc.configuration import Configuration
+    from robosc.synthesis import Synthesis
 
     Root = rsc.Base | sct.SupervisoryControlModel | rosgraph.RosGraph
 
@@ -124,17 +125,28 @@ def supervise_models(models: Models, report: Report, *, memory: int | None = Non
     there are errors. Raises EmptySupervisorError where there is no supervisor.
     """
     from robosc.analysis.supervise import supervise
-    from robosc.cli.progress import progress, synthesizing
+    from robosc.cli.progress import synthesizing
     from robosc.synthesis import MEMORY
 
-    chosen = chosen_synthesizer()
-    if chosen is not None:
-        from robosc.analysis.other_synthesizers import supervise_by
-
-        with progress(f"synthesizing by {chosen.name}"):
-            supervise_by(chosen, models.sct, memory=memory or MEMORY)
-    elif models.sct.supervisor is None:
+    if supervise_otherwise(models.sct, memory=memory) is None and models.sct.supervisor is None:
         with synthesizing() as statistics:
             supervision = supervise(models.sct, memory=memory or MEMORY, statistics=statistics)
         report.add(supervision.findings)
         report.stop_on_errors()
+
+
+def supervise_otherwise(model: sct.SupervisoryControlModel, *, memory: int | None = None) -> Synthesis | None:
+    """Gives the model the supervisor of the synthesizer that the command was called with.
+
+    None where it was called with none: the model is as it was. `memory` and errors are those of
+    `robosc.analysis.other_synthesizers.supervise_by`.
+    """
+    chosen = chosen_synthesizer()
+    if chosen is None:
+        return None
+    from robosc.analysis.other_synthesizers import supervise_by
+    from robosc.cli.progress import progress
+    from robosc.synthesis import MEMORY
+
+    with progress(f"synthesizing by {chosen.name}"):
+        return supervise_by(chosen, model, memory=memory or MEMORY)

@@ -8,14 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from robosc.analysis.other_synthesizers import supervise_by
 from robosc.analysis.supervise import Diagnosis, EmptySupervisorError, supervise
 from robosc.analysis.system import counted
 from robosc.analysis.wording import called, change
 from robosc.cli import EMPTY_SUPERVISOR, put, say
 from robosc.cli.options import Paths, chosen_synthesizer, memory, model, paths, synthesizer
 from robosc.cli.progress import synthesizing
-from robosc.cli.reading import read_models
+from robosc.cli.reading import read_models, supervise_otherwise
 from robosc.cli.report import Report
 from robosc.metamodel import sct
 from robosc.metamodel.places import place
@@ -56,14 +55,15 @@ def command(model: str, as_json: bool, counts: bool, megabytes: int, paths: Path
 
     Exit status: 0 done, 1 errors in the model, 2 a wrong call, 3 no supervisor exists.
     """
+    if counts and chosen_synthesizer() is not None:
+        raise click.UsageError("--counts is what our own synthesis counts: leave it or --synthesizer out")
     with Report(aside=True) as report:
         plants = read_models(model, paths, report, cif=True).sct
         if counts:
             _count(plants, megabytes << 20, as_json=as_json)
             return
-        chosen = chosen_synthesizer()
-        if chosen is not None:
-            found = supervise_by(chosen, plants, memory=megabytes << 20)
+        found = supervise_otherwise(plants, memory=megabytes << 20)
+        if found is not None:
             show = _show_json if as_json else _show
             show(plants, Diagnosis(**vars(found)))
             return

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from robosc.analysis.blocking_in_words import counterexample_in_words
-from robosc.analysis.explain import explain, explored, state_given
+from robosc.analysis.explain import NEEDLESS, explain, explored, state_given
 from robosc.analysis.wording import in_words, name, words
 from robosc.files import reading as files
 from robosc.metamodel import sct
@@ -198,6 +198,8 @@ class Views:
         ]
         if told.counterexample is not None:
             reasons.append(Variable("otherwise", counterexample_in_words(told.counterexample, self._model)))
+        elif told.needless:
+            reasons.append(Variable("supervisor", NEEDLESS))
         reasons += [Variable("would help", note.text) for note in told.changes]
         if told.way:
             reasons.append(Variable("shortest way", in_words(told.way, self._model)))

@@ -7,7 +7,7 @@ import json
 from typing import TYPE_CHECKING, Any
 
 from robosc.analysis.blocking_in_words import counterexample_in_words
-from robosc.analysis.explain import explain, explored, state_given
+from robosc.analysis.explain import NEEDLESS, explain, explored, state_given
 from robosc.analysis.wording import in_words, words
 from robosc.semantics.roles import Roles, event_name
 from robosc.simulation.simulation import whole_state
@@ -201,7 +201,7 @@ class Moments:
             blocking = told.counterexample
             self._explained[key] = {
                 "allowed": told.allowed,
-                "notes": [note.text for note in (*told.plants, *told.requirements)],
+                "notes": [NEEDLESS] if told.needless else [note.text for note in (*told.plants, *told.requirements)],
                 "otherwise": "" if blocking is None else counterexample_in_words(blocking, self._model),
                 "changes": [note.text for note in told.changes],
                 "way": in_words(told.way, self._model) if told.way else "",

@@ -135,10 +135,11 @@ class Client:
 class Program(Client):
     """`robosc dap` in a process of its own."""
 
-    def __init__(self, folder: Path) -> None:
-        environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    def __init__(self, folder: Path, *options: str, packages: Path = ROOT) -> None:
+        """`packages` is a folder with further packages."""
+        environment = {**os.environ, "PYTHONPATH": f"{ROOT}:{packages}"}
         self.process = subprocess.Popen(
-            [sys.executable, "-m", "robosc", "dap"],
+            [sys.executable, "-m", "robosc", "dap", *options],
             cwd=folder,
             env=environment,
             stdin=subprocess.PIPE,

@@ -8,6 +8,7 @@ from pathlib import Path
 from random import Random
 
 import pytest
+from click import Context
 from click.testing import CliRunner
 
 import robosc
@@ -17,6 +18,8 @@ from robosc.configuration import Configuration
 from robosc.engine import Engine
 from robosc.m2t.models import Models
 from robosc.semantics.roles import event_name
+from tests.cli.conftest import not_longer_than
+from tests.debugger.client import Program
 from tests.examples.conftest import MODELS, models_of
 from tests.m2t.supervisor import corners
 from tests.m2t.supervisor.test_supervisor import dock
@@ -172,6 +175,71 @@ def test_verify_refutes_a_supervisor_that_allows_too_much(broken) -> None:
     verdicts = json.loads(done.stdout)["properties"]
     refuted = [verdict["property"] for verdict in verdicts if verdict["outcome"] == "refuted"]
     assert any(name.startswith("requirement move needs") for name in refuted)
+
+
+#: The robot never moves, though it could.
+SHY = (
+    f"{SYNTHESIZER}from robosc.metamodel import expression\n"
+    "    from robosc.semantics.roles import event_name\n"
+    "    from robosc.synthesis import synthesize\n"
+    "    found = synthesize(model).supervisor\n"
+    "    for guard in found.guards:\n"
+    "        if event_name(guard.event) == 'message_move.c_trigger':\n"
+    "            guard.synthesis = expression.BooleanLiteral(value=False)\n"
+    "    return found\n"
+)
+STATE = "LineDetector=following,Lidar=free"
+
+
+def test_the_supervisor_of_another_tool_is_explained(broken) -> None:
+    broken("robosc.synthesizers", SHY)
+    asked = ["explain", str(LINE_FOLLOWER), "--event", "move", "--state", STATE]
+    ours, other = (CliRunner().invoke(main, [*asked, *more]).stdout for more in ((), ("--synthesizer", "broken")))
+    assert ours.startswith("The request to `Platform.move` can happen here.")
+    assert other.startswith(
+        "The request to `Platform.move` can't happen here: only this supervisor forbids it, neither the robot"
+        " nor a requirement, nor would synthesis."
+    )
+    assert "From here the robot gets to no state where it can happen." in other
+    done = CliRunner().invoke(main, ["explain", str(LINE_FOLLOWER), "--why-never", "move", "--synthesizer", "broken"])
+    assert done.stdout.startswith("The request to `Platform.move` can never happen.\n\nThe nearest state where only")
+    assert "leave out" not in done.stdout
+
+
+def test_an_empty_supervisor_of_another_tool_is_told(broken) -> None:
+    broken("robosc.synthesizers", f"{SYNTHESIZER}return None\n")
+    done = CliRunner().invoke(main, ["explain", str(LINE_FOLLOWER), "--why-empty", "--synthesizer", "broken"])
+    assert done.exit_code == 3
+    assert "`broken` finds none" in done.stderr
+
+
+def test_the_debugger_takes_another_synthesizer(broken, tmp_path: Path) -> None:
+    packages = broken("robosc.synthesizers", SHY).parents[1]
+    with not_longer_than(120):
+        program = Program(tmp_path, "--synthesizer", "broken", packages=packages)
+        program.launch(LINE_FOLLOWER)
+        for said in ("correction 0.1", 'scan "clear"', "component_Lidar.c_tau1"):
+            program.console(said)
+        move = program.scope("Can't happen")["message_move.c_trigger"]
+        assert program.children(move)["supervisor"]["value"].startswith("only this supervisor forbids it")
+        program.do("disconnect")
+        assert program.end() == (0, "")
+
+
+#: The commands that ask for a supervisor.
+SYNTHESIZING = ("synthesize", "transform", "verify", "explain", "simulate", "test", "run", "view", "report", "dap")
+
+
+def test_every_command_that_synthesizes_takes_another_synthesizer() -> None:
+    taking = {
+        name
+        for name in main.list_commands(Context(main))
+        if any("--synthesizer" in option.opts for option in main.get_command(Context(main), name).params)
+    }
+    assert taking == set(SYNTHESIZING)
+    told = [f"`{name}`" for name in SYNTHESIZING]
+    sentence = f"{', '.join(told[:-1])} and {told[-1]} take `--synthesizer NAME`"
+    assert [sentence in (ROOT / "docs" / page).read_text() for page in ("cli.md", "extending.md")] == [True, True]
 
 
 @pytest.mark.parametrize("make", [corners.swap, corners.names, corners.data, corners.cancel_and_trigger, dock])

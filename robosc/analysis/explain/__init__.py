@@ -8,11 +8,12 @@ rendered `as_text` for a person and `as_json` for programs.
 
 from robosc.analysis.explain.answers import Emptiness, Explanation, Possibility
 from robosc.analysis.explain.as_json import data_of
-from robosc.analysis.explain.as_text import Renderer
+from robosc.analysis.explain.as_text import NEEDLESS, Renderer
 from robosc.analysis.explain.explaining import emptiness, explain, explored, possibility
 from robosc.analysis.explain.names import NamingError, event_named, state_given
 
 __all__ = [
+    "NEEDLESS",
     "Emptiness",
     "Explanation",
     "NamingError",

@@ -6,12 +6,13 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import TYPE_CHECKING, Any
 
+from robosc.engine import Blocked
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from robosc.analysis.blocking import BlockingCounterexample, Reason
     from robosc.analysis.paths import TraceStep
-    from robosc.engine import Blocked
     from robosc.metamodel import sct
     from robosc.synthesis.decoding import Value
     from robosc.synthesis.encoding import Element
@@ -73,6 +74,11 @@ class Explanation:
     def allowed(self) -> bool:
         """Whether it can happen."""
         return self.by is None and self.situation.reach is Reach.SUPERVISED
+
+    @property
+    def needless(self) -> bool:
+        """Whether the model's supervisor forbids it, and the one that synthesis finds would not."""
+        return self.by is Blocked.SYNTHESIS and self.counterexample is None
 
 
 @dataclass(frozen=True)

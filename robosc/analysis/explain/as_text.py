@@ -27,7 +27,13 @@ _BY = {
     Blocked.REQUIREMENT: "its requirements forbid it",
     Blocked.SYNTHESIS: "no requirement forbids it, but synthesis does, because of what could follow",
 }
+#: Of a supervisor of another tool.
+NEEDLESS = "only this supervisor forbids it, neither the robot nor a requirement, nor would synthesis"
 _ELSE = "Without requirements it would, after"
+
+
+def _because(told: Explanation) -> str:
+    return NEEDLESS if told.needless else _BY[told.by] if told.by else ""
 
 
 class Renderer:
@@ -60,7 +66,7 @@ class Renderer:
         elif told.by is None:
             yield f"Neither the robot nor a requirement forbids the {event} here, but the robot never gets here."
         else:
-            yield f"The {event} can't happen here: {_BY[told.by]}."
+            yield f"The {event} can't happen here: {_because(told)}."
         yield from self._situation(told.situation)
         yield from self._refused(told.refusal)
         yield from self._obstacles(told)
@@ -93,7 +99,7 @@ class Renderer:
         if refusal is None:
             return
         after = self._steps(refusal.situation.trace)
-        because = _BY[refusal.by] if refusal.by else ""
+        because = _because(refusal)
         yield from [
             "",
             f"On this way the {words(refusal.event)} can't happen{f' after {after}' if after else ''}: {because}.",
@@ -151,13 +157,16 @@ class Renderer:
             yield from self._section(
                 f"In no state that the robot could ever get to {all_of}", self._notes(told.conflict)
             )
-        yield from self._loosened(told.loosenings)
+        if not nearest.needless:
+            yield from self._loosened(told.loosenings)
 
     def _nearest(self, nearest: Explanation) -> Iterator[str]:
         after = self._steps(nearest.situation.trace)
         where = f"after {after}" if after else "the first"
         if nearest.situation.reach is Reach.UNSUPERVISED:
             yield f"The supervisor lets the robot get to no state where it is ready for it. {_ELSE} {after}:"
+        elif nearest.needless:
+            yield f"The nearest state where {NEEDLESS}, {where}:"
         elif nearest.by is Blocked.SYNTHESIS:
             yield f"The nearest state where neither the robot nor a requirement forbids it, {where}:"
         else:

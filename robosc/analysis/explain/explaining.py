@@ -1,6 +1,7 @@
 """Answers to: why can an event not happen in a state, or never, why has the robot no supervisor, what would help?
 
-The answer to each question is a function of the system that synthesis finds; none of them changes the model.
+The answer to each question is a function of the system that synthesis finds, or of that under the supervisor that the
+model has already; none of them changes the model.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from robosc.analysis.explain.answers import (
 )
 from robosc.analysis.explain.obstacles import Obstacles
 from robosc.analysis.paths import Path, shortest_path
-from robosc.analysis.system import SynthesizedSystem, whole_state
+from robosc.analysis.system import ExplainedSystem, SynthesizedSystem, whole_state
 from robosc.analysis.wording import listed, name, words
 from robosc.engine import Blocked
 from robosc.semantics.edges import edges_from
@@ -42,11 +43,13 @@ _TRIED = 24
 
 
 def explored(model: sct.SupervisoryControlModel, look: Callable[[SynthesizedSystem], T], memory: int = MEMORY) -> T:
-    """What `look` sees in the system that synthesis finds; it may run several times, with more memory each time.
+    """What `look` sees in the system under the model's supervisor, or, where it has none, that of synthesis.
 
-    Raises MemoryError where the decision diagrams would take more bytes than `memory`.
+    It may run several times, with more memory each time. Raises MemoryError where the decision diagrams would take more
+    bytes than `memory`.
     """
-    return encoded(model, lambda encoding: look(SynthesizedSystem(model, encoding)), memory)
+    system = SynthesizedSystem if model.supervisor is None else ExplainedSystem
+    return encoded(model, lambda encoding: look(system(model, encoding)), memory)
 
 
 # An event in a state
@@ -98,33 +101,40 @@ def _explained(
     obstacles = Obstacles(system, event, codes)
     plants, requirements = tuple(obstacles.plants()), tuple(obstacles.requirements())
     allowed = system.allowed(event)
+    happens = supervised and system.is_in(codes, allowed)
     caught: BlockingCounterexample | None = None
     blame: list[Note] = []
-    if supervised and not plants and not requirements and not system.is_in(codes, allowed):
+    if supervised and not plants and not requirements and not happens and not _harmless(system, event, codes):
         caught = blocking_counterexample(system, event, Path([dict(codes)], []))
         blame = blamed(system, caught.codes)
     return Explanation(
         event,
         situation,
-        _first(plants, requirements, caught),
+        None if happens else _first(plants, requirements, supervised=supervised),
         plants,
         requirements,
         caught,
         tuple(blame),
-        tuple(obstacles.changes(allowed)) if supervised and not system.is_in(codes, allowed) else (),
+        tuple(obstacles.changes(allowed)) if supervised and not happens else (),
         _way(system, codes, allowed) if supervised else None,
         refusal,
     )
 
 
-def _first(
-    plants: tuple[Note, ...], requirements: tuple[Note, ...], caught: BlockingCounterexample | None
-) -> Blocked | None:
+def _harmless(system: SynthesizedSystem, event: sct.Event, codes: Codes) -> bool:
+    """Whether synthesis has nothing against what an event leads to: then only another supervisor forbids it."""
+    step = system.relations[event].step
+    rounds = system.found.rounds
+    given_up = rounds[0] & ~rounds[-1]
+    return step is None or not (step.image(system.encoding.state(codes)) & given_up).satisfiable()
+
+
+def _first(plants: tuple[Note, ...], requirements: tuple[Note, ...], *, supervised: bool) -> Blocked | None:
     if plants:
         return Blocked.PLANT
     if requirements:
         return Blocked.REQUIREMENT
-    return Blocked.SYNTHESIS if caught else None
+    return Blocked.SYNTHESIS if supervised else None
 
 
 def _way(system: SynthesizedSystem, start: Codes, allowed: Diagram) -> tuple[TraceStep, ...] | None:
@@ -160,6 +170,8 @@ def possibility(system: SynthesizedSystem, event: sct.Event) -> Possibility:
             assert way is not None
             nearest = explain_after(system, event, way)
             if nearest.allowed:
+                return Possibility(event, nearest)
+            if nearest.needless:
                 return Possibility(event, nearest)
             required = nearest.by is Blocked.REQUIREMENT
             beyond = _beyond(system, event, relation.requirement) if required else None

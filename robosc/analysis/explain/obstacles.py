@@ -77,7 +77,7 @@ class Obstacles:
         encoding = self._system.encoding
         here = encoding.state(self._codes)
         found: list[Note] = []
-        for move in self._system.moves:
+        for move in self._system.supervised_moves:
             possible = move[1].image(here) & allowed
             if possible.satisfiable():
                 after = pick(possible, encoding.layout.state)
