@@ -38,6 +38,11 @@ _Element = TypeVar("_Element")
 RULE = "unresolved-reference"
 #: So many names are listed where none of them is close to the one that is not there.
 _FEW = 6
+#: How to go on without a function that is not there.
+_FUNCTION = (
+    f"there is {enumeration(f'`{name}`' for name in sorted(FUNCTIONS))}; others are declared, such as "
+    "`function half(d: double): double = d / 2`"
+)
 OWN_MEMBERS = "a library's component speaks of its own members only"
 
 
@@ -191,7 +196,8 @@ class Linker:
         elif found:
             call.function = found[0][1]
         elif not self._file.may_declare(name.text, Declared.NAMED):
-            self._missing(name, "there is no function", [*functions, *self.scope.usable(rsc.Function), *FUNCTIONS])
+            known = [*functions, *self.scope.usable(rsc.Function), *FUNCTIONS]
+            self._missing(name, "there is no function", known, did_you_mean(name.text, known, cutoff=0.6) or _FUNCTION)
 
     def _quantified_template(self, quantifier: rsc.InstanceQuantifier, name: Name) -> None:
         own = self._file.declared[rsc.Component]

@@ -93,6 +93,9 @@ def test_an_event_has_several_names(run: Run, name: str) -> None:
     [
         ("level", "message_level.u_response"),
         ("rinse.error", "service_rinse.u_error"),
+        ("error from rinse", "service_rinse.u_error"),
+        ("response from Gauge.level", "message_level.u_response"),
+        ("request to Valve.rinse", "service_rinse.c_trigger"),
         ("Valve.rinse.reset", "service_rinse.c_reset"),
         ("Gauge.c_tau2", "component_Gauge.c_tau2"),
     ],

@@ -146,6 +146,25 @@ def test_the_few_names_that_there_are_are_listed(tmp_path: Path) -> None:
     ]
 
 
+@pytest.mark.parametrize(
+    ("called", "hint"), [("exp", "there is `abs`, `atan2`, "), ("median", "did you mean `min`?"), ("halt", "did you")]
+)
+def test_the_functions_that_there_are_are_listed(tmp_path: Path, called: str, hint: str) -> None:
+    """A call of one that is nowhere shows what there is, and how another is declared."""
+    found = reading(
+        tmp_path,
+        f"""
+        robot R {{
+          function half(d: double): double = d / 2
+          component Motor {{ incoming message move with type: double }}
+          provide move with {called}(1.0)
+        }}
+        """,
+    )
+    assert underlined(found) == [("unresolved-reference", called)]
+    assert str(found.findings[0].hint).startswith(hint)
+
+
 def test_the_value_of_an_enum_belongs_to_no_component(tmp_path: Path) -> None:
     found = reading(
         tmp_path,

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 #: The event that a communication's bare name means: what it is there for.
 _MEANT = (sct.EventKind.trigger, sct.EventKind.response)
+#: An event as a model and an answer name it.
+_IN_WORDS = re.compile(r"(request|response|error|feedback|cancel) +(?:to|from|of) +(\S+)")
 
 
 class NamingError(ValueError):
@@ -34,7 +36,7 @@ class NamingError(ValueError):
 
 
 def event_named(model: sct.SupervisoryControlModel, name: str) -> sct.Event:
-    """The event of a name: `message_move.c_trigger`, `move`, `Platform.move`, `drive.cancel`, `Base.drive.cancel`.
+    """The event of a name: `message_move.c_trigger`, `move`, `Platform.move`, `drive.cancel`, `cancel from drive`.
 
     Raises NamingError where there is none or the name fits several.
     """
@@ -42,6 +44,8 @@ def event_named(model: sct.SupervisoryControlModel, name: str) -> sct.Event:
     for event in Roles(model).events:
         for known_as in dict.fromkeys(_event_names(event)):
             meant.setdefault(known_as, []).append(event)
+    if words := _IN_WORDS.fullmatch(name.strip()):
+        name = f"{words[2]}.{words[1]}"
     found = [event for event in meant.get(name, ()) if event_name(event) == name] or meant.get(name, [])
     if len(found) == 1:
         return found[0]

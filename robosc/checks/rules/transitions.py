@@ -29,6 +29,10 @@ if TYPE_CHECKING:
 _Event: TypeAlias = "tuple[rsc.Component | None, rsc.CommunicationType, str]"
 
 
+#: The direction of a message with this event, and who sends it: the component is what `incoming` is seen from.
+_SENT_BY = {"request": ("incoming", "the controller"), "response": ("outgoing", "the component")}
+
+
 @rule("result-type")
 def result_type(base: rsc.Base) -> Iterator[Finding]:
     """A transition names an event that its communication has."""
@@ -44,12 +48,16 @@ def result_type(base: rsc.Base) -> Iterator[Finding]:
             prepositions = {name: "to" if name == "request" else "from" for name in allowed}
             forms = [f"`on {name} {word} {written(communication.name)}`" for name, word in prepositions.items()]
             direction = f"{communication.direction} " if isinstance(communication, rsc.Message) else ""
+            hint = f"write {enumeration(forms)}"
+            if direction and event in _SENT_BY:
+                opposite, sender = _SENT_BY[event]
+                hint += f", or, if {sender} sends it, declare it as `{opposite} message {written(communication.name)}`"
             yield Finding(
                 transition,
                 f"{direction}{type(communication).__name__.lower()} `{communication.name}` has no {event}, expected"
                 f" {enumeration(f'`{name}`' for name in allowed)}",
                 Replacement(
-                    f"write {enumeration(forms)}",
+                    hint,
                     f"on {allowed[0]} {prepositions[allowed[0]]} ",
                     transition,
                     is_choice=len(forms) > 1,
