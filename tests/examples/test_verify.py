@@ -12,7 +12,7 @@ from click.testing import CliRunner
 
 from robosc.cli import main
 
-from .conftest import MODELS, SCENARIOS, SHOWCASES
+from .conftest import MODELS, SHOWCASES
 
 ROOT = Path(__file__).parents[2]
 LISTINGS = ROOT.parent / "shared" / "thesis" / "models"
@@ -51,14 +51,25 @@ def test_the_page_shows_the_table() -> None:
     assert _without_seconds(shown) == _without_seconds(told.stdout)
 
 
-def test_the_page_sums_up_the_examples() -> None:
+#: Which examples have a row that is not proved in all states, as the page says.
+SAMPLED = {
+    "maze_solver": {"loop-translation"},
+    "object_finder": {"loop-translation"},
+    "push_ball": {"loop-translation"},
+    "sprayer": {"c-translation", "loop-translation"},
+    "warehouse_robot": {"c-translation", "loop-translation", "model-translation"},
+}
+
+
+@pytest.mark.parametrize("path", CASES[: len(MODELS)])
+def test_the_page_sums_up_the_examples(path: Path) -> None:
     page = (ROOT / "docs" / "verify.md").read_text()
-    for name in SCENARIOS:
-        by_name = {answered["property"]: answered["evidence"] for answered in answer(MODELS[name])["properties"]}
-        number = len(by_name)
-        row = [name, by_name["controllability"].partition(" state")[0], str(number)]
-        row += [re.findall(r"at most (\d+)", by_name["bounded response"])[0], by_name["c-translation"]]
-        assert f"| {' | '.join(row)} |" in page, f"| {' | '.join(row)} |"
+    name, answered = path.stem, answer(path)["properties"]
+    by_name = {one["property"]: one["evidence"] for one in answered}
+    row = [name, by_name["controllability"].partition(" state")[0], str(len(by_name))]
+    row += [re.findall(r"at most (\d+)", by_name["bounded response"])[0], by_name["c-translation"]]
+    assert f"| {' | '.join(row)} |" in page, f"| {' | '.join(row)} |"
+    assert {one["property"] for one in answered if one["outcome"] == "sampled"} == SAMPLED.get(name, set())
 
 
 def test_the_page_shows_what_is_refuted(tmp_path: Path) -> None:
