@@ -128,8 +128,8 @@ def _listening(version: int, heard: Sequence[tuple[Sequence[str], Live]]) -> Cal
     """What lets the page hear what nodes tell, to be called once it is served; it gives what ends that."""
 
     def begin() -> Callable[[], None]:
-        from robosc.runtime.core.listening import listen
         from robosc.runtime.core.node import StartError
+        from robosc.runtime.listening import listen
         from robosc.view.relay import Relay
 
         try:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from robosc.runtime.core.listening import Listener
 
 
-class Ros1Ear:
+class Ros1Subscriber:
     """A node of ROS 1 that only listens, from when there is a master on."""
 
     def __init__(self, heard: Sequence[tuple[Sequence[str], Listener]]) -> None:

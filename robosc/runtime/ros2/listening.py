@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from robosc.runtime.core.listening import Listener
 
 
-class Ros2Ear:
+class Ros2Subscriber:
     """A node of ROS 2 that only listens."""
 
     def __init__(self, heard: Sequence[tuple[Sequence[str], Listener]]) -> None:
