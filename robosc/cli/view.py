@@ -97,7 +97,7 @@ def command(
             supervise_models(robot, report)
             simulation = Simulation(robot.sct, robot.rosgraph)
             if version is None:
-                record: Moments = _record(simulation, log, node, refuted, seed, report)
+                record: Moments = _record(simulation, robot.rosgraph, log, node, refuted, seed, report)
             else:
                 if robot.rosgraph is None:
                     raise CallError(
@@ -141,20 +141,26 @@ def _listening(version: int, heard: Sequence[tuple[Sequence[str], Live]]) -> Cal
 
 
 def _record(
-    simulation: Simulation, log: str | None, node: str | None, refuted: str | None, seed: int, report: Report
+    simulation: Simulation,
+    graph: rosgraph.RosGraph | None,
+    log: str | None,
+    node: str | None,
+    refuted: str | None,
+    seed: int,
+    report: Report,
 ) -> Record:
     """What is played. Ends the report where the log has faults."""
     from robosc import view
 
     try:
         if log is not None and is_recording(log):
-            return view.Record(simulation, seed=seed, recorded=recorded_moments(simulation, log, node))
+            return view.Record(simulation, graph, seed=seed, recorded=recorded_moments(simulation, log, node))
         if log is not None:
-            return view.Record(simulation, script_steps(simulation, log), seed)
+            return view.Record(simulation, graph, script_steps(simulation, log), seed)
         if refuted is not None:
             steps, said = counterexample_steps(simulation, None if refuted == "any" else refuted)
             say(said, err=True, nl=False)
-            return view.Record(simulation, steps, seed)
+            return view.Record(simulation, graph, steps, seed)
     except RecordingError as error:
         raise CallError(str(error)) from None
     except PlayError as error:
@@ -162,7 +168,7 @@ def _record(
             raise CallError(str(error)) from None
         report.add(error.findings, error.texts)
         report.stop_on_errors()
-    return view.Record(simulation, seed=seed)
+    return view.Record(simulation, graph, seed=seed)
 
 
 def _serve(

@@ -14,7 +14,7 @@ from robosc.metamodel.reflection import tree
 from robosc.runtime.core.event_log import nested
 from robosc.runtime.core.node_data import NodeData
 from robosc.semantics.evaluation import as_double
-from robosc.semantics.messages import receptions
+from robosc.semantics.messages import is_structured, receptions
 from robosc.semantics.operators import UnreadableError
 from robosc.semantics.roles import event_name
 from robosc.semantics.walks import operands
@@ -41,6 +41,31 @@ _BASIC: Mapping[type[ex.Type], tuple[str, Any, Value | float]] = {
 
 class DataError(Exception):
     """Data that an event can't come with."""
+
+
+def data_beside(graph: rosgraph.RosGraph, event: sct.Event) -> dict[tuple[str, ...], ex.Type]:
+    """Data of an event that the node keeps and no input tells: its types, by the fields on the way to it.
+
+    None of it where the supervisor has conditions on the data computed: the data would decide them.
+    """
+    given = [one for reception in receptions(graph) if reception.event == event for one in reception.inputs]
+    if any(one.input.text is not None for one in given):
+        return {}
+    told = [tuple(map(_field, _access(one).steps)) for one in given]
+    kept = [
+        assigned.value
+        for reaction in graph.reactions
+        if reaction.event == event
+        for assigned in reaction.assignments
+        if not is_structured(assigned.variable.type)
+    ]
+    found: dict[tuple[str, ...], ex.Type] = {}
+    for _, part in (read for value in kept for read in tree(value)):
+        match part:
+            case rosgraph.WireAccess(variable=None, quantifier=None, type=ex.Type() as kind) if type(kind) in _BASIC:
+                if all(isinstance(step, rosgraph.FieldStep) for step in part.steps):
+                    found[tuple(map(_field, part.steps))] = kind
+    return {path: kind for path, kind in found.items() if path not in told}
 
 
 class EventData:
@@ -90,17 +115,19 @@ class EventData:
         for reaction in self._node.reactions(reception.event):
             guard, value = reaction.guard, data["value"]
             fault = None if guard is None else past_end([guard], value)
-            if fault is None and (guard is None or self._node.value(guard, (_whole(value, guard), "value"))):
+            if fault is None and (guard is None or self._node.value(guard, (whole(value, guard), "value"))):
                 fault = past_end([*reaction.needs, *(assigned.value for assigned in reaction.assignments)], value)
             if fault is not None:
                 return Unreadable(str(fault), self._errors.get(event))
         return None
 
-    def shaped(self, event: str, values: Mapping[str, Value]) -> dict[str, Any]:
-        """Data with which the event's inputs have these values, by their names."""
+    def shaped(
+        self, event: str, values: Mapping[str, Value], others: Mapping[tuple[str, ...], Any] | None = None
+    ) -> dict[str, Any]:
+        """Data with which the event's inputs have these values, by their names; `others` by the fields on the way."""
         inputs = self._events[event].inputs
         where = {given.text: values[given.name] for given in inputs if given.text is not None}
-        paths = {self._path(given): values[given.name] for given in inputs if given.text is None}
+        paths = {**(others or {}), **{self._path(given): values[given.name] for given in inputs if given.text is None}}
         shown: dict[str, Any] = {"where": where} if where else {}
         if not paths:
             return shown
@@ -118,7 +145,7 @@ class EventData:
         if given.text is not None:
             if assignment is None or self._node is None or data is _ABSENT:
                 return _default(given.type)
-            return self._node.input(assignment, (_whole(data, assignment.value), "value"))  # type: ignore[no-any-return]
+            return self._node.input(assignment, (whole(data, assignment.value), "value"))  # type: ignore[no-any-return]
         found = _fields(data, _words(given)) if assignment is None else _reached(data, _access(assignment))
         source = None if assignment is None else assignment.value
         if self._node is None or not isinstance(source, rosgraph.ConversionCall):
@@ -217,7 +244,7 @@ def _computed(event: sct.Event, where: Any) -> Mapping[str | None, Value]:
     return where
 
 
-def _whole(data: Any, read: ex.Expression) -> Any:
+def whole(data: Any, read: ex.Expression) -> Any:
     """The data with its fields: a lone value stands for the only field on the way to it."""
     accesses = (part for _, part in tree(read) if isinstance(part, rosgraph.WireAccess) and part.quantifier is None)
     access = next(accesses, None)

@@ -11,7 +11,7 @@ from robosc.engine.transitions import Transitions
 from robosc.simulation.script import WAIT
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from robosc.engine import Blocked
     from robosc.engine.state import State
@@ -60,8 +60,16 @@ class Replay:
     What was taken back is played again first, unless something else was asked for meanwhile.
     """
 
-    def __init__(self, simulation: Simulation, steps: Sequence[Step] | None = None, seed: int = 0) -> None:
+    def __init__(
+        self,
+        simulation: Simulation,
+        steps: Sequence[Step] | None = None,
+        seed: int = 0,
+        choose: Callable[[Random], tuple[str, dict[str, Any]] | None] | None = None,
+    ) -> None:
+        """`choose` says what happens at random, with its data; without it the simulation does."""
         self.simulation = simulation
+        self._choose = choose or simulation.random_event
         self.engine = self.simulation.engine
         self.timers = Timers(self.engine, 0)
         self.steps = steps
@@ -107,7 +115,7 @@ class Replay:
             return again
         if self.steps is not None:
             return self._scripted(self.steps)
-        chosen = self.simulation.random_event(self._random)
+        chosen = self._choose(self._random)
         return None if chosen is None else self._keep(self._here, self._perform(*chosen))
 
     def back(self) -> Moment | None:

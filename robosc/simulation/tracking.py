@@ -23,11 +23,15 @@ class ReportError(ValueError):
 
 @dataclass(frozen=True)
 class Told:
-    """An event that has happened, None where only a state was told; the state afterwards, the transitions taken."""
+    """An event that has happened, None where only a state was told; the state afterwards, the transitions taken.
+
+    `variables` are what was told with that state, by `Component.variable`: also of those that the node keeps itself.
+    """
 
     event: str | None
     state: State
     edges: tuple[sct.Edge, ...]
+    variables: Mapping[str, Any]
 
 
 #: An edge with the positions of the location that it leaves and of the one that it leads to; None: of any, to the same.
@@ -77,7 +81,12 @@ class Tracker:
         time = report.get("time")
         if isinstance(time, bool) or not isinstance(time, (int, float)) or not abs(time) < 2**52:
             raise ReportError("`time` is no number of seconds")
-        return self._followed(events, ends, self._milliseconds(time))
+        variables = {
+            f"{name}.{variable}": value
+            for name in self._components
+            for variable, value in report["components"][name]["variables"].items()
+        }
+        return self._followed(events, ends, variables, self._milliseconds(time))
 
     def _milliseconds(self, time: float) -> int:
         if self._began is None:
@@ -103,7 +112,11 @@ class Tracker:
         return ends
 
     def _followed(
-        self, events: Sequence[str], ends: Mapping[sct.Plant | sct.DiscreteVariable, Value], now: int
+        self,
+        events: Sequence[str],
+        ends: Mapping[sct.Plant | sct.DiscreteVariable, Value],
+        variables: Mapping[str, Any],
+        now: int,
     ) -> Iterator[Told]:
         self.timers.at(now)
         paths = self._paths(events, ends)
@@ -113,14 +126,15 @@ class Tracker:
             after: dict[sct.Plant | sct.DiscreteVariable, Value] = {
                 plant: plant.locations[location].name for plant, (_, location) in taken.items()
             }
-            if number == len(events) - 1:
+            is_last = number == len(events) - 1
+            if is_last:
                 after |= ends
             self.engine.state = self.engine.state_with(after)
             edges = tuple(edge for edge, _ in taken.values() if edge.source is not None)
-            yield Told(event, self.engine.state, edges)
+            yield Told(event, self.engine.state, edges, variables if is_last else {})
         if not events:
             self.engine.state = self.engine.state_with(ends)
-            yield Told(None, self.engine.state, ())
+            yield Told(None, self.engine.state, (), variables)
 
     def _paths(
         self, events: Sequence[str], ends: Mapping[sct.Plant | sct.DiscreteVariable, Value]

@@ -32,8 +32,8 @@ class Unreadable:
         return "data"
 
 
-class _UnknownError(Exception):
-    """A condition reads a value that the script does not give."""
+class UnknownError(Exception):
+    """An expression reads a value that nobody has given."""
 
 
 def past_end(expressions: Iterable[ex.Expression], value: Any) -> UnreadableError | None:
@@ -68,10 +68,10 @@ def past_end(expressions: Iterable[ex.Expression], value: Any) -> UnreadableErro
 def _fault(expression: ex.Expression, value: Any) -> UnreadableError | None:
     """What keeps an expression from having a value; None where something that it reads is not given, too."""
     try:
-        evaluate(expression, partial(_read, value))
+        evaluate(expression, partial(read, value))
     except UnreadableError as fault:
         return fault
-    except _UnknownError:
+    except UnknownError:
         pass
     return None
 
@@ -101,15 +101,18 @@ def _below(value: Any, step: rosgraph.WireStep) -> Any:
 def _known(condition: ex.Expression, value: Any) -> bool | None:
     """The value of a condition; None where something that it reads is not given."""
     try:
-        return bool(evaluate(condition, partial(_read, value)))
-    except (_UnknownError, UnreadableError):
+        return bool(evaluate(condition, partial(read, value)))
+    except (UnknownError, UnreadableError):
         return None
 
 
-def _read(value: Any, reference: ex.Expression, *given: Any) -> Value:
-    """What a reference reads of a value, or of the first that is `given`, an element; behind it stand its indices."""
+def read(value: Any, reference: ex.Expression, *given: Any) -> Value:
+    """What a reference reads of a value, or of the first that is `given`, an element; behind it stand its indices.
+
+    Raises UnknownError, UnreadableError.
+    """
     if not isinstance(reference, rosgraph.WireAccess) or reference.variable is not None:
-        raise _UnknownError
+        raise UnknownError
     rest = iter(given if reference.quantifier else (value, *given))
     reached = next(rest)
     for step in reference.steps:
@@ -135,11 +138,11 @@ def _leaf(reached: Any, kind: ex.Type | None) -> Any:
     if reached is None and isinstance(kind, ex.DoubleType):
         return math.nan
     if kind is not None and not isinstance(reached, bool | int | float | str):
-        raise _UnknownError
+        raise UnknownError
     return as_double(reached) if isinstance(kind, ex.DoubleType) else reached
 
 
 def _elements(array: Any) -> list[Any]:
     if not isinstance(array, list):
-        raise _UnknownError  # an object from index to element tells some of them only
+        raise UnknownError  # an object from index to element tells some of them only
     return array

@@ -10,10 +10,12 @@ from robosc.analysis.wording import name, words
 from robosc.diagrams import ros_graph
 from robosc.highlighting.lines import coloured
 from robosc.metamodel import expression as ex
-from robosc.metamodel import sct
+from robosc.metamodel import rosgraph, sct
 from robosc.metamodel.places import place
+from robosc.semantics.definition import reported
 from robosc.semantics.edges import edges_of, origin
 from robosc.semantics.roles import Roles, event_name, plant_of
+from robosc.simulation.data import data_beside
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -24,6 +26,8 @@ if TYPE_CHECKING:
 AUTOMATA = (sct.PlantKind.behaviour, sct.PlantKind.requirement)
 #: What goes out to the robot: what a supervisor allows or forbids and a user calls a command.
 _OUTGOING = (sct.EventKind.trigger, sct.EventKind.cancel, sct.EventKind.plain)
+#: What is typed for data of a type.
+_KINDS = {ex.BooleanType: "checkbox", ex.IntegerType: "whole", ex.DoubleType: "number", ex.StringType: "text"}
 #: A label of a transition that is longer is cut; the whole stands in its title.
 _LONGEST = 60
 
@@ -35,7 +39,7 @@ def describe(models: Models, texts: Mapping[str, str]) -> dict[str, Any]:
     `file`, as a position in `files`, with the lines and columns of a span, from 1.
     """
     model = models.sct
-    describer = _Describer(texts)
+    describer = _Describer(texts, models.rosgraph)
     automata = [describer.automaton(plant) for plant in automata_of(model)]
     events = {event_name(event): describer.event(event) for event in Roles(model).events}
     requirements = [
@@ -93,7 +97,8 @@ def _is_written(edge: sct.Edge) -> bool:
 
 
 class _Describer:
-    def __init__(self, texts: Mapping[str, str]) -> None:
+    def __init__(self, texts: Mapping[str, str], graph: rosgraph.RosGraph | None) -> None:
+        self._graph = graph
         self._lines = {path: text.split("\n") for path, text in texts.items()}
         self.files: dict[str, int] = {path: number for number, path in enumerate(texts)}
 
@@ -115,14 +120,15 @@ class _Describer:
     def automaton(self, plant: sct.Plant) -> dict[str, Any]:
         """An automaton with its states and transitions; `source` is null where a transition leaves every state."""
         position = {location: number for number, location in enumerate(plant.locations)}
+        variables: list[sct.DiscreteVariable | rosgraph.NodeVariable] = [*plant.variables, *self._kept(plant)]
         return {
             "name": name(plant),
             "key": plant.name,
             "kind": plant.kind.name,
             "variables": [
                 {"name": variable.name, "key": f"{plant.origin or plant.name}.{variable.name}"}
-                | ({"numeric": True} if isinstance(variable.type, ex.IntegerType) else {})
-                for variable in plant.variables
+                | ({"numeric": True} if isinstance(variable.type, ex.IntegerType | ex.DoubleType) else {})
+                for variable in variables
             ],
             "place": self.place(plant),
             "states": [
@@ -145,6 +151,12 @@ class _Describer:
                 for edges in transitions_of(plant)
             ],
         }
+
+    def _kept(self, plant: sct.Plant) -> list[rosgraph.NodeVariable]:
+        """What the node keeps of a component beside the supervisor."""
+        if self._graph is None or plant.kind != sct.PlantKind.behaviour:
+            return []
+        return reported(self._graph, plant)
 
     def _label(self, edge: sct.Edge) -> dict[str, str]:
         """The text of a transition, as short as a picture needs it, and whole."""
@@ -173,7 +185,19 @@ class _Describer:
             "place": self.place(event) or self.place(plant_of(event)),
             **({"timer": True} if event.timer is not None else {}),
             "inputs": [{"name": given.name, "label": _label(given), **_values(given.type)} for given in event.inputs],
+            "kept": [] if self._graph is None else self._beside(event, self._graph),
         }
+
+    @staticmethod
+    def _beside(event: sct.Event, graph: rosgraph.RosGraph) -> list[dict[str, Any]]:
+        """Data that the node keeps and no input tells: the fields on the way to it, and what is typed for it."""
+        found = data_beside(graph, event)
+        is_lone = not event.inputs and len(found) == 1
+        return [
+            {"path": list(path), "label": "value" if is_lone and len(path) < 2 else ".".join(["value", *path])}
+            | {"kind": _KINDS[type(kind)]}
+            for path, kind in found.items()
+        ]
 
 
 def _label(given: sct.Input) -> str:

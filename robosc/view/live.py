@@ -22,7 +22,7 @@ class Live(Moments):
     """The moments of a node that runs; `nodes` are the names of those that may tell of them."""
 
     def __init__(self, simulation: Simulation, graph: rosgraph.RosGraph, nodes: str, kept: int = KEPT) -> None:
-        super().__init__(simulation, kept)
+        super().__init__(simulation, graph, kept)
         self._nodes = nodes
         self._tracker = Tracker(self.engine)
         self._definition = json.dumps(definition(graph), sort_keys=True)

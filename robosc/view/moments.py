@@ -10,6 +10,7 @@ from robosc.analysis.blocking_in_words import counterexample_in_words
 from robosc.analysis.explain import NEEDLESS, explain, explored, state_given
 from robosc.analysis.wording import in_words, words
 from robosc.semantics.roles import Roles, event_name
+from robosc.simulation.kept import Kept
 from robosc.simulation.simulation import whole_state
 from robosc.view.description import automata_of, commands_of, transitions_of
 
@@ -17,8 +18,9 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from robosc.engine.state import State
-    from robosc.metamodel import sct
+    from robosc.metamodel import rosgraph, sct
     from robosc.simulation import Simulation
+    from robosc.simulation.kept import Values
     from robosc.simulation.tracking import Told
 
 
@@ -42,8 +44,8 @@ class Moments:
     #: Whether `do` can do anything.
     acts = False
 
-    def __init__(self, simulation: Simulation, most: int | None = None) -> None:
-        """Of more than `most` moments the older half goes; None: all are kept."""
+    def __init__(self, simulation: Simulation, graph: rosgraph.RosGraph | None = None, most: int | None = None) -> None:
+        """`graph` says what the node keeps. Of more than `most` moments the older half goes; None: all are kept."""
         self.simulation = simulation
         self.engine = simulation.engine
         self.events = {event_name(event): event for event in Roles(self.engine.model).events}
@@ -71,6 +73,9 @@ class Moments:
         self.moments: list[dict[str, Any]] = []
         self._states: list[State] = []
         self._running: list[Mapping[str, int]] = []
+        self._node = Kept(self.engine, graph)
+        #: What the node keeps, at each moment.
+        self._kept: list[Values] = []
         self._verdicts: dict[str, dict[str, str] | None] = {}
 
     @property
@@ -84,7 +89,14 @@ class Moments:
 
     # What happens
 
-    def _add(self, time: float, running: Mapping[str, int], told: Mapping[str, Any], edges: Iterable[sct.Edge]) -> None:
+    def _add(
+        self,
+        time: float,
+        running: Mapping[str, int],
+        told: Mapping[str, Any],
+        edges: Iterable[sct.Edge],
+        kept: Values,
+    ) -> None:
         """A moment in which the engine is in its present state and timers have so many milliseconds left."""
         moment: dict[str, Any] = {"time": time, **told}
         if "event" in told:
@@ -93,13 +105,21 @@ class Moments:
         if self._states:
             moment |= self._changes(self._states[-1], state)
             moment["timers"] = _changed(self._running[-1], running)
+            before = self._kept[-1]
+            moment["state"] |= {name: value for name, value in kept.items() if value != before[name]}
         else:
-            moment |= self._whole(running)
+            moment |= self._whole(running, kept)
         self.moments.append(moment)
         self._states.append(state)
         self._running.append(dict(running))
+        self._kept.append(kept)
         if self._most is not None and len(self.moments) > self._most:
             self._forget(len(self.moments) // 2)
+
+    @property
+    def _kept_last(self) -> Values:
+        """What the node keeps at the last moment."""
+        return self._kept[-1] if self._kept else self._node.initial
 
     def _add_told(self, time: float, running: Mapping[str, int], told: Told) -> None:
         """A moment of which a node has told."""
@@ -108,7 +128,7 @@ class Moments:
             if told.event is None
             else {"event": told.event, "words": self.said(told.event)}
         )
-        self._add(time, running, said, told.edges)
+        self._add(time, running, said, told.edges, self._node.told(self._kept_last, told.variables))
 
     def _changes(self, before: State, now: State) -> dict[str, Any]:
         """What differs between two states, of which the engine is in the second."""
@@ -129,12 +149,12 @@ class Moments:
                 self._verdicts[event] = verdict
         return {"state": state, "commands": commands, "enabled": enabled}
 
-    def _whole(self, running: Mapping[str, int]) -> dict[str, Any]:
+    def _whole(self, running: Mapping[str, int], kept: Values) -> dict[str, Any]:
         """All that a moment can say of the engine's present state."""
         self._look()
         return {
             "whole": True,
-            "state": whole_state(self.engine),
+            "state": {**whole_state(self.engine), **kept},
             "commands": {event: self._verdicts[event] for event in self.events if event in self._commands},
             "enabled": {event: True for event, verdict in self._verdicts.items() if verdict is None},
             "timers": dict(running),
@@ -152,7 +172,7 @@ class Moments:
     def _cut(self, length: int) -> None:
         """Takes moments back, until so many are left; the engine is in the state of the last of them."""
         kept = length - self.first
-        del self.moments[kept:], self._states[kept:], self._running[kept:]
+        del self.moments[kept:], self._states[kept:], self._running[kept:], self._kept[kept:]
         self.cuts.append(length)
         self._look()
 
@@ -160,11 +180,11 @@ class Moments:
         """Drops the oldest moments: what is the first then says all."""
         now = self.engine.state
         self.engine.state = self._states[number]
-        first = self.moments[number] | self._whole(self._running[number])
+        first = self.moments[number] | self._whole(self._running[number], self._kept[number])
         self.engine.state = now
         self._look()
         self.moments[: number + 1] = [first]
-        del self._states[:number], self._running[:number]
+        del self._states[:number], self._running[:number], self._kept[:number]
         self.first += number
 
     def said(self, event: str) -> str:

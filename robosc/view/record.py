@@ -5,13 +5,17 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING, Any
 
+from robosc.metamodel import expression as ex
+from robosc.simulation.data import data_beside
 from robosc.simulation.replay import Replay
 from robosc.simulation.script import WAIT
 from robosc.view.moments import ActionError, Moments
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
+    from random import Random
 
+    from robosc.metamodel import rosgraph
     from robosc.simulation import Simulation, Step
     from robosc.simulation.replay import Moment
     from robosc.simulation.tracking import Told
@@ -32,18 +36,20 @@ class Record(Moments):
     def __init__(
         self,
         simulation: Simulation,
+        graph: rosgraph.RosGraph | None = None,
         steps: Sequence[Step] | None = None,
         seed: int = 0,
         recorded: Iterable[tuple[float, Told]] | None = None,
     ) -> None:
-        """`recorded`: what a node has told, with times in seconds, is there before anything is played."""
-        super().__init__(simulation)
+        """`graph` says what the node keeps; what a node has told, with times in seconds, is there before all else."""
+        super().__init__(simulation, graph)
         self._seed = seed
         for time, told in recorded or ():
             self._add_told(time, {}, told)
         #: So many of the moments were recorded, and can't be played again.
         self._recorded = max(0, len(self.moments) - 1)
-        self._replay = Replay(simulation, steps, seed)
+        self._graph = graph
+        self._replay = Replay(simulation, steps, seed, self._chosen)
         if recorded is None:
             self._keep(None)
         while steps is not None and (moment := self._replay.forward()) is not None:
@@ -53,7 +59,7 @@ class Record(Moments):
         """Does an action: an object with `action`, one of ACTIONS, and what it needs. Raises ActionError, DataError."""
         match action:
             case {"action": "perform", "event": str(event), **rest} if event in self.events:
-                self._perform(event, rest.get("inputs"), rest.get("data"))
+                self._perform(event, rest.get("inputs"), rest.get("data"), rest.get("kept", []))
             case {"action": "wait", "seconds": int() | float() as seconds} if 0 <= seconds <= _LONGEST_WAIT:
                 self._wait(seconds)
             case {"action": "random", "number": int(number)} if 0 < number <= _MOST_AT_ONCE:
@@ -82,13 +88,20 @@ class Record(Moments):
         if self._replay.has_future:
             self._forward(1)
 
-    def _perform(self, event: str, inputs: object, data: object) -> None:
-        """Lets an event happen, with values of its inputs by their names, or data in the shape of the event log."""
+    def _perform(self, event: str, inputs: object, data: object, kept: object) -> None:
+        """Lets an event happen, with values of its inputs by their names, or data in the shape of the event log.
+
+        `kept` are pairs of the fields on the way to other data and that data.
+        """
         if isinstance(inputs, dict):
             known = {one.name for one in self.events[event].inputs}
             if set(inputs) != known:
                 raise ActionError(f"{event} has the inputs {', '.join(sorted(known)) or '(none)'}")
-            data = self.simulation.data.shaped(event, inputs) if inputs else {}
+            others = _others(kept)
+            beside = {} if self._graph is None else data_beside(self._graph, self.events[event])
+            if others and set(others) != set(beside):
+                raise ActionError(f"`kept` of {event} has the fields {', '.join(map('.'.join, beside)) or '(none)'}")
+            data = self.simulation.data.shaped(event, inputs, others) if inputs or others else {}
         if not isinstance(data, dict | None):
             raise ActionError("data is an object")
         self._replay.freely()
@@ -98,6 +111,17 @@ class Record(Moments):
         else:
             assert moment.by is not None
             raise ActionError(f"{self.said(event)}: {self.simulation.reason(event, moment.by)}")
+
+    def _chosen(self, random: Random) -> tuple[str, dict[str, Any]] | None:
+        """Any event that can happen, with any data, also of what the node keeps."""
+        chosen = self.simulation.random_event(random)
+        if chosen is None or self._graph is None:
+            return chosen
+        event, data = chosen
+        beside = data_beside(self._graph, self.events[event])
+        others = {path: _any(kind, random) for path, kind in beside.items()}
+        inputs = self.simulation.data.inputs(event, data)
+        return event, self.simulation.data.shaped(event, inputs, others) if others else data
 
     def _forward(self, number: int) -> None:
         for _ in range(number):
@@ -112,7 +136,7 @@ class Record(Moments):
         if moment < self._recorded:
             # What was recorded is not played: from here on it is.
             self.engine.state = self._states[moment]
-            self._replay = Replay(self.simulation, None, self._seed)
+            self._replay = Replay(self.simulation, None, self._seed, self._chosen)
             self._recorded = moment
         self._replay.freely()
         self._cut(moment + 1)
@@ -124,5 +148,30 @@ class Record(Moments):
             told = {"event": moment.event, "data": dict(moment.data), "words": said}
             if moment.by is not None:
                 told |= {"by": str(moment.by), "reason": self.simulation.reason(moment.event, moment.by)}
-        timers = self._replay.timers
-        self._add(timers.now / 1000, timers.running, told, () if moment is None else moment.edges)
+        timers, kept = self._replay.timers, self._kept_last
+        if moment is not None and moment.happened:
+            kept = self._node.after(kept, moment.event, moment.data, moment.before)
+        self._add(timers.now / 1000, timers.running, told, () if moment is None else moment.edges, kept)
+
+
+def _any(kind: ex.Type, random: Random) -> bool | int | float | str:
+    match kind:
+        case ex.StringType():
+            return random.choice("abc")
+        case ex.BooleanType():
+            return random.random() < 0.5
+        case ex.IntegerType():
+            return random.randint(-100, 100)
+    return random.randint(-1000, 1000) / 100
+
+
+def _others(kept: object) -> dict[tuple[str, ...], Any]:
+    """Data by the fields on the way to it. Raises ActionError where it is none."""
+    found: dict[tuple[str, ...], Any] = {}
+    for pair in kept if isinstance(kept, list) else [None]:
+        match pair:
+            case [list(path), bool() | int() | float() | str() as value] if all(isinstance(name, str) for name in path):
+                found[tuple(path)] = value
+            case _:
+                raise ActionError("`kept` is a list of pairs of fields and data")
+    return found

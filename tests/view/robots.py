@@ -54,7 +54,7 @@ def record(text: str = GATE, steps: Sequence[Step] | None = None) -> tuple[Mappi
     model, graph = robosc.to_sct(robot), robosc.to_rosgraph(robot)
     robosc.synthesize(model)
     described = describe(Models(model, graph, robot), {"<text>": text})
-    return described, Record(Simulation(model, graph), steps), Simulation(model, graph)
+    return described, Record(Simulation(model, graph), graph, steps), Simulation(model, graph)
 
 
 def wholes(moments: list[dict[str, Any]]) -> list[dict[str, dict[str, Any]]]:

@@ -27,6 +27,8 @@ from .robots import EVIL, record
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from robosc.simulation.simulation import Happened
+
 pytestmark = pytest.mark.build
 
 ROOT = Path(__file__).parents[2]
@@ -54,8 +56,8 @@ def at(page: Any, moment: int) -> None:
     page.wait_for_selector(f'body[data-moment="{moment}"]')
 
 
-def truth(simulation: Simulation) -> dict[str, Any]:
-    """What the page has to say of the present state of a run."""
+def truth(simulation: Simulation, offset: float | None = None) -> dict[str, Any]:
+    """What the page has to say of the present state of a run, and of the number that a line follower keeps."""
     engine, model = simulation.engine, simulation.engine.model
     state = whole_state(engine)
     automata = automata_of(model)
@@ -73,7 +75,8 @@ def truth(simulation: Simulation) -> dict[str, Any]:
             .replace("False", "false")
             for plant in automata
             for variable in plant.variables
-        },
+        }
+        | ({} if offset is None else {"LineDetector.offset": f"{offset:g}"}),
         "commands": commands,
     }
 
@@ -85,59 +88,87 @@ def simulation_of(path: Path) -> Simulation:
     return Simulation(model, robosc.to_rosgraph(robot))
 
 
-def click(page: Any, event: str) -> None:
-    """Lets an event happen, as a user does."""
+def click(page: Any, event: str, data: Any = None) -> None:
+    """Lets an event happen, as a user does, with data."""
+    if isinstance(data, float):
+        page.locator(f'.performer:has(button[data-event="{event}"]) input').fill(str(data))
+    elif data is not None:
+        page.locator(f'.performer:has(button[data-event="{event}"]) select').select_option(label=data)
     page.click(f'button[data-event="{event}"]')
 
 
+CORRECTION = "message_correction.u_response"
+
+
+def with_offset(random: Random, event: str, data: dict[str, Any], offset: float) -> tuple[dict[str, Any], float]:
+    """The data of an event of the line follower, what comes with a correction made up; the offset after it."""
+    if event != CORRECTION:
+        return data, offset
+    offset = random.randrange(-80, 80) / 8
+    return {"value": offset}, offset
+
+
+def driven(random: Random, length: int) -> list[tuple[Happened, float]]:
+    """What happens to a line follower, at random; after each event its offset."""
+    simulation, offset, happened = simulation_of(MODEL), 0.0, []
+    for _ in range(length):
+        event, data = simulation.random_event(random) or ("", {})
+        data, offset = with_offset(random, event, data, offset)
+        happened.append((simulation.perform(event, data), offset))
+    return happened
+
+
 def test_a_simulation_by_hand(chromium: Any) -> None:
-    simulation, random = simulation_of(MODEL), Random(4)
+    simulation, random, offsets = simulation_of(MODEL), Random(4), [0.0]
     said = {event_name(event): words(event).replace("`", "") for event in Roles(simulation.engine.model).events}
     with served(MODEL) as address, opened(chromium, address) as page:
-        assert shown(page) == truth(simulation)
+        assert shown(page) == truth(simulation, 0)
         for number in range(1, 26):
             event, data = simulation.random_event(random) or ("", {})
+            data, offset = with_offset(random, event, data, offsets[-1])
+            offsets.append(offset)
             simulation.perform(event, data)
-            if data:
-                page.locator(f'.performer:has(button[data-event="{event}"]) select').select_option(label=data["value"])
-            click(page, event)
+            click(page, event, data.get("value"))
             at(page, number)
-            assert shown(page) == truth(simulation)
+            assert shown(page) == truth(simulation, offset)
             last = page.locator("#happened [aria-current]").text_content()
             assert last.startswith(said[event])
+        assert len(set(offsets)) > 2
         for number in range(24, 19, -1):
             page.get_by_role("button", name="Undo").click()
             at(page, number)
             simulation.undo()
-            assert shown(page) == truth(simulation)
+            assert shown(page) == truth(simulation, offsets[number])
 
 
 def test_a_log_moment_by_moment_and_on_from_there(chromium: Any, tmp_path: Path) -> None:
-    simulation, random = simulation_of(MODEL), Random(5)
-    happened = [simulation.random_step(random) for _ in range(150)]
+    random = Random(5)
+    happened = driven(random, 150)
     log = tmp_path / "log.jsonl"
-    log.write_text("".join(trace_line(one) + "\n" for one in happened if one is not None))
+    log.write_text("".join(trace_line(one) + "\n" for one, _ in happened))
+
+    def after(number: int) -> tuple[Simulation, float]:
+        past = simulation_of(MODEL)
+        for one, _ in happened[:number]:
+            past.perform(one.event, one.data)
+        return past, happened[number - 1][1] if number else 0
+
     with served(MODEL, "--log", log) as address, opened(chromium, address) as page:
         at(page, 150)
-        assert shown(page) == truth(simulation)
+        assert shown(page) == truth(*after(150))
         for moment in (149, 64, 63, 0, 1, 127, 128, 77):
             page.locator("#moment").fill(str(moment))
             at(page, moment)
-            past = simulation_of(MODEL) if moment in (0, 77) else None
-            if past is not None:
-                for one in happened[:moment]:
-                    past.perform(one.event, one.data)  # type: ignore[union-attr]
-                assert shown(page) == truth(past)
+            assert shown(page) == truth(*after(moment))
         page.get_by_role("button", name="Go on from here").click()
         page.wait_for_selector('#moment[max="77"]')
-        event, data = past.random_event(random) or ("", {})  # type: ignore[union-attr]
-        assert past is not None
-        if data:
-            page.locator(f'.performer:has(button[data-event="{event}"]) select').select_option(label=data["value"])
+        past, offset = after(77)
+        event, data = past.random_event(random) or ("", {})
+        data, offset = with_offset(random, event, data, offset)
         past.perform(event, data)
-        click(page, event)
+        click(page, event, data.get("value"))
         at(page, 78)
-        assert shown(page) == truth(past)
+        assert shown(page) == truth(past, offset)
 
 
 def test_why_a_command_is_forbidden(chromium: Any) -> None:
@@ -164,9 +195,10 @@ def test_two_viewers_see_what_one_does_and_one_that_comes_late_too(chromium: Any
 
 
 def test_an_exported_page_opens_without_a_server(chromium: Any, tmp_path: Path) -> None:
-    simulation, random = simulation_of(MODEL), Random(6)
-    happened = [simulation.random_step(random) for _ in range(30)]
-    (tmp_path / "log.jsonl").write_text("".join(trace_line(one) + "\n" for one in happened if one is not None))
+    happened, simulation = driven(Random(6), 30), simulation_of(MODEL)
+    for one, _ in happened:
+        simulation.perform(one.event, one.data)
+    (tmp_path / "log.jsonl").write_text("".join(trace_line(one) + "\n" for one, _ in happened))
     command = [
         sys.executable,
         "-m",
@@ -182,10 +214,10 @@ def test_an_exported_page_opens_without_a_server(chromium: Any, tmp_path: Path) 
     address = (tmp_path / "out" / "index.html").as_uri()
     with opened(chromium, address) as page:
         at(page, 30)
-        assert shown(page) == truth(simulation)
+        assert shown(page) == truth(simulation, happened[-1][1])
         page.locator("#moment").fill("0")
         at(page, 0)
-        assert shown(page) == truth(simulation_of(MODEL))
+        assert shown(page) == truth(simulation_of(MODEL), 0)
 
 
 #: What the page looks other things up by.
@@ -233,7 +265,9 @@ def test_one_of_several_robots_is_chosen(chromium: Any) -> None:
         page.locator("#robots-choice").select_option("SimpleNavigation")
         page.wait_for_url("**/?robot=1")
         page.wait_for_selector('body[data-drawn][data-moment="0"]')
-        assert shown(page) == truth(simulation_of(other))
+        expected = truth(simulation_of(other))
+        expected["variables"] |= {"Navigation.frame": "map"} | {f"Navigation.{one}": "0" for one in "xyz"}
+        assert shown(page) == expected
         page.locator("#robots-choice").select_option("LineFollower")
         page.wait_for_url("**/?robot=0")
         at(page, 1)

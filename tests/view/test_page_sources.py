@@ -16,7 +16,7 @@ from robosc.view.description import automata_of
 from tests.chromium import opened, shown
 from tests.recordings.test_recordings import write_mcap
 
-from .robots import GATE
+from .robots import EVIL, GATE
 from .test_page import MODEL, at, click, served, simulation_of, truth
 
 if TYPE_CHECKING:
@@ -27,6 +27,30 @@ if TYPE_CHECKING:
 pytestmark = pytest.mark.build
 
 PROPERTY = "  property SP1: never Barrier.opened and Barrier.cars = 3\n"
+FILLED = "message_filled.u_response"
+TANK = """\
+robot Tank {
+  interface filling use Filling from tank_msgs
+
+  datatype object Filling {
+    x: double
+    name: string
+  }
+
+  component Tank {
+    outgoing message filled with identifier: "/filled", type: Filling links filling
+
+    behaviour {
+      variable level: double = 0.5
+      variable label: string = "new"
+
+      initial marked state watched {
+        on response from filled do level := value.x, label := value.name
+      }
+    }
+  }
+}
+"""
 OPEN, CAR, UP = "message_open.c_trigger", "message_car.u_response", "component_Barrier.u_after1"
 
 
@@ -80,7 +104,7 @@ def test_a_script_with_what_it_asks_in_vain(chromium: Any, gate: Path, tmp_path:
 
 def test_a_recording_moment_by_moment(chromium: Any, tmp_path: Path) -> None:
     simulation, random = simulation_of(MODEL), Random(8)
-    texts, expected = [], [truth(simulation)]
+    texts, expected = [], [truth(simulation, 0)]
     for number in range(40):
         happened = simulation.random_step(random)
         assert happened is not None
@@ -91,6 +115,7 @@ def test_a_recording_moment_by_moment(chromium: Any, tmp_path: Path) -> None:
             }
             for plant in automata_of(simulation.engine.model)
         }
+        components["LineDetector"]["variables"]["offset"] = number / 8  # type: ignore[index]
         report = {
             "robot": "LineFollower",
             "time": number / 4,
@@ -98,7 +123,7 @@ def test_a_recording_moment_by_moment(chromium: Any, tmp_path: Path) -> None:
             "transitions": [happened.event],
         }
         texts.append(RecordedText("/line_follower_controller/state", json.dumps(report)))
-        expected.append(truth(simulation))
+        expected.append(truth(simulation, number / 8))
     recording = write_mcap("cdr", CompressionType.ZSTD)(tmp_path / "run", texts)
     with served(MODEL, "--log", recording) as address, opened(chromium, address) as page:
         last = int(page.locator("body").get_attribute("data-moment"))
@@ -119,8 +144,7 @@ def test_numbers_and_times_are_told_and_the_time_line_is_dragged(chromium: Any, 
         at(page, 1)
         assert left.text_content() == "2 s left"
         for number in range(2, 5):
-            page.locator(f'.performer:has(button[data-event="{CAR}"]) select').select_option(label="true")
-            click(page, CAR)
+            click(page, CAR, "true")
             at(page, number)
         page.get_by_role("button", name="Wait 1 s").click()
         at(page, 5)
@@ -142,6 +166,47 @@ def test_numbers_and_times_are_told_and_the_time_line_is_dragged(chromium: Any, 
         page.mouse.move(lanes["x"] + names + 5.5 * step, lanes["y"] + 8)
         page.locator("#follow").click()
         at(page, 5)
+
+
+def test_what_the_node_keeps_is_typed_shown_and_drawn(chromium: Any, tmp_path: Path) -> None:
+    """A number as steps, a text as a lane; what nobody knows as a gap."""
+    path = tmp_path / "tank.rscd"
+    path.write_text(TANK, encoding="utf-8")
+    with served(path) as address, opened(chromium, address) as page:
+        told = page.locator('#numbers > li[data-key="Tank.level"]')
+        label = page.locator('#numbers > li[data-key="Tank.label"] strong')
+        assert (told.locator("strong").text_content(), label.text_content()) == ("0.5", "new")
+        fields = page.locator(f'.performer:has(button[data-event="{FILLED}"])')
+        for number, (level, text) in enumerate([(2.5, "half"), (-1.25, EVIL)], 1):
+            fields.get_by_label("value.x").fill(str(level))
+            fields.get_by_label("value.name").fill(text)
+            click(page, FILLED)
+            at(page, number)
+            assert (told.locator("strong").text_content(), label.text_content()) == (str(level), text)
+        assert told.locator(".range").text_content() == "(-1.25 to 2.5)"
+        heights = """() => {
+          const canvas = document.querySelector('[data-key="Tank.level"] canvas');
+          const sample = document.createElement("canvas").getContext("2d");
+          sample.fillStyle = getComputedStyle(document.documentElement).getPropertyValue("--accent");
+          const wanted = [1, 3, 5].map((at) => parseInt(sample.fillStyle.slice(at, at + 2), 16));
+          const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+          const draws = (at, height) => {
+            const pixel = data.slice(4 * (height * canvas.width + at));
+            return pixel[3] > 100 && wanted.every((part, one) => Math.abs(pixel[one] - part) < 40);
+          };
+          return [0.2, 0.5, 0.75].map((part) => {
+            const at = Math.round(part * canvas.width);
+            return [...Array(canvas.height).keys()].find((height) => draws(at, height)) ?? null;
+          });
+        }"""
+        first, highest, lowest = page.evaluate(heights)
+        assert highest < first < lowest
+        # An event at random comes with data of any kind.
+        page.get_by_role("button", name="Random", exact=True).click()
+        at(page, 3)
+        assert label.text_content() in "abc"
+        assert -10 <= float(told.locator("strong").text_content()) <= 10
+        assert page.evaluate("globalThis.hacked === undefined && document.querySelectorAll('img').length === 0")
 
 
 def test_the_text_leads_to_what_stands_there(chromium: Any, gate: Path) -> None:

@@ -79,6 +79,7 @@ def test_an_action_that_is_none_changes_nothing() -> None:
         {"action": "perform", "event": EVENTS[2], "data": [3]},
         {"action": "perform", "event": EVENTS[2], "data": {"value": "no boolean"}},
         {"action": "perform", "event": EVENTS[1], "inputs": {}},
+        *({"action": "perform", "event": EVENTS[0], "inputs": {}, "kept": one} for one in (1, [1], [[["x"], 1]])),
     ]:
         with pytest.raises((ActionError, DataError)):
             shown.do(action)

@@ -1,12 +1,12 @@
 // Commands with their verdicts, what can happen besides, requirements.
 
-import type { Description, Event, Explanation, Input, Place, Value } from "./data";
+import type { Beside, Description, Event, Explanation, Input, Place, Value } from "./data";
 import { byId, html, worded } from "./elements";
 import { verdictOf, type Whole } from "./run";
 
 /** What the page can ask of the server; where there is none, nothing. */
 export interface Asking {
-  perform: ((event: string, inputs: Record<string, Value>) => void) | null;
+  perform: ((event: string, inputs: Record<string, Value>, kept: [string[], Value][]) => void) | null;
   explain(event: string): Promise<Explanation>;
 }
 
@@ -87,7 +87,7 @@ export class CommandsView {
         html(
           "button",
           { type: "button", class: "link", onclick: () => this.goTo(requirement.place) },
-          requirement.name || "requirement",
+          requirement.name || `requirement${requirement.place === null ? "" : ` in line ${requirement.place.line}`}`,
         ),
         " ",
       );
@@ -115,16 +115,21 @@ export class CommandsView {
   /** A button that lets an event happen, with a field for each of its inputs. */
   private performer(name: string, event: Event): HTMLElement {
     const fields = event.inputs.map((input) => [input, field(input)] as const);
+    const others = event.kept.map((one) => [one, free(one)] as const);
     const label = this.description.commands.includes(name) ? "send" : event.words;
     const button = html("button", { type: "button", "data-event": name, "aria-label": label === "send" ? `send ${event.words}` : label }, label);
     button.addEventListener("click", () =>
-      this.asking?.perform?.(name, Object.fromEntries(fields.map(([input, shown]) => [input.name, value(input, shown)]))),
+      this.asking?.perform?.(
+        name,
+        Object.fromEntries(fields.map(([input, shown]) => [input.name, value(input, shown)])),
+        others.map(([one, shown]) => [one.path, typed(one, shown)]),
+      ),
     );
     return html(
       "span",
       { class: "performer" },
       button,
-      ...fields.map(([input, shown]) => html("label", {}, ` ${input.label} `, shown)),
+      ...[...fields, ...others].map(([one, shown]) => html("label", {}, ` ${one.label} `, shown)),
     );
   }
 
@@ -155,4 +160,15 @@ function field(input: Input): HTMLSelectElement | HTMLInputElement {
 
 function value(input: Input, shown: HTMLSelectElement | HTMLInputElement): Value {
   return input.values === undefined ? Math.trunc(Number(shown.value)) : input.values[Number(shown.value)]!;
+}
+
+function free({ kind }: Beside): HTMLInputElement {
+  if (kind === "checkbox" || kind === "text") return html("input", { type: kind });
+  return html("input", { type: "number", step: kind === "whole" ? 1 : "any", value: 0 });
+}
+
+function typed({ kind }: Beside, shown: HTMLInputElement): Value {
+  if (kind === "checkbox") return shown.checked;
+  if (kind === "text") return shown.value;
+  return kind === "whole" ? Math.trunc(Number(shown.value)) : Number(shown.value);
 }

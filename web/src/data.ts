@@ -1,6 +1,7 @@
 // What the server tells: see robosc/view/description.py and robosc/view/record.py.
 
-export type Value = string | number | boolean;
+/** null: nobody knows it, or it is no finite number. */
+export type Value = string | number | boolean | null;
 
 export interface Place {
   file: number;
@@ -50,6 +51,13 @@ export interface Input {
   maximum?: number;
 }
 
+/** Data that the node keeps: the fields on the way to it. */
+export interface Beside {
+  path: string[];
+  label: string;
+  kind: "checkbox" | "whole" | "number" | "text";
+}
+
 export interface Event {
   words: string;
   controllable: boolean;
@@ -58,6 +66,7 @@ export interface Event {
   /** It comes when a time is up. */
   timer?: boolean;
   inputs: Input[];
+  kept: Beside[];
 }
 
 export interface Requirement {

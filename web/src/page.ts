@@ -56,8 +56,8 @@ class Page {
     this.offer(description.robots ?? []);
     this.text = new TextView(description, (file, line) => this.find(file, line));
     this.robot = new RobotView(description, (place) => this.text.goTo(place));
-    const perform = (event: string, inputs: Record<string, Value>): void =>
-      void this.act({ action: "perform", event, inputs });
+    const perform = (event: string, inputs: Record<string, Value>, kept: [string[], Value][]): void =>
+      void this.act({ action: "perform", event, inputs, kept });
     const asking = isServed ? { perform: this.acts ? perform : null, explain: (event: string) => this.explain(event) } : null;
     this.commands = new CommandsView(description, (place) => this.text.goTo(place), asking);
     this.timeline = new TimelineView(description, this.run, (number) => this.choose(number));

@@ -64,7 +64,7 @@ export class RobotView {
         picture.now.textContent = String(state ?? "");
       }
       for (const [key, shown] of picture.variables) {
-        const value = String(whole.state.get(key) ?? "");
+        const value = String(whole.state.get(key) ?? "unknown");
         if (shown.textContent !== value) shown.textContent = value;
       }
       for (const group of picture.traced) group.classList.remove("taken");

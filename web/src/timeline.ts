@@ -1,7 +1,7 @@
 // The time line: a lane for each component with its states, for each command with its verdicts, and for what was refused;
 // what happened; numbers and times over time.
 
-import type { Description, Moment } from "./data";
+import type { Description, Moment, Value } from "./data";
 import { byId, html } from "./elements";
 import { type Run, verdictOf, type Whole } from "./run";
 
@@ -37,22 +37,26 @@ export class TimelineView {
     });
     const numbers = byId("numbers", HTMLUListElement);
     for (const automaton of description.automata)
-      for (const variable of automaton.variables.filter((one) => one.numeric))
-        numbers.append(this.plot(variable.key, variable.key, ({ state }) => Number(state.get(variable.key)), String));
+      for (const { key, numeric } of automaton.variables) {
+        const known = ({ state }: Whole): string => String(state.get(key) ?? "unknown");
+        if (numeric === true) numbers.append(this.plot(key, key, ({ state }) => number(state.get(key)), known));
+        else numbers.append(this.plot(key, key, known, known));
+      }
     for (const [name, event] of Object.entries(description.events))
       if (event.timer === true)
         numbers.append(
-          this.plot(name, event.words, ({ timers }) => timers.get(name) ?? NaN, (left) =>
-            Number.isNaN(left) ? "not running" : `${left / 1000} s left`,
-          ),
+          this.plot(name, event.words, ({ timers }) => timers.get(name) ?? NaN, ({ timers }) => {
+            const left = timers.get(name);
+            return left === undefined ? "not running" : `${left / 1000} s left`;
+          }),
         );
     byId("numbers-section", HTMLElement).hidden = this.plots.length === 0;
   }
 
-  private plot(key: string, title: string, value: (whole: Whole) => number, said: (value: number) => string): HTMLElement {
-    const [canvas, now] = [html("canvas", { "aria-hidden": "true" }), html("strong")];
-    this.plots.push({ value, said, canvas, now });
-    return html("li", { "data-key": key }, html("span", {}, title, ": ", now), canvas);
+  private plot(key: string, title: string, value: Plot["value"], said: Plot["said"]): HTMLElement {
+    const [canvas, now, range] = [html("canvas", { "aria-hidden": "true" }), html("strong"), html("span", { class: "range" })];
+    this.plots.push({ value, said, canvas, now, range });
+    return html("li", { "data-key": key }, html("span", {}, title, ": ", now, " ", range), canvas);
   }
 
   /** Chooses the moment under the pointer; what is drawn is still that of when it was pressed. */
@@ -98,7 +102,7 @@ export class TimelineView {
   private draw(shown: number): void {
     const [first, last] = this.window(shown);
     const { automata, commands, events } = this.description;
-    const columns: { states: string[]; numbers: number[]; refused: boolean }[] = [];
+    const columns: { states: string[]; values: (number | string)[]; refused: boolean }[] = [];
     for (let number = first; number <= last; number++) {
       const whole = this.run.at(number);
       columns.push({
@@ -106,7 +110,7 @@ export class TimelineView {
           ...automata.map((automaton) => String(whole.state.get(automaton.key) ?? "")),
           ...commands.map((command) => verdictOf(whole.commands.get(command) ?? null)),
         ],
-        numbers: this.plots.map((plot) => plot.value(whole)),
+        values: this.plots.map((plot) => plot.value(whole)),
         refused: this.run.moment(number).by !== undefined,
       });
     }
@@ -121,24 +125,13 @@ export class TimelineView {
     ];
     const context = prepared(this.canvas, (lanes.length + 1) * LANE + 4);
     const step = (this.canvas.clientWidth - NAMES) / columns.length;
-    context.font = "11px system-ui, sans-serif";
     lanes.forEach(({ name, colour: of }, lane) => {
       const top = lane * LANE + 2;
       context.fillStyle = colour("--text");
       context.fillText(name, 2, top + 11, NAMES - 8);
-      for (let begin = 0; begin < columns.length; ) {
-        const state = columns[begin]!.states[lane]!;
-        let end = begin + 1;
-        while (end < columns.length && columns[end]!.states[lane] === state) end++;
-        context.fillStyle = colour(of(state));
-        const inset = lane < automata.length ? 0 : 3;
-        context.fillRect(NAMES + begin * step, top + inset, (end - begin) * step - (step > 3 ? 1 : 0), LANE - 3 - 2 * inset);
-        if (inset === 0 && (end - begin) * step > 24) {
-          context.fillStyle = colour("--on-lane");
-          context.fillText(state, NAMES + begin * step + 4, top + 10, (end - begin) * step - 6);
-        }
-        begin = end;
-      }
+      const isVerdict = lane >= automata.length;
+      const states = columns.map((column) => column.states[lane]!);
+      drawLane(context, states, (state) => colour(of(state)), { left: NAMES, top, step, text: isVerdict ? null : colour("--on-lane") });
     });
     const bottom = lanes.length * LANE + 2;
     context.fillStyle = colour("--text");
@@ -149,26 +142,80 @@ export class TimelineView {
     });
     context.fillStyle = colour("--shown");
     context.fillRect(NAMES + (shown - first + 0.5) * step - 1, 0, 2, bottom + LANE);
+    const now = this.run.at(shown);
     this.plots.forEach((plot, index) => {
-      const values = columns.map((column) => column.numbers[index]!);
-      plot.now.textContent = plot.said(values[shown - first]!);
-      drawPlot(plot.canvas, values, shown - first, colour("--accent"), colour("--shown"));
+      const values = columns.map((column) => column.values[index]!);
+      plot.now.textContent = plot.said(now);
+      const numbers = values.filter((value) => typeof value === "number");
+      if (numbers.length === values.length) {
+        plot.range.textContent = drawPlot(plot.canvas, numbers, shown - first, colour("--accent"), colour("--shown"));
+        return;
+      }
+      const lane = prepared(plot.canvas, LANE + 2);
+      const width = plot.canvas.clientWidth / values.length;
+      const texts = values.map(String);
+      drawLane(lane, texts, (text) => colour(`--lane-${hash(text) % 6}`), { left: 0, top: 2, step: width, text: colour("--on-lane") });
+      lane.fillStyle = colour("--shown");
+      lane.fillRect((shown - first + 0.5) * width - 1, 0, 2, LANE + 2);
     });
   }
 }
 
 interface Plot {
-  /** NaN: there is none. */
-  value: (whole: Whole) => number;
-  said: (value: number) => string;
+  /** A number (NaN: there is none), or of what is no number its text. */
+  value: (whole: Whole) => number | string;
+  said: (whole: Whole) => string;
   canvas: HTMLCanvasElement;
   now: HTMLElement;
+  range: HTMLElement;
+}
+
+function number(value: Value | undefined): number {
+  return typeof value === "number" ? value : NaN;
+}
+
+/** The same for the same text. */
+function hash(text: string): number {
+  let found = 0;
+  for (const letter of text) found = (31 * found + letter.codePointAt(0)!) >>> 0;
+  return found;
+}
+
+/** A text, cut where it is wider than its place. */
+function shortened(context: CanvasRenderingContext2D, text: string, width: number): string {
+  if (context.measureText(text).width <= width) return text;
+  let length = Math.min(text.length, Math.floor(width / 4));
+  while (length > 0 && context.measureText(`${text.slice(0, length)}…`).width > width) length--;
+  return length === 0 ? "" : `${text.slice(0, length)}…`;
+}
+
+/** Draws texts over time, neighbours that are alike as one; `text`: the colour in which they are written, if they are. */
+function drawLane(
+  context: CanvasRenderingContext2D,
+  texts: string[],
+  colour: (text: string) => string,
+  { left, top, step, text }: { left: number; top: number; step: number; text: string | null },
+): void {
+  const inset = text === null ? 3 : 0;
+  for (let begin = 0; begin < texts.length; ) {
+    const here = texts[begin]!;
+    let end = begin + 1;
+    while (end < texts.length && texts[end] === here) end++;
+    context.fillStyle = colour(here);
+    context.fillRect(left + begin * step, top + inset, (end - begin) * step - (step > 3 ? 1 : 0), LANE - 3 - 2 * inset);
+    if (text !== null && (end - begin) * step > 24) {
+      context.fillStyle = text;
+      context.fillText(shortened(context, here, (end - begin) * step - 6), left + begin * step + 4, top + 10);
+    }
+    begin = end;
+  }
 }
 
 /** The colours of what becomes of a command. */
 const VERDICTS: Record<string, string> = { allowed: "allowed-lane", forbidden: "forbidden-lane", unready: "unready-lane" };
 
-function drawPlot(canvas: HTMLCanvasElement, values: number[], shown: number, line: string, here: string): void {
+/** Draws numbers as steps; from where to where they go, as a text. */
+function drawPlot(canvas: HTMLCanvasElement, values: number[], shown: number, line: string, here: string): string {
   const context = prepared(canvas, 40);
   const known = values.filter((value) => !Number.isNaN(value));
   const [least, most] = [Math.min(...known), Math.max(...known)];
@@ -186,6 +233,7 @@ function drawPlot(canvas: HTMLCanvasElement, values: number[], shown: number, li
   context.stroke();
   context.fillStyle = here;
   context.fillRect((shown + 0.5) * step - 1, 0, 2, 40);
+  return least < most ? `(${least} to ${most})` : "";
 }
 
 function prepared(canvas: HTMLCanvasElement, height: number): CanvasRenderingContext2D {
@@ -195,6 +243,7 @@ function prepared(canvas: HTMLCanvasElement, height: number): CanvasRenderingCon
   canvas.height = height * scale;
   const context = canvas.getContext("2d")!;
   context.scale(scale, scale);
+  context.font = "11px system-ui, sans-serif";
   context.clearRect(0, 0, canvas.clientWidth, height);
   return context;
 }
