@@ -500,6 +500,25 @@ def test_where_send_change_may_stand(declared: str, found: list[str]) -> None:
     assert [rule for rule, _ in errors(text)][:1] == found
 
 
+# Components made several times
+
+
+@pytest.mark.parametrize(("topic", "lines"), [('ns + "/told"', []), ('"/told"', [3])])
+def test_instances_on_one_topic(topic: str, lines: list[int]) -> None:
+    """Two `outgoing` on one topic draw `unique-topic` as ever."""
+    text = f"""robot R {{
+      component Bumper(ns: string) {{
+        outgoing message told with identifier: {topic}, type: none
+        incoming message lit with identifier: ns + "/lit", type: none
+        requirement lit needs true
+      }}
+      component Left is Bumper("/left")
+      component Right is Bumper("/right")
+    }}"""
+    drawn = robosc.check(robosc.load(text=text))
+    assert [(finding.rule, finding.span.line) for finding in drawn] == [("unique-topic", line) for line in lines]
+
+
 # Requirements
 
 ARM = """robot R {{

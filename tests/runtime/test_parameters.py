@@ -7,9 +7,12 @@ from typing import Any
 
 import pytest
 
-from robosc.runtime.core.settings import check
-from robosc.semantics.parameters import model_parameters
-from tests.runtime.fake import World, supervised
+from robosc.configuration import Configuration
+from robosc.runtime.core.event_loop import EventLoop
+from robosc.runtime.core.layer import Layer
+from robosc.runtime.core.settings import Settings, check
+from robosc.semantics.parameters import layer_parameters, model_parameters
+from tests.runtime.fake import FakePort, Record, World, supervised
 
 CRUISE = Path(__file__).parent / "cruise.rscd"
 
@@ -73,6 +76,24 @@ def test_a_change_counts_from_the_next_data_on(tmp_path: Path) -> None:
     assert sent(made, "/name") is None
     made.hear("load", data=3)
     assert sent(made, "/name") == "hello"
+
+
+def test_a_layer_has_them_too(tmp_path: Path) -> None:
+    """What it lets pass depends on data that parameters are compared with, from the next data on."""
+    graph, port = supervised(CRUISE), FakePort()
+    log = str(tmp_path / "events.jsonl")
+    values = {one.name: one.default for one in layer_parameters(graph, Configuration(), log)}
+    layer = Layer(graph, Settings(values | {"reach": 0.6}, Configuration()), port, EventLoop(lambda: port.time))
+    layer.start()
+    topics = {topic.topic: topic for topic in [*graph.subscriptions, *graph.publishers]}
+    (move,) = topics["/move"].sendings
+    seen = []
+    for reach, distance in ((0.6, 0.7), (1.0, 0.7), (1.0, 1.1)):
+        layer.set_parameters({"reach": reach})
+        seen.append(layer.passes(move))  # by what has come until now
+        layer.receive(topics["/range"], Record(data=distance))
+        seen.append(layer.passes(move))
+    assert seen == [True, True, True, False, False, True]
 
 
 def test_a_time_that_runs_keeps_its_value(tmp_path: Path) -> None:

@@ -168,11 +168,13 @@ class RosTarget:
         told = statuses(graph, node, commands) if configuration.diagnostics_ms else []
         included = self._included(node, layer, told, tells_commands=any(status.commands for status in told))
         source, definition = f"src/{name}_node.cpp", f"include/{name}/definition.hpp"
+        # Of a layer everything but the model's own parameters is rarely set.
+        has_file = kind == "controller" or bool(node.parameters)
         files = {
             **({"fragment.cmake": "fragment.cmake.j2"} if into else _PACKAGE),
             f"launch/{name}{ros.launch_file}": f"{kind}_launch.j2",
             source: f"{kind}_node.cpp.j2",
-            **({f"config/{name}.yaml": "parameters.yaml.j2"} if kind == "controller" else {}),
+            **({f"config/{name}.yaml": "parameters.yaml.j2"} if has_file else {}),
             **({definition: "definition.hpp.j2"} if configuration.publish_state_information else {}),
             **(_test_files(ros, name, into) if tests else {}),
         }
@@ -206,7 +208,13 @@ class RosTarget:
             "included": sorted([*own, *(f"{header}.hpp" for header in included)]),
             "settings": configuration,
             "parameters": {parameter.name: parameter for parameter in declared},
-            "parameter_groups": _groups(declared),
+            "has_parameters_file": has_file,
+            # The launch file of a layer has an argument for its log.
+            "parameter_groups": _groups(
+                one
+                for one in declared
+                if kind == "controller" or one.name != "event_log" or configuration.write_events_to_log
+            ),
             "publishes_state": configuration.publish_state_information,
             "statuses": told,
             "typed_fields": typed,

@@ -10,6 +10,7 @@ from xml.etree import ElementTree
 
 import pytest
 from catkin_pkg.package import parse_package_string
+from ruamel.yaml import YAML
 
 import robosc
 from robosc import configuration as config
@@ -55,6 +56,36 @@ def test_every_file(
         assert not any(line != line.rstrip() for line in text.split("\n")), path
     golden_package(HERE / target, files)
     assert robosc.generate(target, usher, settings) == files
+
+
+def behind(file: str) -> config.Supervisor:
+    launch = config.Launch(package_name="drive", file=file)
+    return config.Supervisor(controller=config.ExistingController(launch=launch))
+
+
+@pytest.mark.parametrize("logs", [False, True])
+def test_parameters_of_the_model_have_a_file(logs: bool) -> None:
+    """Declared in parameter YAML and launch file; a layer whose model has none needs no file."""
+    models = models_of(HERE.parents[1] / "runtime" / "cruise.rscd")
+    ros1, ros2 = (
+        robosc.generate(target, models, Configuration(write_events_to_log=logs, supervisor=behind(launched_behind)))
+        for target, launched_behind in zip(LAYERS, ("drive.launch", "drive.launch.py"), strict=True)
+    )
+    kept = {"period_ms": 100, "diagnostics_ms": 1000}
+    own = {"speed": 0.2, "reach": 0.5, "least": 3, "greeting": "hello", "doubled": False}
+    in_components = {"Base": {"factor": -1.0}, "Lamp": {"pause": 60.0}}
+    read = YAML(typ="safe").load
+    assert read(ros1["config/cruise_layer.yaml"]) == kept | own | in_components
+    assert read(ros2["config/cruise_layer.yaml"]) == {"/**": {"ros__parameters": kept | own | in_components}}
+    assert '<rosparam command="load" file="$(arg parameters)"/>' in ros1["launch/cruise_layer.launch"]
+    node, *_ = launched(ros2["launch/cruise_layer.launch.py"]).of("Node")
+    file, *others = node.named["parameters"]
+    assert file.positional == ("params_file",)
+    assert len(others) == (not logs)
+    # The controller that is launched behind it has a file of its own.
+    assert '"params_file"' in ros2["launch/cruise_layer.launch.py"].partition("hidden = [")[2].partition("]")[0]
+    for files in (ros1, ros2):
+        assert "install(DIRECTORY config launch" in files["CMakeLists.txt"]
 
 
 def test_packages_list_what_is_used(usher: robosc.Models, settings: Configuration) -> None:
