@@ -9,7 +9,7 @@ from robosc.cif.faults import CifFaultError
 from robosc.cif.types import BOOLEAN, FOREIGN, OPERATORS, Type, bounded, combined, joined, shown
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
-from robosc.semantics.walks import copied
+from robosc.semantics.walks import copied, parts
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -46,8 +46,14 @@ class _Open:
 class ExpressionReader:
     """Reads one expression from its tokens, operators without recursion (Dijkstra's shunting yard)."""
 
-    def __init__(self, read: Any, value_of: Callable[[Any, sct.Plant | None], Typed]) -> None:
-        """`value_of` makes what an operand stands for; of the key of a `switch` over an automaton, given that."""
+    def __init__(
+        self, read: Any, value_of: Callable[[Any, sct.Plant | None], Typed], grow: Callable[[Any, int], None]
+    ) -> None:
+        """`value_of` makes what an operand stands for; of the key of a `switch` over an automaton, given that.
+
+        `grow` is told at which place how much is added that does not stand in the text.
+        """
+        self._grow = grow
         self._done: list[Typed] = []
         self._open: list[_Open] = []
         self._read = read
@@ -94,7 +100,7 @@ class ExpressionReader:
                 top.switched = self._done.pop()
             case "case", ":":
                 assert top.switched is not None
-                top.conditions.append(_is(top.switched, self._done.pop()))
+                top.conditions.append(self._is(top.switched, self._done.pop()))
             case ":", ("elif" | "else" | "case") if word == "else" or (word == "case") == (top.switched is not None):
                 top.values.append(self._done.pop())
             case "switch:", ("first case" | "first else"):
@@ -150,6 +156,14 @@ class ExpressionReader:
         values = range(1 - operand.type.stop, 1 - operand.type.start)
         return Typed(top.read, ex.UnaryMinus(operand=operand.expression), _checked(top.read, bounded, "-", values))
 
+    def _is(self, switched: Typed, key: Typed) -> Typed:
+        """That what a `switch` looks at is a key."""
+        if isinstance(switched.type, sct.Plant):
+            return key  # A location of the automaton, which is true where the automaton is in it.
+        _checked(key.read, combined, "=", switched.type, key.type)
+        self._grow(key.read, sum(1 for _ in parts(switched.expression)))
+        return Typed(key.read, ex.Equation(left=copied(switched.expression), right=key.expression), BOOLEAN)
+
     @staticmethod
     def _boolean(operand: Typed, problem: str) -> None:
         if operand.type != BOOLEAN:
@@ -165,14 +179,6 @@ class ExpressionReader:
         return Typed(top.read, made, kind)
 
 
-def _is(switched: Typed, key: Typed) -> Typed:
-    """That what a `switch` looks at is a key."""
-    if isinstance(switched.type, sct.Plant):
-        return key  # A location of the automaton, which is true where the automaton is in it.
-    _checked(key.read, combined, "=", switched.type, key.type)
-    return Typed(key.read, ex.Equation(left=copied(switched.expression), right=key.expression), BOOLEAN)
-
-
 def _tokens(read: Any) -> Iterator[tuple[str | None, Any]]:
     """The tokens of an expression, with their words; operands have none. A sign is no operator."""
     further = [(None, read.first), *((other.operator, other.operand) for other in read.others)]
@@ -183,6 +189,22 @@ def _tokens(read: Any) -> Iterator[tuple[str | None, Any]]:
             yield _OPENINGS.get(opening.token, opening.token), opening
         yield None, operand.value
         yield from ((closing.token, closing) for closing in operand.closings)
+
+
+def named(read: Any) -> Iterator[Any]:
+    """The names in an expression, but those that are keys of a `switch` by themselves."""
+    pending = [read]
+    while pending:
+        here = pending.pop()
+        for operand in (here.first, *(other.operand for other in here.others)):
+            value = operand.value
+            match type(value).__name__:
+                case "Parenthesis":
+                    pending.append(value.inner)
+                case "Call":
+                    pending += value.arguments
+                case "Reference" if "case" not in {opening.token for opening in operand.openings[-1:]}:
+                    yield value.name
 
 
 def _checked(read: Any, rule: Callable[..., Any], *given: Any) -> Any:

@@ -14,15 +14,15 @@ from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 from robosc.metamodel.reflection import tree
 from robosc.semantics.printing import conjunction
-from robosc.semantics.walks import copied, fold, operands, with_operands
+from robosc.semantics.walks import copied, fold, operands, parts, with_operands
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
     Element = sct.Plant | sct.DiscreteVariable
 
-#: So many ways to take an event in several plants are looked at.
-_MOST = 1_000
+#: So many ways to take an event in several plants are looked at, and so many operators and operands made of them.
+_MOST, _LARGEST = 1_000, 100_000
 
 
 def keep(
@@ -44,7 +44,8 @@ def keep(
 
 def _together(invariant: ex.Expression, edges: Sequence[Sequence[sct.Edge]]) -> ex.Expression | None:
     """That what edges of several plants do together keeps the invariant."""
-    if prod(map(len, edges)) > _MOST:
+    ways = prod(map(len, edges))
+    if ways > _MOST or ways * sum(1 for _ in parts(invariant)) > _LARGEST:
         return None
     kept = []
     for chosen in product(*edges):

@@ -38,7 +38,7 @@ class Declared:
     """Something with a name: `kind` is the rule of the grammar that it was declared by.
 
     `read` is its own object of the grammar and `outer` that of the statement, which has the type; `made` is what it
-    became: an element of the sct metamodel, or for a constant or an algebraic variable its typed expression.
+    became, an element of the sct metamodel.
     """
 
     kind: str
@@ -47,20 +47,20 @@ class Declared:
     outer: Any
     scope: Scope
     made: Any = None
-    #: The type of a variable, a constant, an algebraic variable, or the one that a name of a type stands for.
+    #: The type of a variable.
     type: Any = None
-    open: bool = False
     #: Why a variable was not made.
     fault: Any = None
 
 
 @dataclass(eq=False)
 class Argument:
-    """What a parameter stands for: an expression where the instance is made."""
+    """What a parameter stands for: an expression where the instance is made; `named`, what that is the name of."""
 
     read: Any
     scope: Scope
     parameter: Any
+    named: Name | CifFaultError | None = None
 
 
 @dataclass(eq=False)
@@ -132,6 +132,14 @@ class Specification:
         for read, around, scope in self._instances:  # Which grows meanwhile.
             with self.reporting():
                 self._instantiate(read, around, scope)
+        # From the outermost instance on, so that each argument is looked up once.
+        for _, _, scope in self._instances:
+            for argument in scope.around.names.values() if scope.around else ():
+                if isinstance(argument, Argument) and not _is_algebraic(argument):
+                    try:
+                        argument.named = self.resolved(argument)
+                    except CifFaultError as fault:
+                        argument.named = fault
 
     @contextmanager
     def reporting(self) -> Iterator[None]:
@@ -188,7 +196,11 @@ class Specification:
 
     def resolved(self, found: Name) -> Name:
         """What a parameter that is no algebraic one stands for, through all instances."""
-        while isinstance(found, Argument) and type(found.parameter).__name__ != "AlgebraicParameter":
+        while isinstance(found, Argument) and not _is_algebraic(found):
+            if isinstance(found.named, CifFaultError):
+                raise found.named
+            if found.named is not None:
+                return found.named
             value = found.read.first.value
             is_name = not found.read.others and not found.read.first.openings and not found.read.first.closings
             if not is_name or type(value).__name__ != "Reference" or value.suffix:
@@ -309,6 +321,10 @@ class Specification:
             self._automaton(scope, definition)
         else:
             self._declare(scope, definition)
+
+
+def _is_algebraic(argument: Argument) -> bool:
+    return type(argument.parameter).__name__ == "AlgebraicParameter"
 
 
 def _once(scope: Scope, name: str, read: Any) -> None:

@@ -168,7 +168,7 @@ class _Transformation:
         for declared in scope.names.values():
             with self._names.reporting():
                 if isinstance(declared, Declared) and declared.kind in ("Constants", "Algebraics"):
-                    self._values.computed(declared)
+                    self._values.known(declared)
                 elif isinstance(declared, Declared) and declared.kind == "Variables" and declared.made is not None:
                     self._initialise(declared, scope)
         taken: list[_Taken] = []

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from contextlib import suppress
+from typing import TYPE_CHECKING, Any, TypeAlias
 
-from robosc.cif.expressions import ExpressionReader, Typed
+from robosc.cif.expressions import ExpressionReader, Typed, named
 from robosc.cif.faults import CifFaultError, construct
 from robosc.cif.scopes import Argument, Declared, Scope, Specification, plain
 from robosc.cif.types import BOOLEAN, LARGEST, Type, contains, shown
@@ -15,11 +16,11 @@ from robosc.semantics.printing import conjunction
 from robosc.semantics.walks import copied, parts
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
 
-#: So many operators and operands an expression may have, what its names stand for counted.
-_LARGEST_EXPRESSION = 50_000
+#: So many operators and operands the names in an expression may stand for, and all names together.
+_LARGEST, _LARGEST_IN_ALL = 20_000, 100_000
 #: Operands that synthesis does not take, and what to write instead.
 _FOREIGN = {
     "Received": ("channels", "CIF's `--elim-channels` (cif2cif) takes them out"),
@@ -28,7 +29,14 @@ _FOREIGN = {
     "String": ("strings", "write an enumeration"),
     "Collection": ("lists, sets and dictionaries", "write a variable for each element"),
 }
+#: So deep definitions are read within each other; those that are read one after the other have no bound.
+_DEEPEST = 30
+_DEFINED = ("Constants", "Algebraics", "Types")
 _MINMAX = {"min": min, "max": max}
+
+
+#: A constant, an algebraic variable, a name of a type, or what an algebraic parameter stands for.
+Definition: TypeAlias = Declared | Argument
 
 
 class Values:
@@ -36,10 +44,13 @@ class Values:
 
     def __init__(self, names: Specification) -> None:
         self.names = names
-        self._sizes: dict[Declared | Argument, int] = {}
-        self._algebraic: dict[Argument, Typed] = {}
+        #: What definitions and arguments are, or what is wrong with them.
+        self._known: dict[Definition, Any] = {}
+        self._open: set[Definition] = set()
+        self._sizes: dict[Definition, int] = {}
         self._equations: dict[Scope, dict[str, list[tuple[sct.Location | None, Any]]]] = {}
-        self._size = 0
+        self._size = self._size_in_all = 0
+        self._exhausted: CifFaultError | None = None
 
     def typed(self, read: Any, scope: Scope) -> Typed:
         """An expression of a scope. Raises CifFaultError."""
@@ -72,10 +83,10 @@ class Values:
         return value, range(value, value + 1) if isinstance(made.type, range) else made.type
 
     def _nested(self, read: Any, scope: Scope) -> Typed:
-        return ExpressionReader(read, lambda value, switched: self._operand(value, scope, switched)).result
+        reader = ExpressionReader(read, lambda value, switched: self._operand(value, scope, switched), self._grow)
+        return reader.result
 
     def _operand(self, read: Any, scope: Scope, switched: sct.Plant | None) -> Typed:
-        self._grow(read, 1)
         match type(read).__name__:
             case "Truth":
                 return Typed(read, ex.BooleanLiteral(value=read.value == "true"), BOOLEAN)
@@ -137,9 +148,9 @@ class Values:
             case Scope(plant=sct.Plant() as plant):
                 return Typed(read, None, plant)
             case Argument():
-                return self._copied(read, found, self._argument(found))
+                return self._copied(read, found)
             case Declared(kind="Constants" | "Algebraics"):
-                return self._copied(read, found, self.computed(found))
+                return self._copied(read, found)
             case Declared(kind="Variables" | "Inputs"):
                 if found.made is None:
                     raise found.fault
@@ -150,44 +161,97 @@ class Values:
                 return Typed(read, ex.EnumerationLiteralReference(literal=literal), enumeration)
         raise CifFaultError(read, "type", f"`{read.name.text}` has no value")
 
-    def _copied(self, read: Any, named: Declared | Argument, made: Typed) -> Typed:
+    def _copied(self, read: Any, named: Definition) -> Typed:
+        made: Typed = self.known(named)
         if named not in self._sizes:
             self._sizes[named] = sum(1 for _ in parts(made.expression))
         self._grow(read, self._sizes[named])
         return Typed(read, copied(made.expression), made.type)
 
     def _grow(self, read: Any, more: int) -> None:
+        """Counts what a name adds to an expression. Raises CifFaultError where that is too much, the same for all."""
         self._size += more
-        if self._size > _LARGEST_EXPRESSION:
-            message = f"the expression has more than {_LARGEST_EXPRESSION} operands, what its names stand for included"
-            raise CifFaultError(read, "cif-construct", message, "give parts of it to automata with variables")
+        self._size_in_all += more
+        if self._size > _LARGEST:
+            raise _too_large(read, "what the names in the expression stand for", _LARGEST)
+        if self._size_in_all > _LARGEST_IN_ALL:
+            what = "what all names in expressions stand for"
+            self._exhausted = self._exhausted or _too_large(read, what, _LARGEST_IN_ALL)
+            raise self._exhausted
 
-    def _argument(self, argument: Argument) -> Typed:
-        """What an algebraic parameter stands for."""
-        if argument not in self._algebraic:
-            before, self._size = self._size, 0
-            self._algebraic[argument] = self.typed(argument.read, argument.scope)
+    # Definitions
+
+    def known(self, found: Definition) -> Any:
+        """The value of a constant, an algebraic variable or an argument, or the type that a name stands for.
+
+        What it is made of comes first: a chain of definitions may be longer than Python's stack is deep. What is wrong
+        with one is found once. Raises CifFaultError.
+        """
+        if found not in self._known and found not in self._open:
+            self._settle(found)
+        if found not in self._known:
+            raise _computed_from_itself(found)
+        made = self._known[found]
+        if isinstance(made, CifFaultError):
+            raise made
+        return made
+
+    def _settle(self, found: Definition) -> None:
+        path = {found: iter(self._uses(found))}
+        while path:
+            last = next(reversed(path))
+            used = next((used for used in path[last] if used not in self._known), None)
+            if used is None:
+                del path[last]
+                if last not in self._known:
+                    self._known[last] = self._made(last)
+            elif used in path:
+                circle = list(path)
+                self._known |= {one: _computed_from_itself(one) for one in circle[circle.index(used) :]}
+            elif used not in self._open:
+                path[used] = iter(self._uses(used))
+
+    def _uses(self, found: Definition) -> Iterator[Definition]:
+        """The definitions and arguments that one names; a key of a `switch` may be a location of the same name."""
+        scope = found.scope
+        types = [found.outer.type if found.kind != "Types" else found.read.type] if isinstance(found, Declared) else []
+        reads = [bound for one in types if type(one).__name__ == "Integer" for bound in (one.low, one.high) if bound]
+        names = [one.type for one in types if type(one).__name__ == "NamedType"]
+        if isinstance(found, Argument) or (found.kind != "Types" and found.read.value is not None):
+            reads.append(found.read if isinstance(found, Argument) else found.read.value)
+        elif found.kind == "Algebraics":
+            with suppress(CifFaultError):
+                reads += [one for _, one in self.equations(scope).get(found.name, ())]
+        for name in (*names, *(name for read in reads for name in named(read))):
+            with suppress(CifFaultError):
+                used = self.names.find(name, scope)
+                if isinstance(used, Argument) or (isinstance(used, Declared) and used.kind in _DEFINED):
+                    yield used
+
+    def _made(self, found: Definition) -> Any:
+        """What a definition or an argument is, or what is wrong with it."""
+        if len(self._open) > _DEEPEST:
+            return CifFaultError(found.read, "cif-construct", "definitions lie too deep within each other")
+        before, self._size = self._size, 0
+        self._open.add(found)
+        try:
+            if isinstance(found, Argument):
+                return self.typed(found.read, found.scope)
+            if found.kind == "Types":
+                return self.declared_type(found.read.type, found.scope)
+            return self._computed(found)
+        except CifFaultError as fault:
+            return fault
+        finally:
+            self._open.remove(found)
             self._size = before
-        return self._algebraic[argument]
 
-    def computed(self, found: Declared) -> Typed:
+    def _computed(self, found: Declared) -> Typed:
         """The value of a constant or an algebraic variable."""
-        if found.made is None:
-            if found.open:
-                raise CifFaultError(found.read, "cyclic-definition", f"`{found.name}` is computed from itself")
-            before, self._size, found.open = self._size, 0, True
-            try:
-                kind = self.declared_type(found.outer.type, found.scope)
-                made = self._equation(found) if found.kind == "Algebraics" else self._fixed(found)
-                if not (isinstance(made.type, range) if kind == "int" else contains(kind, made.type)):
-                    raise CifFaultError(
-                        found.read, "type", f"`{found.name}` is {shown(kind)}, its value {shown(made.type)}"
-                    )
-            finally:
-                self._size, found.open = before, False
-            found.made = made
-        made = found.made
-        assert isinstance(made, Typed)
+        kind = self.declared_type(found.outer.type, found.scope)
+        made = self._equation(found) if found.kind == "Algebraics" else self._fixed(found)
+        if not (isinstance(made.type, range) if kind == "int" else contains(kind, made.type)):
+            raise CifFaultError(found.read, "type", f"`{found.name}` is {shown(kind)}, its value {shown(made.type)}")
         return made
 
     def _fixed(self, found: Declared) -> Typed:
@@ -253,15 +317,8 @@ class Values:
             return self.enumeration(found)
         if not isinstance(found, Declared) or found.kind != "Types":
             raise CifFaultError(read, "type", f"`{read.type.text}` is no type")
-        if found.type is None:
-            if found.open:
-                raise CifFaultError(found.read, "cyclic-definition", f"`{found.name}` is defined by itself")
-            found.open = True
-            try:
-                found.type = self.declared_type(found.read.type, found.scope)
-            finally:
-                found.open = False
-        return found.type  # type: ignore[no-any-return]
+        kind: Type | str = self.known(found)
+        return kind
 
     def _range(self, read: Any, scope: Scope) -> range:
         (low, lowest), (high, highest) = (self.constant(bound, scope) for bound in (read.low, read.high))
@@ -278,6 +335,18 @@ class Values:
             declared.made.literals.extend(ex.EnumerationLiteral(name=plain(one.name)) for one in declared.read.literals)
         found: ex.Enumeration = declared.made
         return found
+
+
+def _too_large(read: Any, what: str, most: int) -> CifFaultError:
+    message = f"{what} has more than {most} operators and operands"
+    return CifFaultError(read, "cif-construct", message, "give parts of it to automata with variables")
+
+
+def _computed_from_itself(found: Definition) -> CifFaultError:
+    if isinstance(found, Declared):
+        verb = "defined by" if found.kind == "Types" else "computed from"
+        return CifFaultError(found.read, "cyclic-definition", f"`{found.name}` is {verb} itself")
+    return CifFaultError(found.read, "cyclic-definition", "what the parameter stands for is computed from itself")
 
 
 class _ChangingError(Exception):

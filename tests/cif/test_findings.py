@@ -92,13 +92,38 @@ WRONG = {
         + ";\n"
         + _P
         + "requirement a30;",
-        [("1:287", "give parts of it to automata with variables")],
+        [("1:268", "give parts of it to automata with variables")],
+    ),
+    "too long by what is looked at": (
+        "controllable c; alg int[0..2] a0 = 1, "
+        + ", ".join(f"a{n + 1} = switch a{n}: case 0: a{n} else 1 end" for n in range(30))
+        + ";\n"
+        + _P
+        + "requirement a30 = 1;",
+        [("1:495", "give parts of it to automata with variables")],
+    ),
+    "too long all in all": (
+        "controllable c; alg bool a0 = p.a, "
+        + ", ".join(f"a{n + 1} = a{n} and a{n}" for n in range(10))
+        + ";\n"
+        + _P
+        + "requirement a10;" * 60,
+        [("3:749", "give parts of it to automata with variables")],
+    ),
+    "a plant invariant over too much": (
+        "controllable c;\n"
+        + "".join(
+            f"plant p{n}: disc int[0..1] x; location: initial; edge c when x = 0 do x := 1; edge c when x = 1; end "
+            for n in range(9)
+        )
+        + f"\nplant invariant {' and '.join(f'p{n % 9}.x < 1' for n in range(60))};",
+        [("3:17", "state it by guards")],
     ),
 }
 
 
 @pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=[pytest.mark.slow] if name == "too long" else []) for name in WRONG]
+    "name", [pytest.param(name, marks=[pytest.mark.slow] if name == "too long all in all" else []) for name in WRONG]
 )
 def test_a_fault_is_said_at_its_place(name: str) -> None:
     text, wanted = WRONG[name]
@@ -107,6 +132,43 @@ def test_a_fault_is_said_at_its_place(name: str) -> None:
     for (_, message, hint), (_, mend) in zip(found, wanted, strict=True):
         assert message
         assert mend is None or mend == hint
+
+
+#: So many definitions, one made of the other, are more than Python's stack is deep.
+_MANY = 400
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "alg bool {} a0 = p.a; requirement a400;",
+        "const int {} a0 = 1; requirement a400 = 1;",
+        "type {} a0 = bool; input a400 i;",
+    ],
+)
+def test_a_chain_of_definitions_may_be_long(text: str) -> None:
+    chain = "".join(f"a{number + 1} = a{number}, " for number in reversed(range(_MANY)))
+    assert findings("controllable c;\n" + _P + text.format(chain)) == []
+
+
+def test_a_long_circle_is_said_of_each_definition_in_it() -> None:
+    circle = ", ".join(f"a{number} = a{(number + 1) % _MANY}" for number in range(_MANY))
+    assert len(findings(f"controllable c; alg bool {circle};\n{_P}")) == _MANY
+
+
+@pytest.mark.parametrize(
+    ("parameter", "use", "argument"),
+    [
+        ("event v", "plant q: location: initial; edge v; end", "c"),
+        ("alg bool v", "requirement v;", "p.a"),
+        ("H v", "requirement v.e needs true;", "h"),
+    ],
+)
+def test_a_chain_of_instances_may_be_long(parameter: str, use: str, argument: str) -> None:
+    definitions = [f"group def G{number + 1}({parameter}): a: G{number}(v); end" for number in range(_MANY)]
+    start = f"group def H(): controllable e; end h: H(); group def G0({parameter}): {use} end"
+    text = "\n".join([start, *definitions, f"x: G{_MANY}({argument});"])
+    assert findings("controllable c;\n" + _P + text) == []
 
 
 def test_two_edges_of_a_controllable_event_exclude_each_other() -> None:
