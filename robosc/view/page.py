@@ -11,6 +11,7 @@ FILES = {
     "page.js": "text/javascript; charset=utf-8",
     "layout.js": "text/javascript; charset=utf-8",
     "icon.svg": "image/svg+xml",
+    "LICENSES.txt": "text/plain; charset=utf-8",
 }
 _FOLDER = Path(__file__).with_name("built")
 #: Nothing comes from elsewhere, nothing goes elsewhere, no text of a model can become a script.
