@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from robosc.cif.faults import CifFaultError
+from robosc.cif.faults import CifFaultError, construct
 from robosc.cif.types import BOOLEAN, FOREIGN, OPERATORS, Type, bounded, combined, joined, shown
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
@@ -75,6 +75,9 @@ class ExpressionReader:
 
     def _take(self, word: str, token: Any) -> None:
         """Any word but an operand."""
+        if word == "sample" or (word[0] + word[-1] == "<>" and word not in _LEVELS):
+            what = "distributions" if word == "sample" else "casts"
+            raise construct(token, what, "write a value of the type that is asked for")
         if word in ("if", "switch", *_UNARY):
             self._open.append(_Open(word, token))
             return

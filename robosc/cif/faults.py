@@ -25,6 +25,13 @@ class CifFaultError(Exception):
         return text_of(self.read).error(self.rule, *span(self.read), self.message, self.repair)
 
 
+#: How to mend what a transformation of CIF's `cif2cif` takes out, by its name there.
+CHANNELS = "CIF's `cif2cif -t linearize-product` makes events without data of them"
+CONDITIONAL_UPDATES = "CIF's `cif2cif -t elim-if-updates` takes them out"
+SUPERVISORS = "CIF's `cif2cif -t relabel-supervisors-as-plants` makes plants of them"
+TAU = "CIF's `cif2cif -t elim-tau-event` gives it one: declare that as `uncontrollable`"
+
+
 def text_of(read: Any) -> Text:
     """The text that an object of the grammar stands in; the specification around it keeps it."""
     while hasattr(read, "parent"):

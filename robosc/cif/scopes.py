@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from robosc.cif.faults import CifFaultError, construct, located
+from robosc.cif.faults import CHANNELS, CifFaultError, construct, located
 from robosc.diagnostics import Repair
 from robosc.language.explaining import did_you_mean
 from robosc.metamodel import sct
@@ -242,7 +242,7 @@ class Specification:
             case "Events":
                 scope.events += [self._name(rule, name, read, scope) for name in read.names]
                 if read.type is not None:
-                    raise construct(read, "channels", "CIF's `--elim-channels` (cif2cif) takes them out")
+                    raise construct(read, "channels", CHANNELS)
             case _ if rule in _LISTS:
                 for one in getattr(read, _LISTS[rule]):
                     self._name(rule, one, read, scope)

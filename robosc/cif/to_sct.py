@@ -12,7 +12,17 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from robosc.cif import plant_invariants
-from robosc.cif.faults import CifFaultError, construct, located, span, text_of
+from robosc.cif.faults import (
+    CHANNELS,
+    CONDITIONAL_UPDATES,
+    SUPERVISORS,
+    TAU,
+    CifFaultError,
+    construct,
+    located,
+    span,
+    text_of,
+)
 from robosc.cif.scopes import Declared, Scope, Specification, plain
 from robosc.cif.types import Type, contains, overlap, shown
 from robosc.cif.values import Values, constant_value, literal
@@ -27,8 +37,6 @@ from robosc.semantics.walks import copied
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
-
-_CHANNELS = "CIF's `--elim-channels` (cif2cif) takes them out"
 
 
 @dataclass
@@ -84,7 +92,7 @@ class _Transformation:
         """The events, variables and inputs of a scope."""
         if scope.kind == "supervisor":
             with self._names.reporting():
-                raise construct(scope.read, "supervisor automata", "hand it the plants and requirements alone")
+                raise construct(scope.read, "supervisor automata", SUPERVISORS)
         if scope.kind == "":
             with self._names.reporting():
                 raise construct(scope.read, "automata of no kind", "write `plant` or `requirement` before it")
@@ -223,12 +231,12 @@ class _Transformation:
 
     def _taken(self, read: Any, location: sct.Location, scope: Scope) -> Iterator[_Taken]:
         if not read.events or any(one.tau for one in read.events):
-            raise construct(read, "edges without an event", "declare an uncontrollable event for it")
+            raise construct(read, "edges without an event", TAU)
         if read.urgent:
             raise construct(read, "urgent edges", "leave out `now`")
         for one in read.events:
             if one.communication:
-                raise construct(one, "channels", _CHANNELS)
+                raise construct(one, "channels", CHANNELS)
         events = [self._event(one.event, scope) for one in read.events]
         target = location
         if read.target is not None:
@@ -253,7 +261,7 @@ class _Transformation:
 
     def _update(self, read: Any, scope: Scope) -> tuple[sct.DiscreteVariable, ex.Expression, Type]:
         if read.conditional:
-            raise construct(read, "conditional updates", "CIF's `--elim-if-updates` (cif2cif) takes them out")
+            raise construct(read, "conditional updates", CONDITIONAL_UPDATES)
         if read.several or read.projection:
             raise construct(read, "updates of tuples and lists", "write a variable for each element")
         found = self._names.find(read.variable, scope)
@@ -398,7 +406,9 @@ class _Transformation:
 
     def _invariants(self, read: Any, scope: Scope, location: sct.Location | None) -> None:
         if read.kind not in ("plant", "requirement"):
-            what = "supervisor invariants" if read.kind else "invariants of no kind"
+            if read.kind:
+                raise construct(read, "supervisor invariants", SUPERVISORS)
+            what = "invariants of no kind"
             raise construct(read, what, "write `requirement` before it, or `plant` where the system itself sees to it")
         for one in read.invariants:
             with self._names.reporting():

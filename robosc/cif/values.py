@@ -6,7 +6,7 @@ from contextlib import suppress
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from robosc.cif.expressions import ExpressionReader, Typed, named
-from robosc.cif.faults import CifFaultError, construct
+from robosc.cif.faults import CHANNELS, CifFaultError, construct
 from robosc.cif.scopes import Argument, Declared, Scope, Specification, plain
 from robosc.cif.types import BOOLEAN, LARGEST, Type, contains, shown
 from robosc.metamodel import expression as ex
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 _LARGEST, _LARGEST_IN_ALL = 20_000, 100_000
 #: Operands that synthesis does not take, and what to write instead.
 _FOREIGN = {
-    "Received": ("channels", "CIF's `--elim-channels` (cif2cif) takes them out"),
+    "Received": ("channels", CHANNELS),
     "Time": ("time", "model the passing of time by events"),
     "Real": ("reals", "write whole numbers"),
     "String": ("strings", "write an enumeration"),
@@ -31,6 +31,8 @@ _FOREIGN = {
 }
 #: So deep definitions are read within each other; those that are read one after the other have no bound.
 _DEEPEST = 30
+#: What a name with something behind it is.
+_SUFFIXES = {"'": "derivatives", "(": "functions", "[": "elements of lists and tuples"}
 _DEFINED = ("Constants", "Algebraics", "Types")
 _MINMAX = {"min": min, "max": max}
 
@@ -130,7 +132,7 @@ class Values:
 
     def _reference(self, read: Any, scope: Scope, switched: sct.Plant | None) -> Typed:
         if read.suffix:
-            what = "derivatives" if read.suffix == "'" else "functions and elements of lists"
+            what = _SUFFIXES[read.suffix[0]]
             raise construct(read, what, "write an algebraic variable for what it computes")
         if switched is not None:
             own = next((one for one in switched.locations if one.name == plain(read.name.text)), None)

@@ -9,10 +9,12 @@ from typing import TYPE_CHECKING
 import pytest
 from click.testing import CliRunner
 
+from robosc.cif import read
 from robosc.cli import main
 from robosc.configuration import Configuration
 from robosc.m2t import cif
 from robosc.metamodel import expression as ex
+from robosc.synthesis import synthesize
 from tests.cif.comparing import reading_of
 from tests.cif.escet import CONTROLLER_CHECK, TRANSFORMER, Tools, home
 from tests.cif.random_specifications import Specification
@@ -78,6 +80,60 @@ def test_what_is_written_of_specifications_is_valid(tools: Tools, tmp_path: Path
             assert call.status == 0, call.output
             valid += 1
     assert valid > 10
+
+
+@pytest.mark.parametrize(
+    ("text", "transformation", "states"),
+    [
+        (
+            """controllable int[0..3] c;
+            plant s: location: initial; marked; edge c!2; end
+            plant r: disc int[0..3] x; location: initial; marked; edge c? do x := ?; end""",
+            "linearize-product",
+            2,
+        ),
+        (
+            """controllable c;
+            plant p: disc bool x, y; location: initial; marked; edge c do if x: y := true else x := true end; end""",
+            "elim-if-updates",
+            3,
+        ),
+        (
+            """controllable c;
+            plant p: location a: initial; marked; edge c goto b; location b: marked; edge c goto a; end
+            supervisor s: location: initial; marked; edge c when p.b; end
+            supervisor c needs p.a;""",
+            "relabel-supervisors-as-plants",
+            1,
+        ),
+    ],
+)
+def test_the_transformation_that_a_finding_names_takes_the_construct_out(
+    tools: Tools, tmp_path: Path, text: str, transformation: str, states: int
+) -> None:
+    path, without = tmp_path / "with.cif", tmp_path / "without.cif"
+    path.write_text(text)
+    hints = [finding.hint or "" for finding in read(path).findings]
+    assert hints
+    assert all(f"cif2cif -t {transformation}`" in hint for hint in hints)
+    called = tools.call(TRANSFORMER, str(path), "-t", transformation, "-o", str(without))
+    assert called.status == 0, called.output
+    model = read(without).model
+    assert model is not None
+    assert synthesize(model).controlled_states == tools.synthesize(without).states == states
+
+
+def test_the_transformation_that_gives_edges_an_event(tools: Tools, tmp_path: Path) -> None:
+    """Of which kind it is has to be said."""
+    path, without = tmp_path / "with.cif", tmp_path / "without.cif"
+    path.write_text("plant p: location a: initial; marked; edge tau goto b; location b: marked; end")
+    assert "cif2cif -t elim-tau-event`" in (read(path).findings[0].hint or "")
+    called = tools.call(TRANSFORMER, str(path), "-t", "elim-tau-event", "-o", str(without))
+    assert called.status == 0, called.output
+    without.write_text(without.read_text().replace("event tau_", "uncontrollable tau_"))
+    model = read(without).model
+    assert model is not None
+    assert synthesize(model).controlled_states == tools.synthesize(without).states == 2
 
 
 def _values(parameter: sct.Input) -> int:

@@ -1,6 +1,7 @@
 """What is wrong with a specification is said where it is, how to mend it, and all in one run."""
 
 import random
+import re
 from pathlib import Path
 
 import pytest
@@ -47,7 +48,6 @@ WRONG = {
     ),
     "two of one name": ("controllable c;\ncontrollable c;\n" + _P, [("2:14", "rename one of them")]),
     "an event of no kind": ("event c;\n" + _P, [("2:44", "declare `c` as `controllable` or as `uncontrollable`")]),
-    "tau": (_P.replace("edge c", "edge tau"), [("1:39", "declare an uncontrollable event for it")]),
     "a continuous variable": ("controllable c; cont x der 1;\n" + _P, [("1:17", None)]),
     "a function": ("controllable c; func int f(int x): if x > 1: x := 2; end return x; end\n" + _P, [("1:17", None)]),
     "a channel": ("controllable int c;\n" + _P.replace("edge c", "edge c!3"), [("1:1", None), ("2:44", None)]),
@@ -169,6 +169,78 @@ def test_a_chain_of_instances_may_be_long(parameter: str, use: str, argument: st
     start = f"group def H(): controllable e; end h: H(); group def G0({parameter}): {use} end"
     text = "\n".join([start, *definitions, f"x: G{_MANY}({argument});"])
     assert findings("controllable c;\n" + _P + text) == []
+
+
+_LIST = "a variable for each element"
+_TYPES = "synthesis takes `bool`, ranges of `int` and `enum`"
+_COMPUTED = "write an algebraic variable"
+#: What is outside: where it stands (`{}` of the plant: a declaration, what is on its edge), what it is called, and what
+#: the hint says, CIF's own transformation where there is one.
+OUTSIDE = [
+    ("cont x der 1.0; {}", "continuous variables", "leave them to simulation"),
+    ("cont x; {location a: equation x' = 1.0;}", "continuous variables", "leave them to simulation"),
+    ("{} requirement p.a';", "derivatives", _COMPUTED),
+    ("{edge c when time > 1}", "time", "by events"),
+    ("func int f(int x): while x > 1: x := x - 1; end return x; end {}", "functions", _COMPUTED),
+    ('func tuple(int a; int b) f(tuple(int a; int b) x): "java:f"; {}', "functions", _COMPUTED),
+    ("{} requirement f(1) = 1;", "functions", _COMPUTED),
+    ("{} requirement sqrt(1) = 1;", "the function `sqrt`", "`min`, `max` and `abs`"),
+    ("controllable int[0..3] d; {}", "channels", "cif2cif -t linearize-product"),
+    ("{edge c!3}", "channels", "cif2cif -t linearize-product"),
+    ("{edge c?}", "channels", "cif2cif -t linearize-product"),
+    ("{disc list int x;}", "the type `list`", _TYPES),
+    ("{disc list[3] tuple(int a; bool b) x;}", "the type `list`", _TYPES),
+    ("{disc set int x;}", "the type `set`", _TYPES),
+    ("{disc dict(int:tuple(int a; int b)) x;}", "the type `dict`", _TYPES),
+    ("{disc tuple(int a; int b) x;}", "the type `tuple`", _TYPES),
+    ("{disc dist bool x;}", "the type `dist`", _TYPES),
+    ('const string x = "a;"; {}', "the type `string`", _TYPES),
+    ("alg real x = 1.5; {}", "the type `real`", _TYPES),
+    ("const func int(int) x = f; {}", "the type `func`", _TYPES),
+    ("{} requirement 1.5e3 > 1;", "reals", "whole numbers"),
+    ('{} requirement "a" = "b";', "strings", "enumeration"),
+    ("{} requirement [1, 2] = [1];", "lists, sets and dictionaries", _LIST),
+    ("{} requirement p.a[0];", "elements of lists and tuples", _COMPUTED),
+    ("{edge c do x[0] := 1}", "updates of tuples and lists", _LIST),
+    ("{edge c do (x, y) := z}", "updates of tuples and lists", _LIST),
+    (
+        "{disc bool x; edge c do if x: x := false else x := true end}",
+        "conditional updates",
+        "cif2cif -t elim-if-updates",
+    ),
+    ("{disc bool x; edge c do x := sample x}", "distributions", "a value of the type"),
+    ("{} requirement <int>1.0 > 1;", "casts", "a value of the type"),
+    ("{} requirement 4 / 2 = 2;", "the operator `/`", ""),
+    ("{edge tau}", "edges without an event", "cif2cif -t elim-tau-event"),
+    ("{edge when true goto a}", "edges without an event", "cif2cif -t elim-tau-event"),
+    ("{location a: urgent;}", "urgent locations", "leave out"),
+    ("{edge c now}", "urgent edges", "leave out"),
+    ("{} supervisor q: location: initial; end", "supervisor automata", "cif2cif -t relabel-supervisors-as-plants"),
+    ("{} supervisor c needs true;", "supervisor invariants", "cif2cif -t relabel-supervisors-as-plants"),
+    ("{} automaton q: location: initial; end", "automata of no kind", "write `plant` or `requirement`"),
+    ("{} invariant c needs true;", "invariants of no kind", "write `requirement`"),
+    ("event e; {edge e}", "neither controllable nor", "declare `e` as"),
+    ("{disc int x;}", "an int without range", "int[lowest..highest]"),
+]
+
+
+def _outside(statement: str) -> str:
+    """A specification with a statement, its plant made of what stands in braces."""
+    before, inner, after = re.fullmatch(r"([^{]*)\{(.*)\}([^}]*)", statement).groups()  # type: ignore[union-attr]
+    edge = inner[inner.index("edge ") :] if "edge " in inner else "edge c"
+    location = inner if inner.startswith("location") else "location a:"
+    declared = "" if inner.startswith(("location", "edge")) else inner.removesuffix(edge)
+    return f"controllable c;\n{before} plant p: {declared} {location} initial; marked; {edge}; end {after}"
+
+
+@pytest.mark.parametrize(("statement", "name", "mend"), OUTSIDE)
+def test_what_is_outside_is_named_with_what_takes_it_out(statement: str, name: str, mend: str) -> None:
+    text = _outside(statement)
+    found = [one for one in reading(main=text).findings if name in one.message]
+    assert found, [one.message for one in reading(main=text).findings]
+    assert found[0].span.line == 2
+    assert mend in (found[0].hint or "")
+    assert not any(one.rule == "syntax" for one in reading(main=text).findings)
 
 
 def test_two_edges_of_a_controllable_event_exclude_each_other() -> None:
