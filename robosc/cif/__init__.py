@@ -3,7 +3,7 @@
     reading = read("model.cif")
 
 `parsing` makes the objects of the grammar (grammar/cif.tx) of a text; `scopes` says what its names stand for, and makes
-the instances of definitions; `values`, `expressions` and `types` read expressions; `to_sct` makes the sct model.
+the instances of definitions; `values` and `expressions` read expressions; `to_sct` makes the sct model.
 """
 
 from __future__ import annotations

@@ -6,9 +6,9 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robosc.cif.faults import CifFaultError, construct
-from robosc.cif.types import BOOLEAN, FOREIGN, OPERATORS, Type, bounded, combined, joined, shown
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
+from robosc.semantics.cif_types import BOOLEAN, FOREIGN, OPERATORS, Type, bounded, combined, joined, shown
 from robosc.semantics.walks import copied, parts
 
 if TYPE_CHECKING:

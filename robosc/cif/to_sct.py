@@ -24,11 +24,11 @@ from robosc.cif.faults import (
     text_of,
 )
 from robosc.cif.scopes import Declared, Scope, Specification, plain
-from robosc.cif.types import Type, contains, overlap, shown
 from robosc.cif.values import Values, constant_value, literal
 from robosc.language.explaining import did_you_mean
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
+from robosc.semantics.cif_types import Type, contains, overlap, shown
 from robosc.semantics.domains import domain
 from robosc.semantics.edges import edges_by_event
 from robosc.semantics.naming import Names

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 from robosc.cif.expressions import ExpressionReader, Typed, named
 from robosc.cif.faults import CHANNELS, CifFaultError, construct
 from robosc.cif.scopes import Argument, Declared, Scope, Specification, plain
-from robosc.cif.types import BOOLEAN, LARGEST, Type, contains, shown
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
+from robosc.semantics.cif_types import BOOLEAN, LARGEST, Type, contains, shown
 from robosc.semantics.evaluation import evaluate
 from robosc.semantics.printing import conjunction
 from robosc.semantics.walks import copied, parts

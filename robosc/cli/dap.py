@@ -12,7 +12,8 @@ from robosc.cli.options import Paths, synthesizer
 from robosc.cli.parameters import set_parameters
 from robosc.cli.reading import read_models, supervise_models
 from robosc.cli.report import Report
-from robosc.debugger import Adapter, LaunchError, serve_port, serve_stdio
+from robosc.debugger import Adapter, serve_port, serve_stdio
+from robosc.simulation.played import PlayError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -73,11 +74,11 @@ def _load(wanted: Wanted) -> tuple[Models, Sequence[Diagnostic], Mapping[str, st
             set_parameters(models.rosgraph, given)
             supervise_models(models, report)
     except click.ClickException as error:
-        raise LaunchError(error.format_message(), report.findings, report.texts) from None
+        raise PlayError(error.format_message(), report.findings, report.texts) from None
     except click.exceptions.Exit:
         errors = [finding for finding in report.findings if finding.severity.value == "error"]
         first = errors[0] if errors else report.findings[0]
         message = f"{first.file}:{first.span.line}:{first.span.column}: {first.message}"
-        raise LaunchError(message, report.findings, report.texts) from None
+        raise PlayError(message, report.findings, report.texts) from None
     assert models is not None
     return models, report.findings, report.texts

@@ -6,7 +6,7 @@ it does, `views` what is seen there.
 """
 
 from robosc.debugger.adapter import Adapter
-from robosc.debugger.launching import LaunchError, Loader, Wanted
+from robosc.debugger.launching import Loader, Wanted
 from robosc.debugger.protocol import Connection, serve_port, serve_stdio
 
-__all__ = ["Adapter", "Connection", "LaunchError", "Loader", "Wanted", "serve_port", "serve_stdio"]
+__all__ = ["Adapter", "Connection", "Loader", "Wanted", "serve_port", "serve_stdio"]

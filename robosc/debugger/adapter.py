@@ -8,13 +8,14 @@ import traceback
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from robosc.analysis.explain import NamingError, Renderer, event_named
-from robosc.debugger.launching import Launch, LaunchError, RequestError
+from robosc.debugger.launching import Launch, RequestError
 from robosc.debugger.stops import FILTERS, Stop, Stops
 from robosc.debugger.views import Views, at, shown
 from robosc.diagnostics import as_text
 from robosc.files.json_reading import JsonError, json_value
 from robosc.semantics.roles import event_name
 from robosc.simulation import DataError, Simulation, read_script
+from robosc.simulation.played import PlayError
 from robosc.simulation.replay import Replay
 from robosc.simulation.script import WAIT
 
@@ -106,9 +107,9 @@ class Adapter:
         try:
             body, after = await self._answer(command, {} if arguments is None else arguments)
             self._connection.send("response", **answer, success=True, **({} if body is None else {"body": body}))
-        except (RequestError, LaunchError, NamingError, DataError, OSError, MemoryError) as error:
+        except (RequestError, PlayError, NamingError, DataError, OSError, MemoryError) as error:
             self._refuse(answer, _said(error))
-            if isinstance(error, LaunchError):
+            if isinstance(error, PlayError) and error.findings:
                 self._output(as_text.render(error.findings, error.texts), "stderr")
             if command == "launch":
                 self._event("terminated")

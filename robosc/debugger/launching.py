@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from robosc.simulation.played import PlayError, counterexample_steps, script_steps
+from robosc.simulation.played import counterexample_steps, script_steps
 
 if TYPE_CHECKING:
     from robosc.diagnostics import Diagnostic
@@ -34,17 +34,6 @@ class RequestError(Exception):
     """A request that can't be answered: the message says why, and how to ask."""
 
 
-class LaunchError(Exception):
-    """A model that can't be run: with what was found wrong with it, and the texts of its files."""
-
-    def __init__(
-        self, message: str, findings: Sequence[Diagnostic] = (), texts: Mapping[str, str] | None = None
-    ) -> None:
-        super().__init__(message)
-        self.findings = findings
-        self.texts = texts or {}
-
-
 @dataclass(frozen=True)
 class Wanted:
     """The model that is to be launched, where its libraries and ROS definitions are, values of its parameters."""
@@ -55,7 +44,7 @@ class Wanted:
     parameters: Mapping[str, Any] = field(default_factory=dict)
 
 
-#: Gives a model with its supervisor, and with the findings about it, such as warnings. Raises LaunchError.
+#: Gives a model with its supervisor, and with the findings about it, such as warnings. Raises PlayError.
 Loader = Callable[[Wanted], tuple["Models", "Sequence[Diagnostic]", Mapping[str, str]]]
 
 
@@ -95,16 +84,11 @@ class Launch:
     def steps(self, simulation: Simulation) -> tuple[list[Step] | None, str]:
         """What is played, None for whatever can happen; and what is to be said about it.
 
-        Raises LaunchError, RequestError, and OSError where the script can't be read.
+        Raises PlayError, and OSError where the script can't be read.
         """
-        try:
-            if self.script is not None:
-                return script_steps(simulation, self.script), ""
-            if self.counterexample is not None:
-                wanted = self.counterexample if isinstance(self.counterexample, str) else None
-                return counterexample_steps(simulation, wanted)
-        except PlayError as error:
-            if error.findings:
-                raise LaunchError(str(error), error.findings, error.texts) from None
-            raise RequestError(str(error)) from None
+        if self.script is not None:
+            return script_steps(simulation, self.script), ""
+        if self.counterexample is not None:
+            wanted = self.counterexample if isinstance(self.counterexample, str) else None
+            return counterexample_steps(simulation, wanted)
         return None, ""

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 class PlayError(Exception):
-    """What can't be played: why, with what was found wrong with a script, and its text by its path."""
+    """What can't be played: why, with what was found wrong with a model or a script, and their texts by their paths."""
 
     def __init__(
         self, message: str, findings: Sequence[Diagnostic] = (), texts: Mapping[str, str] | None = None

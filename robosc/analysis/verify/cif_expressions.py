@@ -1,98 +1,18 @@
-"""CIF's expressions as far as generated specifications have them: how they are read, their types, what they mean.
+"""CIF's expressions as far as generated specifications have them: how they are read, and what they mean.
 
-By CIF's language reference and tutorial, and not by what is generated. A type is BOOLEAN, an enumeration, or for
-integers the range of the values that an expression may have.
+By CIF's language reference and tutorial, and not by what is generated.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robosc.metamodel import expression as ex
+from robosc.semantics.cif_types import BOOLEAN, OPERATORS, Type, combined, joined, shown
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
-
-BOOLEAN: Final = "bool"
-#: CIF's integers have 32 bits.
-LARGEST = 2**31 - 1
-Type: TypeAlias = str | range | ex.Enumeration
-
-#: How tightly each operator binds, and what it makes. All comparisons bind alike; an implication is no chain.
-OPERATORS: Mapping[str, tuple[int, type[ex.BinaryExpression]]] = {
-    "=>": (1, ex.Implication),
-    "<=>": (1, ex.Equation),
-    "or": (2, ex.Disjunction),
-    "and": (3, ex.Conjunction),
-    "=": (4, ex.Equation),
-    "!=": (4, ex.Inequation),
-    "<": (4, ex.LessThan),
-    "<=": (4, ex.LessOrEqual),
-    ">": (4, ex.GreaterThan),
-    ">=": (4, ex.GreaterOrEqual),
-    "+": (5, ex.Addition),
-    "-": (5, ex.Subtraction),
-}
-
-
-def shown(kind: Type) -> str:
-    """A type as CIF writes it."""
-    match kind:
-        case range():
-            return f"int[{kind.start}..{kind.stop - 1}]"
-        case ex.Enumeration():
-            return str(kind.name)
-    return str(kind)
-
-
-def compatible(one: Type, other: Type) -> bool:
-    """Whether values of the types can be compared, and be alternatives of each other: ranges don't matter for that."""
-    if isinstance(one, ex.Enumeration) and isinstance(other, ex.Enumeration):
-        return [literal.name for literal in one.literals] == [literal.name for literal in other.literals]
-    return isinstance(one, range) and isinstance(other, range) if isinstance(one, range) else one == other
-
-
-def combined(operator: str, left: Type, right: Type) -> Type:
-    """The type of a binary expression. Raises TypeError, saying why there is none."""
-    if operator in ("=>", "<=>", "or", "and"):
-        fits = left == right == BOOLEAN
-    elif operator in ("=", "!="):
-        fits = compatible(left, right)
-    else:
-        fits = isinstance(left, range) and isinstance(right, range)
-    if not fits:
-        raise TypeError(f"'{operator}' does not apply to {shown(left)} and {shown(right)}")
-    if not isinstance(left, range) or not isinstance(right, range) or operator not in ("+", "-"):
-        return BOOLEAN
-    low, high = right.start, right.stop - 1
-    made = range(left.start + low, left.stop + high) if operator == "+" else range(left.start - high, left.stop - low)
-    if made.start < -LARGEST - 1 or made.stop - 1 > LARGEST:
-        raise TypeError(f"'{operator}' of {shown(left)} and {shown(right)} could overflow")
-    return made
-
-
-def joined(one: Type, other: Type) -> Type:
-    """The type of something that is one or the other. Raises TypeError where they are not compatible."""
-    if not compatible(one, other):
-        raise TypeError(f"the alternatives are {shown(one)} and {shown(other)}")
-    if isinstance(one, range) and isinstance(other, range):
-        return range(min(one.start, other.start), max(one.stop, other.stop))
-    return one
-
-
-def overlap(variable: Type, value: Type) -> bool:
-    """Whether a variable can be assigned some of the values."""
-    if isinstance(variable, range) and isinstance(value, range):
-        return variable.start < value.stop and value.start < variable.stop
-    return compatible(variable, value)
-
-
-def contains(variable: Type, value: Type) -> bool:
-    """Whether a variable can have all of the values."""
-    if isinstance(variable, range) and isinstance(value, range):
-        return variable.start <= value.start and value.stop <= variable.stop
-    return compatible(variable, value)
+    from collections.abc import Callable, Iterator
 
 
 class Typed(NamedTuple):
@@ -183,7 +103,7 @@ class ExpressionReader:
             if top.word == "not":
                 self._open.pop()
                 operand = self._done.pop()
-                self._boolean(operand._replace(position=top.position), "'not' does not apply to {}")
+                self._boolean(operand._replace(position=top.position), "`not` does not apply to {}")
                 self._done.append(Typed(top.position, ex.Negation(operand=operand.expression), BOOLEAN))
             elif top.word in OPERATORS and OPERATORS[top.word][0] >= max(level, 1 + (level == 1)):
                 self._open.pop()

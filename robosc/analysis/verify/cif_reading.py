@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import textx
 
-from robosc.analysis.verify import cif_expressions as types
+from robosc.analysis.verify.cif_expressions import ExpressionError, ExpressionReader, Typed
 from robosc.files.resources import locate
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
+from robosc.semantics import cif_types as types
 from robosc.semantics.walks import copied
 
 if TYPE_CHECKING:
@@ -318,19 +319,19 @@ class _Reading:
     ) -> tuple[ex.Expression, types.Type]:
         """An expression, read in an automaton or outside of all, and its type; constant, or all that is assigned."""
 
-        def value_of(operand: Any) -> types.Typed:
+        def value_of(operand: Any) -> Typed:
             position = operand._tx_position  # noqa: SLF001
             match type(operand).__name__:
                 case "Truth":
-                    return types.Typed(position, ex.BooleanLiteral(value=operand.value == "true"), types.BOOLEAN)
+                    return Typed(position, ex.BooleanLiteral(value=operand.value == "true"), types.BOOLEAN)
                 case "Literal":
                     number = self._number(operand.value, operand)
-                    return types.Typed(position, ex.IntegerLiteral(value=number), range(number, number + 1))
-            return types.Typed(position, *self._reference(operand, automaton, constant=constant))
+                    return Typed(position, ex.IntegerLiteral(value=number), range(number, number + 1))
+            return Typed(position, *self._reference(operand, automaton, constant=constant))
 
         try:
-            _, made, kind = types.ExpressionReader(read, value_of, difference=assigned).result
-        except types.ExpressionError as fault:
+            _, made, kind = ExpressionReader(read, value_of, difference=assigned).result
+        except ExpressionError as fault:
             raise CifError(f"{_place(self._text, fault.position)}: {fault}") from None
         return made, kind
 

@@ -1,4 +1,9 @@
-"""CIF's types, as far as synthesis takes them: BOOLEAN, an enumeration, or for integers the range of their values."""
+"""CIF's operators and types, as far as synthesis takes them, by CIF's language reference.
+
+A type is BOOLEAN, an enumeration, or for integers the range of the values that an expression may have. Both readers of
+CIF stand on this, that of specifications and that of what is generated; the generator does not, so that what it takes
+CIF to mean is checked.
+"""
 
 from __future__ import annotations
 
