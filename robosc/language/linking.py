@@ -44,6 +44,8 @@ _FUNCTION = (
     "`function half(d: double): double = d / 2`"
 )
 OWN_MEMBERS = "a library's component speaks of its own members only"
+#: Of a condition or function beside the components of a library.
+_ANY_NUMBER = "a robot may have a library's component several times or not at all: write this in the component"
 
 
 def link(file: File, interfaces: RosTypes, resolved: Resolved) -> list[Diagnostic]:
@@ -286,8 +288,10 @@ class Linker:
 
     def components(self, element: ex.Located) -> Names:
         """The components that can be mentioned where an element stands: in a library each mentions itself only."""
+        if not self._is_library:
+            return self.scope.components
         own = self.around(element, rsc.Component)
-        return {own.name: own} if own is not None and self._is_library else self.scope.components
+        return {} if own is None else {own.name: own}
 
     def _member(self, members: Names, name: Name, component: rsc.Component, declared: Declared) -> Any:
         found = members.get(name.text)
@@ -451,7 +455,7 @@ class Linker:
         if self._file.may_declare(name.text, *own_text, imported=False):
             return
         if qualifies:
-            hint = OWN_MEMBERS if name.text in self.scope.components else None
+            hint = (_ANY_NUMBER if own is None else OWN_MEMBERS) if name.text in self.scope.components else None
             self._missing(name, "there is no component or variable", [*components, *members], hint)
         elif not self._file.may_declare(name.text, Declared.ENUM_VALUE, Declared.NAMED):
             named = self.scope.usable(rsc.NamedExpression)

@@ -78,7 +78,6 @@ LIBRARY = """library {0} {{
   {1}
   constant most: integer = 5
   constant least: integer = 2
-  condition full = Tank.level > most
   function below(n: integer): boolean = n < least
   component Tank {{
     outgoing message level with identifier: "/level", type: integer(0..9)
@@ -133,6 +132,20 @@ def test_names_of_a_directly_imported_library(tmp_path: Path, condition: str, le
         held += [level] if engine.enabled("message_go.c_trigger") else []
         assert engine.enabled("message_fill.c_trigger") == (level < 7)
     assert held == list(levels)
+
+
+@pytest.mark.parametrize(
+    "declared", ["condition c = Tank.level > 1", "function f(n: integer): boolean = Tank.level > n"]
+)
+def test_a_library_speaks_of_its_components_in_them(tmp_path: Path, declared: str) -> None:
+    """Which one would a condition beside them mean? A robot may have a component several times, or not at all."""
+    text = LIBRARY.format("Tanks", declared)
+    robot = "robot R { component Tank from Tanks import Tank component Other from Tanks import Tank }"
+    (finding,) = found(tmp_path, Tanks=text, robot=robot)
+    assert (finding.rule, finding.span.line) == ("unresolved-reference", 2)
+    assert finding.message == "there is no component or variable `Tank`"
+    assert finding.hint is not None
+    assert finding.hint.endswith("write this in the component")
 
 
 def test_the_robots_own_name_comes_before_the_librarys_and_no_other_librarys_is_there(tmp_path: Path) -> None:
@@ -311,6 +324,25 @@ def test_quantifiers_range_over_components_of_libraries(tmp_path: Path) -> None:
         engine.perform(f"message_{finger}_bent.u_response", {"i_response": True})
         seen.append(engine.enabled("message_go.c_trigger"))
     assert seen == [False, True, False]
+
+
+@pytest.mark.parametrize("condition", ["at_ease", "all Joint: Joint.free"])
+def test_a_condition_of_a_library_ranges_over_instances_of_its_template(tmp_path: Path, condition: str) -> None:
+    """One of a directly imported library may be named; in a library: its own instances."""
+    robot = f"""robot R {{
+      component Thumb from Grippers import Thumb
+      component Index from Grippers import Joint("/index")
+      component Base {{ incoming message go with type: none }}
+      requirement go needs {condition}
+    }}"""
+    assert found(tmp_path, Grippers=GRIPPERS, robot=robot) == []
+    for joint in ("Thumb", "Index"):
+        model = robosc.to_sct(robosc.load(tmp_path / "robot.rscd"))
+        robosc.synthesize(model)
+        engine = Engine(model)
+        assert engine.enabled("message_go.c_trigger")
+        engine.perform(f"message_{joint}_locked.u_response")
+        assert not engine.enabled("message_go.c_trigger")
 
 
 # Transitions
