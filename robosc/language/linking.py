@@ -560,9 +560,14 @@ class Linker:
         return None
 
     def around(self, element: ex.Located, kind: type[_Element]) -> _Element | None:
-        """The component or enum that contains the element, if it is of that kind."""
+        """The component or enum that contains the element, if it is of that kind.
+
+        What a component that is made elsewhere is given, arguments and topics, stands beside it.
+        """
         definition = self._outermost(element)
-        return definition if isinstance(definition, kind) else None
+        made = isinstance(definition, rsc.Component) and not isinstance(definition.type, rsc.LocalComponent)
+        given = made and isinstance(element, ex.Expression)
+        return definition if isinstance(definition, kind) and not given else None
 
     def _outermost(self, element: ex.Located) -> ex.Located | None:
         """The definition of the robot or library that contains an element."""

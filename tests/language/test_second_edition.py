@@ -535,6 +535,29 @@ def test_where_send_change_may_stand(declared: str, found: list[str]) -> None:
 # Components made several times
 
 
+def test_arguments_are_read_where_they_stand() -> None:
+    """A bare name is one of the own component: no argument is within the component that it is given to."""
+    text = """robot R {
+      constant here: string = "/robot"
+      constant most: integer = 4
+      component Bumper(ns: string, most: integer(0..9)) {
+        outgoing message hit with identifier: ns + "/hit", type: none
+        incoming message lamp with identifier: ns + "/lamp", type: none
+        constant least: integer = 1
+        requirement lamp needs left > least
+        behaviour {
+          variable left: integer(0..most) = most
+          initial marked state here { on response from hit do left := left - least }
+        }
+      }
+      component Left is Bumper(here + "/left", most: most + 1)
+    }"""
+    model = supervised(text)
+    assert [plant.topic for plant in model.plants if plant.topic] == ["/robot/left/hit", "/robot/left/lamp"]
+    assert [variable.type.maximum for plant in model.plants for variable in plant.variables] == [5]
+    assert errors(text.replace("most + 1", "least")) == [("unresolved-reference", 14)]
+
+
 @pytest.mark.parametrize(("topic", "lines"), [('ns + "/told"', []), ('"/told"', [3])])
 def test_instances_on_one_topic(topic: str, lines: list[int]) -> None:
     """Two `outgoing` on one topic draw `unique-topic` as ever."""
