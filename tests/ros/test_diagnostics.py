@@ -8,6 +8,7 @@ import robosc
 from robosc.engine import Engine
 from robosc.metamodel import sct
 from robosc.runtime.core.json_text import json_text
+from robosc.semantics.component_parts import components
 from robosc.semantics.edges import edges_from, edges_of
 from robosc.semantics.roles import event_name
 from robosc.simulation.tracking import Tracker
@@ -22,13 +23,16 @@ if TYPE_CHECKING:
 
 __all__ = ["trial"]
 
+#: A time in a log and one in a message may be rounded differently.
+CLOCKS = 0.001
+
 
 class Witness:
     """Follows a robot by the reports of its node, and knows what each status says then."""
 
     def __init__(self, path: Path) -> None:
         robot = robosc.load(path)
-        self.model = robosc.to_sct(robot)
+        self.model, self.graph = robosc.to_sct(robot), robosc.to_rosgraph(robot)
         robosc.synthesize(self.model)
         self.engine = Engine(self.model)
         self.tracker = Tracker(self.engine)
@@ -70,10 +74,12 @@ def compare(reports: list[dict[str, Any]], path: Path, node: str) -> list[dict[s
     """Holds each report on `/diagnostics` against the last one on `~/state` before it; returns all their statuses."""
     witness, statuses, expected = Witness(path), [], None
     told = [report for report in reports if report["topic"] != "definition"]
+    names = [f"{node}: {parts.name}" for parts in components(witness.graph)]
     for report in sorted(told, key=lambda one: (one["data"]["time"], one["topic"] == "diagnostics")):
         if report["topic"] == "state":
             expected = witness.statuses(report["data"])
         elif expected is not None:
+            assert [status["name"] for status in report["data"]["status"]] == names
             seen = {status["name"]: dict(status["values"]) for status in report["data"]["status"]}
             for name, values in expected.items():
                 found = seen.pop(f"{node}: {name}", {})
@@ -102,9 +108,21 @@ def test_a_controller_says_what_its_engine_knows(drive: Drive) -> None:
 
 
 def test_a_layer_says_what_its_engine_knows_and_what_it_blocked(trial: Trial) -> None:
-    statuses = compare(trial.reports, USHER / "usher.rscd", "usher_layer")
-    blocked = {entry["event"] for entry in trial.log if entry["direction"] == "blocked"}
-    faults = {fault for status in statuses for fault in status["message"].split("; ")[1:]}
-    assert faults
-    names = {event.partition(".")[0].partition("_")[2] for event in blocked}
-    assert faults <= {f"{name} was blocked" for name in names}
+    compare(trial.reports, USHER / "usher.rscd", "usher_layer")
+    blocked = [(entry["time"], entry["event"]) for entry in trial.log if entry["direction"] == "blocked"]
+    told, before = set(), 0.0
+    for report in sorted(
+        (one["data"] for one in trial.reports if one["topic"] == "diagnostics"), key=lambda one: one["time"]
+    ):
+        # What was blocked since the report before: nothing else.
+        since = {
+            f"{name.partition('.')[0].partition('_')[2]} was blocked"
+            for time, name in blocked
+            if before - CLOCKS <= time <= report["time"] + CLOCKS
+        }
+        faults = {fault for status in report["status"] for fault in status["message"].split("; ")[1:]}
+        assert faults <= since
+        told |= faults
+        before = report["time"]
+    # Each of these was blocked in several steps, with reports in between.
+    assert told == {"speed was blocked", "light was blocked", "go_to was blocked"}

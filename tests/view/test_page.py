@@ -228,10 +228,7 @@ def hostile(value: Any) -> Any:
     """A description whose every text would be markup."""
     match value:
         case dict():
-            return {
-                name: hostile(one) if name not in ("kind", "direction", "event", "key", "owner") else one
-                for name, one in value.items()
-            }
+            return {name: hostile(one) if name not in KEYS else one for name, one in value.items()}
         case list():
             return [hostile(one) for one in value]
         case str():
