@@ -9,6 +9,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from random import Random
 from typing import TYPE_CHECKING, Any
+from urllib.error import HTTPError
+from urllib.request import urlopen
 
 import pytest
 
@@ -44,7 +46,7 @@ def served(*arguments: str | Path) -> Iterator[str]:
         try:
             assert server.stdout is not None
             address = server.stdout.readline().strip()
-            assert address.startswith("http://127.0.0.1:")
+            assert address.startswith("http://127.0.0.")
             yield address
         finally:
             server.terminate()
@@ -285,19 +287,74 @@ def test_it_is_accessible(chromium: Any, scheme: str) -> None:
         assert page.get_by_role("button", name="the present state").count() == 3
 
 
+def tab_to(page: Any, selector: str) -> None:
+    """Goes to an element by the Tab key, from where the focus is."""
+    for _ in range(200):
+        page.keyboard.press("Tab")
+        if page.evaluate("(selector) => document.activeElement.matches(selector)", selector):
+            return
+    pytest.fail(f"no Tab leads to {selector}")
+
+
 def test_by_keyboard_alone(chromium: Any) -> None:
+    """Each part of the page in turn, without a mouse and without a focus that a program sets."""
     with served(MODEL) as address, opened(chromium, address) as page:
-        page.locator('button[data-event="message_correction.u_response"]').focus()
+        tab_to(page, "#search")
+        page.keyboard.type("blocked")
+        assert page.locator(".card:visible .name").all_text_contents() == ["Lidar"]
+        for _ in "blocked":
+            page.keyboard.press("Backspace")
+        tab_to(page, "#fold")
+        page.keyboard.press("Enter")
+        assert page.locator(".card[open]").count() == 0
+        tab_to(page, ".card:first-child summary")
+        page.keyboard.press("Enter")
+        assert page.locator(".card[open] .name").all_text_contents() == ["LineDetector"]
+        tab_to(page, '.card svg [role="button"][aria-label^="searching"]')
+        page.keyboard.press("Enter")
+        assert "state searching" in page.locator(".line.here").first.text_content()
+        page.keyboard.press("Shift+Tab")
+        tab_to(page, 'svg > .transition[aria-label="on response from no_line"]')
+        page.keyboard.press("Enter")
+        assert "on response from no_line goto searching" in page.locator(".line.here").text_content()
+        tab_to(page, '#commands > li[data-event="message_move.c_trigger"] .links button:last-child')
+        page.keyboard.press("Enter")
+        page.locator('#commands > li[data-event="message_move.c_trigger"]').get_by_text("shortest way").wait_for()
+        tab_to(page, 'button[data-event="message_correction.u_response"]')
+        page.keyboard.press("Tab")
+        page.keyboard.press("Control+A")
+        page.keyboard.type("1.5")
+        page.keyboard.press("Shift+Tab")
         page.keyboard.press("Enter")
         at(page, 1)
-        page.locator("#moment").focus()
+        assert shown(page)["variables"]["LineDetector.offset"] == "1.5"
+        tab_to(page, "#moment")
         page.keyboard.press("ArrowLeft")
         at(page, 0)
         page.keyboard.press("ArrowRight")
         at(page, 1)
-        page.locator(".state [role=button]").first.focus()
+        tab_to(page, "#happened")
+        tab_to(page, "#happened button")
         page.keyboard.press("Enter")
-        assert "state searching" in page.locator(".line.here").first.text_content()
+        at(page, 0)
+
+
+def test_another_address_needs_the_token(chromium: Any) -> None:
+    with served(MODEL, "--address", "127.0.0.2") as address:
+        plain, token = address.split("?token=")
+        assert len(token) > 20
+        with opened(chromium, address) as page:
+            assert shown(page) == truth(simulation_of(MODEL), 0)
+            assert token not in page.url
+        for asked in (
+            plain,
+            f"{plain}description",
+            f"{plain}moments",
+            f"{plain}page.js",
+            f"{plain}?token={token[:-1]}",
+        ):
+            with pytest.raises(HTTPError, match="403"):
+                urlopen(asked, timeout=60)  # noqa: S310
 
 
 def test_finding_folding_and_zooming(chromium: Any) -> None:

@@ -8,6 +8,7 @@ import { stands } from "./text";
 
 /** Above so many lines a transition says how many more there are. */
 const MOST_LINES = 3;
+const EVERYWHERE = "in every state";
 
 interface Card {
   element: HTMLDetailsElement;
@@ -131,7 +132,7 @@ export class RobotView {
       for (const number of line.transitions) picture.transitions.set(number, group);
       const first = automaton.transitions[line.transitions[0]!]!;
       group.append(svg("title", {}, line.transitions.map((number) => automaton.transitions[number]!.whole).join("\n")));
-      group.addEventListener("click", () => this.goTo(first.place));
+      this.leads(group, line.texts.join(", "), first.place);
       image.append(group);
     }
     automaton.states.forEach((state, number) => {
@@ -147,12 +148,7 @@ export class RobotView {
         group.append(svg("path", { d: `M${box.x - 16} ${y}H${box.x - 2}`, class: "line", "marker-end": "url(#tip)" }));
       }
       named.append(svg("text", { x: box.x + 12, y: box.y + LINE + 2, class: "title" }, state.name));
-      (rows.get(number) ?? []).forEach((row, index) => {
-        const text = svg("text", { x: box.x + 12, y: box.y + (index + 2) * LINE + 2, class: "row" }, row.text);
-        const held = svg("g", { class: "transition" }, text);
-        for (const transition of row.transitions) picture.transitions.set(transition, held);
-        group.append(held);
-      });
+      (rows.get(number) ?? []).forEach((row, index) => group.append(this.row(picture, row, box, index + 2)));
       pressed(named, () => this.goTo(state.place));
       group.addEventListener("click", () => this.goTo(state.place));
       picture.states.push(group);
@@ -160,17 +156,29 @@ export class RobotView {
     });
     const everywhere = drawing.boxes.get("every");
     if (everywhere !== undefined) {
-      const texts = boxes.find((box) => box.id === "every")!.texts;
       const group = svg("g", { class: "every" }, svg("rect", { ...plain(everywhere), rx: 2, class: "box" }));
-      texts.forEach((text, index) =>
-        group.append(svg("text", { x: everywhere.x + 12, y: everywhere.y + (index + 1) * LINE + 2, class: "row" }, text)),
-      );
-      for (const transition of (rows.get(-1) ?? []).flatMap((row) => row.transitions))
-        picture.transitions.set(transition, group);
+      group.append(svg("text", { x: everywhere.x + 12, y: everywhere.y + LINE + 2, class: "row" }, EVERYWHERE));
+      (rows.get(-1) ?? []).forEach((row, index) => group.append(this.row(picture, row, everywhere, index + 2)));
       image.prepend(group);
     }
     drawn.append(image);
     if (picture.lit >= 0) this.light(picture, picture.lit, true);
+  }
+
+  /** A transition that stays, as a line of the text in a box. */
+  private row(picture: Picture, row: Row, box: { x: number; y: number }, line: number): SVGGElement {
+    const text = svg("text", { x: box.x + 12, y: box.y + line * LINE + 2, class: "row" }, row.text);
+    const group = svg("g", { class: "transition" }, text);
+    for (const number of row.transitions) picture.transitions.set(number, group);
+    this.leads(group, row.text, picture.automaton.transitions[row.transitions[0]!]!.place);
+    return group;
+  }
+
+  /** Lets what is drawn lead to a place in the text. */
+  private leads(element: SVGGElement, name: string, place: Place | null): void {
+    for (const [attribute, value] of [["tabindex", "0"], ["role", "button"], ["aria-label", name]] as const)
+      element.setAttribute(attribute, value);
+    pressed(element, () => this.goTo(place));
   }
 
   private line(drawing: Drawing, line: Line): SVGGElement {
@@ -346,7 +354,7 @@ function contents(automaton: Automaton): { boxes: Box[]; lines: Joined[]; rows: 
     if (more > 0) line.texts.splice(MOST_LINES, more, `… ${more} more`);
   }
   if (rows.has(-1) || lines.some((line) => line.source === "every"))
-    boxes.push({ id: "every", texts: ["in every state", ...(rows.get(-1) ?? []).map((row) => row.text)] });
+    boxes.push({ id: "every", texts: [EVERYWHERE, ...(rows.get(-1) ?? []).map((row) => row.text)] });
   return { boxes, lines, rows };
 }
 
