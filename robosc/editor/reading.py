@@ -188,7 +188,7 @@ def highlights(_: Snapshot, analysis: Analysis, params: types.DocumentHighlightP
 
 def formatting(_: Snapshot, analysis: Analysis, params: types.DocumentFormattingParams) -> list[types.TextEdit]:
     """What lays a text out; nothing where it has syntax errors."""
-    return _edits(analysis.text, 0, len(analysis.text.content))
+    return _edits(analysis, 0, len(analysis.text.content))
 
 
 def range_formatting(
@@ -196,8 +196,11 @@ def range_formatting(
 ) -> list[types.TextEdit]:
     """The same for what is in a range."""
     text = analysis.text
-    return _edits(text, to_offset(text, params.range.start), to_offset(text, params.range.end))
+    return _edits(analysis, to_offset(text, params.range.start), to_offset(text, params.range.end))
 
 
-def _edits(text: Text, start: int, end: int) -> list[types.TextEdit]:
+def _edits(analysis: Analysis, start: int, end: int) -> list[types.TextEdit]:
+    text = analysis.text
+    if analysis.file.findings:  # It has syntax errors, as reading it has said already.
+        return []
     return [types.TextEdit(to_range(text, first, last), new) for first, last, new in format_edits(text, start, end)]

@@ -82,6 +82,15 @@ class _Protocol(LanguageServerProtocol):
             params.capabilities.general.position_encodings = None
         return (yield from super().lsp_initialize(params))
 
+    def _execute_handler(self, msg_id: Any, handler: Any, callback: Any, *rest: Any, **options: Any) -> None:
+        """Forgets what has been handled: pygls 2.1 keeps the future of each notification for as long as it runs."""
+
+        def done(future: Any) -> None:
+            self._request_futures.pop(msg_id, None)
+            callback(future)
+
+        super()._execute_handler(msg_id, handler, done, *rest, **options)
+
 
 class Server(LanguageServer):
     """A language server for one editor."""

@@ -78,6 +78,7 @@ def following() -> Mapping[str, frozenset[str]]:
     return {word: frozenset(others) for word, others in found.items()}
 
 
+@cache
 def words_of(rule: str) -> frozenset[str]:
     """All words and symbols that a text by a rule can have, and the rules for other words."""
     return frozenset(_wanted(node) for node in _nodes(rule).values() if isinstance(node, arpeggio.Match))

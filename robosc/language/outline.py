@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from difflib import get_close_matches
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from robosc.language.grammar import first, first_words, following, is_reserved
@@ -38,7 +39,12 @@ class Level:
         """The starter that a token is, or that it is most like; None where it is like none."""
         if token.kind is not Kind.WORD:
             return None
-        return next(iter(get_close_matches(token.text, sorted(self.starters), n=1, cutoff=0.7)), None)
+        return _most_like(token.text, self.starters)
+
+
+@lru_cache(1024)  # The same few words are looked at again with each key.
+def _most_like(word: str, known: frozenset[str]) -> str | None:
+    return next(iter(get_close_matches(word, sorted(known), n=1, cutoff=0.7)), None)
 
 
 PROPERTIES = Level("ObjectProperty", "property")

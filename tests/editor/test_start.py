@@ -1,6 +1,7 @@
 """How the server starts: over a port, and not without its packages."""
 
 import asyncio
+import io
 import os
 import re
 import sys
@@ -11,6 +12,7 @@ from click.testing import CliRunner
 from lsprotocol import types
 
 from robosc.cli import main
+from robosc.editor.server import Server
 from tests.editor.server import COMMAND, LIBRARY, ROBOT, ROOT, Editor, findings, initialize, open_text
 
 
@@ -68,3 +70,24 @@ def test_without_its_packages_it_says_what_to_install(monkeypatch: pytest.Monkey
     assert done.exit_code == 2
     assert done.output.startswith("Error: pygls")
     assert "pip install 'robosc[editor]'" in done.output
+
+
+@pytest.mark.asyncio
+async def test_nothing_is_kept_of_what_was_handled() -> None:
+    """Else the server grows with each key."""
+    server, written = Server("0"), io.BytesIO()
+    server.protocol.set_writer(written)
+    options = {"pause": 0}
+    started = types.InitializeParams(types.ClientCapabilities(), initialization_options=options)
+    server.protocol.handle_message(types.InitializeRequest(1, started))
+    uri = "file:///nowhere/robot.rscd"
+    opened = types.DidOpenTextDocumentParams(types.TextDocumentItem(uri, "robosc", 1, ROBOT))
+    server.protocol.handle_message(types.DidOpenTextDocumentNotification(opened))
+    for version in range(2, 12):
+        change = types.DidChangeTextDocumentParams(
+            types.VersionedTextDocumentIdentifier(version, uri), [types.TextDocumentContentChangeWholeDocument(ROBOT)]
+        )
+        server.protocol.handle_message(types.DidChangeTextDocumentNotification(change))
+    assert b'"id": 1' in written.getvalue()
+    assert server.protocol._request_futures == {}  # pygls tells it nowhere else
+    server.shutdown()
