@@ -1,0 +1,58 @@
+"""Asks the language server everything about every example, cut off at every position: no answer may fail.
+
+    python benchmarks/cut_off.py [--every 1] [--processes 2] [EXAMPLE ...]
+
+Each text is cut off behind each of its characters, as somebody leaves it who types it, and each kind of request is
+answered there, as tests/editor/test_robustness.py does at some of them. Prints a row for each example, and ends with
+the first failure. All of them take an hour and a half of one processor. Needs `pip install 'robosc[test]'`.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+from concurrent.futures import ProcessPoolExecutor
+from functools import partial
+from pathlib import Path
+
+ROOT = Path(__file__).parent.parent
+sys.path.insert(0, str(ROOT))
+
+from tests.editor.test_robustness import EXAMPLES, ask_everything, project  # noqa: E402
+
+
+def cut_off(every: int, path: Path) -> tuple[int, float]:
+    """How many positions of a text were tried, and the seconds of a processor that it took."""
+    text = path.read_text(encoding="utf-8")
+    made, began = project(text), time.process_time()
+    ends = range(0, len(text) + 1, every)
+    for end in ends:
+        try:
+            ask_everything(made, text[:end], end)
+        except Exception as error:
+            error.add_note(f"{path.relative_to(ROOT)}, cut off behind {end} characters")
+            raise
+    return len(ends), time.process_time() - began
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n", 1)[0])
+    parser.add_argument("examples", nargs="*", type=Path)
+    parser.add_argument("--every", type=int, default=1)
+    parser.add_argument("--processes", type=int, default=2)
+    options = parser.parse_args()
+    # Copies of an example are one text.
+    texts = {path.read_bytes(): path.resolve() for path in options.examples or EXAMPLES}
+    examples = sorted(texts.values(), key=lambda path: path.stat().st_size)
+    total, spent = 0, 0.0
+    with ProcessPoolExecutor(options.processes) as processes:
+        found = processes.map(partial(cut_off, options.every), examples)
+        for path, (positions, seconds) in zip(examples, found, strict=True):
+            total, spent = total + positions, spent + seconds
+            print(f"{path.stem}: {positions:,} positions, {seconds:,.0f} s", flush=True)
+    print(f"{len(examples)} texts, {total:,} positions, no exception, {spent / 60:,.0f} min of one processor")
+
+
+if __name__ == "__main__":
+    main()
