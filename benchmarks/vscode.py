@@ -5,8 +5,9 @@
 Builds the extension, installs `code-server` into a folder where it is not there yet (600 MB from npm, three minutes),
 installs the extension into it, and opens `editors/vscode/trial`, a robot and a library. Then, each after the other:
 highlighting, a finding that comes and goes with its quick fix, completion, hover, a rename in two files, the layout,
-a session of the debugger that stops at a breakpoint and tells why an event is forbidden, and the commands. Ends with
-the step that did not show what it should. With `--pictures` what docs/editor.md and docs/debugging.md show is taken.
+a session of the debugger that stops at a breakpoint and tells why an event is forbidden, a task, a diagram beside the
+text, an explanation, and the walkthrough. Ends with the step that did not show what it should. With `--pictures` what
+docs/editor.md and docs/debugging.md show is taken.
 
 With `--set-up` the extension finds no `robosc` first, and installs one where it is asked to; that needs the network.
 
@@ -141,6 +142,11 @@ class Editor:
         self.page.locator(".quick-input-list .monaco-list-row.focused", has_text=shown or text).first.wait_for()
         self.press("Enter")
         self.page.locator(".quick-input-widget").wait_for(state="hidden")
+
+    def choose(self, text: str) -> None:
+        """Takes the row of a list that is open which begins with a text."""
+        self.page.locator(".quick-input-widget input").first.wait_for()
+        self.page.locator(f".quick-input-list .monaco-list-row[aria-label^={json.dumps(text)}]").first.click()
 
     def command(self, title: str) -> None:
         """A command by its title."""
@@ -331,7 +337,74 @@ def debugging(editor: Editor) -> None:
     editor.gone(".debug-call-stack .monaco-list-row")
 
 
-STEPS: tuple[Callable[[Editor], None], ...] = (highlighting, quick_fix, completion, hover, renaming, layout, debugging)
+def tasks(editor: Editor) -> None:
+    """The task that checks the model is offered and run, and what it finds stands among the problems."""
+    path = editor.folder / "cart.rscd"
+    content = path.read_text(encoding="utf-8")
+    editor.go("Load.light", len("Load.ligh"))
+    editor.press("Delete", "Control+s")
+    editor.until(lambda: path.read_text(encoding="utf-8") != content)
+    editor.press("F1")
+    editor.type("Tasks: Run Task")
+    for text in ("Tasks: Run Task", "robosc", "check cart.rscd"):
+        editor.choose(text)
+    editor.command("Problems: Focus on Problems View")
+    # One by the language server, one by the task.
+    expect(editor.page.locator(".markers-panel .monaco-list-row", has_text="did you mean")).to_have_count(
+        1, timeout=_LONGEST
+    )
+    editor.shows(".markers-panel .monaco-list-row", "robosc(unresolved-reference)")
+    editor.picture("vscode-tasks")
+    editor.undo("Load.light\n")
+    editor.press("Control+s")
+    editor.until(lambda: path.read_text(encoding="utf-8") == content)
+    editor.command("View: Toggle Panel Visibility")
+
+
+def diagram(editor: Editor) -> None:
+    """The button of the title bar draws the behaviour of the components beside the text."""
+    editor.page.locator(".editor-actions .action-label[aria-label*='Diagram Beside']").first.click()
+    editor.choose("behaviour")
+    editor.shows(".tab", "cart.rscd: behaviour")
+    inner = editor.page.frame_locator("iframe.webview.ready").frame_locator("iframe#active-frame")
+    picture = inner.locator("img[alt=diagram]")
+    expect(picture).to_be_visible(timeout=_LONGEST)
+    assert picture.evaluate("image => image.complete && image.naturalWidth > 100")
+    editor.picture("vscode-diagram")
+    editor.command("View: Close All Editors")
+
+
+def explaining(editor: Editor) -> None:
+    """The word at the cursor is asked for: why it can't happen, and what would help."""
+    editor.go("drive needs", 2)
+    editor.command("RoboSC: Explain Why an Event Can't Happen")
+    box = editor.shows(".quick-input-widget input")
+    assert box.input_value() == "drive", box.input_value()
+    editor.press("Enter")
+    editor.shows(".output-view .view-line, .panel .view-line", "Passage")
+    editor.picture("vscode-explain")
+    editor.command("View: Toggle Panel Visibility")
+
+
+def walkthrough(editor: Editor) -> None:
+    """The tour opens, its steps have their texts, and the button of one does what it says."""
+    editor.command("Welcome: Open Walkthrough")
+    editor.choose("Ten minutes with a robot")
+    editor.shows(".getting-started-step", "Set up the tool")
+    titles = editor.page.locator(".getting-started-step .step-title").all_text_contents()
+    wanted = ["Set up the tool", "Write a model", "See what synthesis makes of it", "Step through it"]
+    assert [title for title in titles if title in wanted] == wanted, titles
+    editor.page.locator(".getting-started-step", has_text="Write a model").first.click()
+    editor.picture("vscode-walkthrough")
+    editor.page.get_by_role("button", name="New file").click()
+    editor.shows(".tab.active", "Untitled")
+    editor.command("View: Close All Editors")
+
+
+STEPS: tuple[Callable[[Editor], None], ...] = (
+    *(highlighting, quick_fix, completion, hover, renaming, layout, debugging),
+    *(tasks, diagram, explaining, walkthrough),
+)
 
 
 def main() -> None:

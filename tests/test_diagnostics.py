@@ -5,7 +5,18 @@ from typing import Any
 
 import pytest
 
-from robosc.diagnostics import Diagnostic, Edit, Severity, Span, as_json, as_sarif, as_text, has_errors, in_order
+from robosc.diagnostics import (
+    Alternative,
+    Diagnostic,
+    Edit,
+    Severity,
+    Span,
+    as_json,
+    as_sarif,
+    as_text,
+    has_errors,
+    in_order,
+)
 
 
 def finding(
@@ -20,9 +31,10 @@ def finding(
     severity: Severity = Severity.ERROR,
     message: str = "wrong",
     edits: tuple[Edit, ...] = (),
+    alternatives: tuple[Alternative, ...] = (),
 ) -> Diagnostic:
     span = Span(line, column, end_line or line, end_column or column + 1)
-    return Diagnostic(file, span, severity, rule, message, hint, edits)
+    return Diagnostic(file, span, severity, rule, message, hint, edits, alternatives=alternatives)
 
 
 def test_span_contains() -> None:
@@ -150,7 +162,8 @@ def test_summary(errors: int, warnings: int, expected: str) -> None:
 
 
 def test_json() -> None:
-    found = [finding(3, 2, 4, 7, rule="unique-topic", severity=Severity.WARNING)]
+    ways = (Alternative("write `b`", (Edit(Span(3, 2, 3, 2), "b"),)),)
+    found = [finding(3, 2, 4, 7, rule="unique-topic", severity=Severity.WARNING, alternatives=ways)]
     found.append(finding(1, 1, hint="write `0.0`", edits=(Edit(Span(1, 1, 1, 2), "0.0"),)))
     assert json.loads(as_json.render([*found, *found])) == [
         {
@@ -164,6 +177,7 @@ def test_json() -> None:
             "message": "wrong",
             "hint": "write `0.0`",
             "edits": [{"line": 1, "column": 1, "end_line": 1, "end_column": 2, "text": "0.0"}],
+            "alternatives": [],
         },
         {
             "file": "a.rscd",
@@ -176,6 +190,12 @@ def test_json() -> None:
             "message": "wrong",
             "hint": None,
             "edits": [],
+            "alternatives": [
+                {
+                    "title": "write `b`",
+                    "edits": [{"line": 3, "column": 2, "end_line": 3, "end_column": 2, "text": "b"}],
+                }
+            ],
         },
     ]
     assert json.loads(as_json.render([])) == []
@@ -225,6 +245,13 @@ def test_sarif_edits_are_fixes() -> None:
     assert change["artifactLocation"] == {"uri": "a.rscd"}
     region = {"startLine": 1, "startColumn": 1, "endLine": 1, "endColumn": 2}
     assert change["replacements"] == [{"deletedRegion": region, "insertedContent": {"text": "0.0"}}]
+
+
+def test_sarif_has_a_fix_for_each_alternative() -> None:
+    ways = tuple(Alternative(f"write `{text}`", (Edit(Span(1, 1, 1, 2), text),)) for text in "ab")
+    (result,) = run(finding(hint="write `a` or `b`", alternatives=ways))["results"]
+    assert [fix["description"]["text"] for fix in result["fixes"]] == ["write `a`", "write `b`"]
+    assert result["fixes"][1]["artifactChanges"][0]["replacements"][0]["insertedContent"] == {"text": "b"}
 
 
 def test_sarif_describes_the_rules_that_were_broken() -> None:

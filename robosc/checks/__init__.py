@@ -49,7 +49,7 @@ def _findings(base: rsc.Base, skipped: Sequence[Diagnostic], interfaces: RosType
         for finding in rule.check(base, interfaces):
             if not finding.can_be_false(skipped):
                 file, span = place(finding.element)
-                hint, edits, is_choice = finding.said()
+                hint, edits, ways = finding.said()
                 yield Diagnostic(
-                    file, span, rule.severity, rule.id, finding.message, hint, edits, finding.places(), is_choice
+                    file, span, rule.severity, rule.id, finding.message, hint, edits, finding.places(), ways
                 )

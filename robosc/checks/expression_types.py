@@ -7,6 +7,7 @@ from enum import Enum
 from typing import TYPE_CHECKING, Any
 
 from robosc.checks.libraries import instances
+from robosc.checks.mending import Choice, Replacement
 from robosc.checks.rule import Finding
 from robosc.checks.type_repairs import equality_repair, repair
 from robosc.metamodel import expression as ex
@@ -35,7 +36,7 @@ from robosc.semantics.walks import fold, operands
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from robosc.checks.rule import Hint
+    from robosc.checks.mending import Hint
 
 
 class Restriction(Enum):
@@ -222,11 +223,12 @@ class ExpressionCheck:
             if isinstance(segment, rsc.IndexSegment) and not isinstance(before, ArrayType) and before != UNKNOWN:
                 text = f"`[{segment.index}]`" if segment.first is None else "in brackets"
                 message = f"the index {text} must follow an array, found {before}"
-                self.report(segment, message, f"leave {text if segment.first is None else 'it'} out")
+                hint = f"leave {text if segment.first is None else 'it'} out"
+                self.report(segment, message, Replacement(hint, "", segment))
                 return UNKNOWN
         return types[-1]
 
-    def _refusal(self, access: rsc.Access) -> tuple[str, str] | None:
+    def _refusal(self, access: rsc.Access) -> tuple[str, Hint] | None:
         """Why this can't be read here, and the repair; None where it can."""
         item, restriction = access.item, self.place.restriction
         if restriction is Restriction.CONSTANT and (access.value or (item and not isinstance(item, _CONSTANT_ITEMS))):
@@ -250,11 +252,12 @@ class ExpressionCheck:
                 "store it in a variable by `on response from … do variable := value`, and read the variable",
             )
         if isinstance(item, rsc.Component):
-            members = [f"`{written(item.name)}.{written(member)}`" for member in _members(item)]
-            return (
-                f"component `{item.name}` has no value of its own, expected one of its states or variables",
-                f"write {' or '.join(members[:3])}" if members else f"`{item.name}` has neither: leave it out",
-            )
+            members = [f"{written(item.name)}.{written(member)}" for member in _members(item)]
+            message = f"component `{item.name}` has no value of its own, expected one of its states or variables"
+            if not members:
+                return message, f"`{item.name}` has neither: leave it out"
+            ways = tuple(Replacement(f"write `{member}`", member, access) for member in members)
+            return message, Choice(f"write {' or '.join(f'`{member}`' for member in members[:3])}", ways)
         return None
 
 

@@ -15,7 +15,7 @@ from robosc.semantics.instances import Instances, imported, libraries
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
 
-    from robosc.checks.rule import Hint
+    from robosc.checks.mending import Hint
     from robosc.metamodel import expression as ex
     from robosc.semantics.evaluation import Value
     from robosc.semantics.instances import Instance, Resolved

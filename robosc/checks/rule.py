@@ -3,86 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
-from robosc.diagnostics import Edit, Related, Repair, Severity, Span
+from robosc.checks.mending import Choice, file_of
+from robosc.diagnostics import Alternative, Edit, Related, Repair, Severity, Span
 from robosc.metamodel import expression as ex
 from robosc.metamodel.places import place
 from robosc.metamodel.reflection import tree
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Sequence
 
+    from robosc.checks.mending import Hint, Way
     from robosc.diagnostics import Diagnostic
     from robosc.metamodel import robosc as rsc
     from robosc.ros_types import RosTypes
-
-
-class Insertion(NamedTuple):
-    """A hint, and the text that does what it says, to be written before an element, or `behind` it.
-
-    With `is_choice` it is one way of several: a person chooses.
-    """
-
-    hint: str
-    text: str
-    element: ex.Located
-    behind: bool = False
-    is_choice: bool = False
-
-    def edits(self) -> tuple[Edit, ...]:
-        """What does it, in the file of the element."""
-        span = place(self.element)[1]
-        return (Edit(end_of(span) if self.behind else start_of(span), self.text),)
-
-
-class Replacement(NamedTuple):
-    """A hint, and the text that does what it says in place of an element, or of what is before `until` in it."""
-
-    hint: str
-    text: str
-    element: ex.Located
-    is_choice: bool = False
-    until: ex.Located | None = None
-
-    def edits(self) -> tuple[Edit, ...]:
-        """What does it, in the file of the element."""
-        span = place(self.element)[1]
-        if self.until is not None:
-            end = place(self.until)[1]
-            span = Span(span.line, span.column, end.line, end.column)
-        return (Edit(span, self.text),)
-
-
-class Wrapping(NamedTuple):
-    """A hint, and the texts that do what it says, before an element and behind it."""
-
-    hint: str
-    before: str
-    behind: str
-    element: ex.Located
-    is_choice: bool = False
-
-    def edits(self) -> tuple[Edit, ...]:
-        """What does it, in the file of the element."""
-        span = place(self.element)[1]
-        return tuple(
-            Edit(at, text) for at, text in ((start_of(span), self.before), (end_of(span), self.behind)) if text
-        )
-
-
-def start_of(span: Span) -> Span:
-    """The place before a span."""
-    return Span(span.line, span.column, span.line, span.column)
-
-
-def end_of(span: Span) -> Span:
-    """The place behind a span."""
-    return Span(span.end_line, span.end_column, span.end_line, span.end_column)
-
-
-#: How to mend what a rule found: words, the text that takes the place of the element, or what does it elsewhere.
-Hint: TypeAlias = "str | Repair | Insertion | Replacement | Wrapping"
 
 
 @dataclass(frozen=True)
@@ -101,18 +36,26 @@ class Finding:
     relies_on_names: tuple[type[ex.Located], ...] = ()
     related: ex.Located | None = None
 
-    def said(self) -> tuple[str, tuple[Edit, ...], bool]:
-        """The hint, the edits that do what it says in the file of the element, and whether a person is to choose."""
+    def said(self) -> tuple[str, tuple[Edit, ...], tuple[Alternative, ...]]:
+        """The hint, the edits that do what it says in the file of the element, or the ways among which to choose."""
         match self.hint:
             case Repair(said, None) | str(said):
-                return said, (), False
+                return said, (), ()
             case Repair(said, text):
-                return said, (Edit(place(self.element)[1], str(text)),), False
-            case Insertion() | Replacement() | Wrapping() as change:
-                if place(change.element)[0] != place(self.element)[0]:
-                    return change.hint, (), False
-                return change.hint, change.edits(), change.is_choice
-        raise TypeError(self.hint)
+                return said, (Edit(place(self.element)[1], str(text)),), ()
+            case Choice(said, ways):
+                return said, (), self._alternatives(ways)
+        if self.hint.is_choice:
+            return self.hint.hint, (), self._alternatives((self.hint,))
+        return self.hint.hint, self._edits(self.hint), ()
+
+    def _alternatives(self, ways: Iterable[Way]) -> tuple[Alternative, ...]:
+        found = (Alternative(way.hint, self._edits(way)) for way in ways)
+        return tuple(way for way in found if way.edits)
+
+    def _edits(self, way: Way) -> tuple[Edit, ...]:
+        """What a way changes in the file of the element, where it changes nothing else."""
+        return way.edits() if file_of(way) == place(self.element)[0] else ()
 
     def places(self) -> tuple[Related, ...]:
         """Where the other element that it speaks of stands."""

@@ -37,7 +37,7 @@ from robosc.semantics.walks import fold, operands
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
-    from robosc.checks.rule import Hint
+    from robosc.checks.mending import Hint
     from robosc.semantics.cone_of_influence import Assigned, Reading
     from robosc.semantics.inputs import Told
     from robosc.semantics.instances import Instance, Instances, InstanceVariable

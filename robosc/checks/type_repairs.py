@@ -5,10 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.checks.definitions import component_of
-from robosc.checks.rule import Replacement, Wrapping
+from robosc.checks.mending import Choice, Insertion, Replacement, Wrapping
 from robosc.diagnostics import Repair
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
+from robosc.semantics.communication import data_type, event_of
 from robosc.semantics.naming import written
 from robosc.semantics.printing import RoboscPrinter
 from robosc.semantics.typing import (
@@ -26,15 +27,19 @@ from robosc.semantics.typing import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
-    from robosc.checks.rule import Hint
+    from robosc.checks.mending import Hint
 
-_COMPARISON: Mapping[Type, str] = {INTEGER: "> 0", DOUBLE: "> 0.0", STRING: '= "…"'}
-_LITERALS: Mapping[Type, str] = {
-    BOOLEAN: "`true` or `false`",
-    INTEGER: "a whole number such as `0`",
-    DOUBLE: "a number such as `0.0`",
+#: What stands in a hint for words that are the writer's.
+_GAP = "…"
+_COMPARISON: Mapping[Type, str] = {INTEGER: "> 0", DOUBLE: "> 0.0", STRING: f'= "{_GAP}"'}
+#: What can be written, and how a hint says so.
+_LITERALS: Mapping[Type, tuple[tuple[str, ...], str]] = {
+    BOOLEAN: (("true", "false"), "`true` or `false`"),
+    INTEGER: (("0",), "a whole number such as `0`"),
+    DOUBLE: (("0.0",), "a number such as `0.0`"),
+    STRING: (('""',), f'a string such as `"{_GAP}"`'),
 }
 
 _LITERAL = (ex.IntegerLiteral, ex.DoubleLiteral, ex.StringLiteral)
@@ -47,7 +52,9 @@ def repair(expression: ex.Expression, found: Type, wanted: Type) -> Hint:
     """
     source = _source(expression) if isinstance(wanted, EnumType) else None
     if source and isinstance(wanted, EnumType) and declared_type(wanted.definition.type) == found:
-        return f"declare {source} with the type `{written(wanted.definition.name)}`, whose rules read this data"
+        name = written(wanted.definition.name)
+        hint = f"declare {source[0]} with the type `{name}`, whose rules read this data"
+        return Replacement(hint, name, source[1], is_choice=True)
     if isinstance(found, (ObjectType, ArrayType)) or found == NONE:
         return _part(expression, found, wanted)
     literal = literal_repair(expression, found, wanted)
@@ -55,12 +62,13 @@ def repair(expression: ex.Expression, found: Type, wanted: Type) -> Hint:
         return literal
     match wanted:
         case EnumType():
-            return f"write one of its values: {_alternatives(wanted)}"
+            return Choice(f"write one of its values: {_alternatives(wanted)}", _in_place(expression, _values(wanted)))
         case ObjectType():
             first = next(iter(wanted.definition.properties), None)
             return f"write an object value, such as `{{ {first.name}: … }}`" if first else "write `{}`"
         case ArrayType():
-            return "write an array, such as `[1.0, 0.0]`"
+            hint = "write an array, such as `[1.0, 0.0]`"
+            return Wrapping(hint, "[", "]", expression, is_choice=True) if found == wanted.element else hint
         case BasicType.NONE:
             return "leave the provide statement out: there is no data to send along"
     return _conversion(expression, found, wanted)
@@ -89,25 +97,34 @@ def literal_repair(expression: ex.Expression, found: Type, wanted: Type) -> Repa
     return Repair(f"write `{text}`", text) if text is not None and found != wanted else None
 
 
-def equality_repair(
-    operator: ex.Equation | ex.Inequation, left: Type, right: Type
-) -> tuple[ex.Expression, Repair | str]:
+def equality_repair(operator: ex.Equation | ex.Inequation, left: Type, right: Type) -> tuple[ex.Expression, Hint]:
     """Where and how to mend a comparison of two types: at a literal that can be rewritten, else as a whole."""
     sides = ((operator.right, right, left), (operator.left, left, right))
     for expression, found, wanted in sides:
         literal = literal_repair(expression, found, wanted)
         if literal:
             return expression, literal
-    for _, found, wanted in sides:
+    for expression, found, wanted in sides:
         if isinstance(wanted, EnumType):
-            return operator, f"compare with one of {_alternatives(wanted)}"
+            hint = f"compare with one of {_alternatives(wanted)}"
+            return operator, Choice(hint, _in_place(expression, _values(wanted)))
         if {found, wanted} == {INTEGER, DOUBLE}:
-            return operator, "multiply the integer by `1.0`, or compare by `<`, `<=`, `>` or `>=`"
+            whole = operator.left if left == INTEGER else operator.right
+            said = "multiply the integer by `1.0`, or compare by `<`, `<=`, `>` or `>=`"
+            return operator, _around(said, whole, "", " * 1.0")
     return operator, f"compare {left} with {left}, or {right} with {right}"
 
 
-def _source(expression: ex.Expression) -> str | None:
-    """Whose data an expression is as a whole: a message, or the response, error or feedback of something else."""
+def _in_place(expression: ex.Expression, names: Iterable[str]) -> tuple[Replacement, ...]:
+    """The names of which one can stand in place of an expression."""
+    return tuple(Replacement(f"write `{written(name)}`", written(name), expression) for name in names)
+
+
+def _source(expression: ex.Expression) -> tuple[str, rsc.DataType] | None:
+    """Whose data an expression is as a whole: a message, or the response, error or feedback of something else.
+
+    With the type that it is declared with.
+    """
     if not isinstance(expression, rsc.Access) or not expression.value or expression.segments:
         return None
     around = expression.eContainer()
@@ -117,12 +134,16 @@ def _source(expression: ex.Expression) -> str | None:
     if around is None or communication is None:
         return None
     name = f"`{written(communication.name)}`"
-    return name if isinstance(communication, rsc.Message) else f"the {around.resultType} of {name}"
+    if isinstance(communication, rsc.Message):
+        return name, communication.type
+    declared = data_type(communication, event_of(around.communicationType, around.resultType))
+    return None if declared is None else (f"the {around.resultType} of {name}", declared)
 
 
-def _part(whole: ex.Expression, found: Type, wanted: Type) -> str:
+def _part(whole: ex.Expression, found: Type, wanted: Type) -> Hint:
     if isinstance(found, ArrayType):
-        return f"read one of its elements, such as `{_text(whole)}[0]`"
+        hint = f"read one of its elements, such as `{_text(whole)}[0]`"
+        return Insertion(hint, "[0]", whole, behind=True, is_choice=True)
     if not isinstance(found, ObjectType):
         return "leave it out: this event carries no data"
     properties = list(found.definition.properties)
@@ -130,23 +151,19 @@ def _part(whole: ex.Expression, found: Type, wanted: Type) -> str:
     if isinstance(wanted, ObjectType) and not fitting:
         return f"declare what gives the data and what takes it with one type, such as `{found.written}`"
     fitting = fitting or properties
-    return (
-        f"read one of its properties, such as `{_text(whole)}.{written(fitting[0].name)}`"
-        if fitting
-        else "it has none to read"
-    )
+    if not fitting:
+        return "it has none to read"
+    hint = f"read one of its properties, such as `{_text(whole)}.{written(fitting[0].name)}`"
+    names = [written(part.name) for part in fitting]
+    ways = (Insertion(f"write `{_text(whole)}.{name}`", f".{name}", whole, behind=True) for name in names)
+    return Choice(hint, tuple(ways))
 
 
 def _conversion(expression: ex.Expression, found: Type, wanted: Type) -> Hint:
-    if wanted == BOOLEAN and isinstance(found, EnumType):
-        return (
-            f"compare it, such as `{_text(expression)} = {written(_values(found)[0])}`"
-            if _values(found)
-            else "compare it"
-        )
-    if wanted == BOOLEAN and found in _COMPARISON and not isinstance(expression, _LITERAL):
-        hint = f"compare it, such as `{_text(expression)} {_COMPARISON[found]}`"
-        return _around(hint, expression, "", f" {_COMPARISON[found]}") if found != STRING else hint
+    if wanted == BOOLEAN and not isinstance(expression, _LITERAL):
+        compared = _compared(expression, found)
+        if compared is not None:
+            return compared
     if (found, wanted) == (INTEGER, DOUBLE):
         return _around(f"write `{_text(expression)} * 1.0`", expression, "", " * 1.0", is_choice=False)
     if (found, wanted) == (DOUBLE, INTEGER):
@@ -157,10 +174,23 @@ def _conversion(expression: ex.Expression, found: Type, wanted: Type) -> Hint:
         return Wrapping(hint, "round(", ")", expression, is_choice=True)
     if isinstance(found, EnumType):
         return "compare an enum's values by `=` only"
-    if wanted in _LITERALS and wanted != BOOLEAN:
-        text = "0" if wanted == INTEGER else "0.0"
-        return Replacement(f"write {_LITERALS[wanted]}", text, expression, is_choice=True)
-    return f"write {_LITERALS[wanted]}" if wanted in _LITERALS else 'write a string such as `"…"`'
+    ways = tuple(Replacement(f"write `{text}`", text, expression) for text in _LITERALS[wanted][0])
+    return Choice(f"write {_LITERALS[wanted][1]}", ways)
+
+
+def _compared(expression: ex.Expression, found: Type) -> Hint | None:
+    """The comparison that a value can be meant to be a side of."""
+    if isinstance(found, EnumType):
+        texts = [f"= {written(value)}" for value in _values(found)]
+        ways = (
+            _around(f"write `{_text(expression)} {text}`", expression, "", f" {text}", is_choice=False)
+            for text in texts
+        )
+        return Choice(f"compare it, such as `{_text(expression)} {texts[0]}`", tuple(ways)) if texts else "compare it"
+    if found not in _COMPARISON:
+        return None
+    hint = f"compare it, such as `{_text(expression)} {_COMPARISON[found]}`"
+    return _around(hint, expression, "", f" {_COMPARISON[found].replace(_GAP, '')}")
 
 
 def _around(hint: str, expression: ex.Expression, before: str, behind: str, *, is_choice: bool = True) -> Wrapping:

@@ -13,7 +13,7 @@ from robosc.semantics.naming import written
 from robosc.semantics.typing import declared_type
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
 
     from robosc.checks.wire_data import Carried, Uses
     from robosc.ros_types import RosDistribution, RosTypes
@@ -27,8 +27,12 @@ class Fault:
     message: str
     hint: str
     unknown: bool = False
-    #: What takes the property's place, if the hint says it.
+    #: What takes the place of the property, or of the data as a whole, if the hint says it.
     text: str | None = None
+    #: What the property is called, if the hint says it.
+    new_name: str | None = None
+    #: The fields that are there, with their types, where the property is none of them or has no type.
+    others: Mapping[str, str] | None = None
 
     def is_used(self, uses: Uses) -> bool:
         """Whether it is among the uses of the data; the whole always is."""
@@ -108,20 +112,23 @@ class _Comparison:
         carried = wire_type(declared)
         if isinstance(carried, rsc.InterfaceTypeReference) and _ros_type(carried) != self._ros_type:
             message = f"the data is {_ros_type(carried)} here, and the communication is {self._ros_type}"
-            yield Fault(None, message, f"write `{self._ros_type}`")
+            yield Fault(None, message, f"write `{self._ros_type}`", text=str(self._ros_type))
         elif isinstance(carried, rsc.ComplexDataTypeReference):
             if isinstance(carried.type, rsc.ObjectDataType):
                 yield from self._object(carried.type, fields, name)
         elif isinstance(carried, rsc.BasicDataType) and not isinstance(carried, rsc.NoneDataType):
             field = next(iter(fields)) if len(fields) == 1 else "data"
             if field not in fields:
-                yield Fault(None, f"{name} has no field for a lone {_text(carried)}: {_listed(fields)}", _lone(fields))
+                message = f"{name} has no field for a lone {_text(carried)}: {_listed(fields)}"
+                yield Fault(None, message, _lone(fields), text=None if fields else "none")
             elif not self._holds(fields[field], carried):
                 message = f"the data is {_text(carried)} here, and {fields[field]} in `{field}` of {name}"
                 # An array and what has fields of its own stand in objects only.
                 lone = isinstance(fields[field], Basic)
-                repair = _repair(fields[field], None if lone else field)[0]
-                yield Fault(None, message, repair if lone else f"declare an object: {repair}")
+                repair, text = _repair(fields[field], None if lone else field)
+                yield Fault(
+                    None, message, repair if lone else f"declare an object: {repair}", text=text if lone else None
+                )
 
     def _object(self, definition: rsc.ObjectDataType, fields: Fields, name: str) -> Iterator[Fault]:
         for owner in definition.properties:
@@ -130,10 +137,20 @@ class _Comparison:
             else:
                 close = get_close_matches(owner.name, fields, n=1)
                 hint = f"did you mean `{close[0]}`?" if close else "write a field that it has, or leave this one out"
+                others = {field: fitting for field in fields if (fitting := _type_for(fields[field])) is not None}
+                taken = {other.name for other in definition.properties}
+                others = {field: fitting for field, fitting in others.items() if field not in taken}
                 fitting = _type_for(fields[close[0]]) if close and isinstance(owner.type, rsc.BasicDataType) else None
                 text = f"{written(close[0])}: {fitting}" if fitting is not None else None
                 message = f"`{owner.name}` is no field of {name}: {_listed(fields)}"
-                yield Fault(owner, message, hint, text=text)
+                yield Fault(
+                    owner,
+                    message,
+                    hint,
+                    text=text,
+                    new_name=close[0] if close and text is None else None,
+                    others=None if close else others,
+                )
 
     def _property(self, owner: rsc.ObjectProperty, wire: WireType, name: str) -> Iterator[Fault]:
         declared, element = wire_type(owner.type), wire
@@ -143,13 +160,13 @@ class _Comparison:
         if isinstance(declared, rsc.InterfaceTypeReference) and _ros_type(declared) != element:
             message = f"`{owner.name}` is {_text(owner.type)} here, and {wire} in {name}"
             hint, text = _repair(wire, owner.name)
-            yield Fault(owner, message, hint, text=text)
+            yield Fault(owner, message, hint, text=text, others=None if text else {})
         elif isinstance(definition, rsc.ObjectDataType) and isinstance(element, Nested):
             yield from self._nested(owner, definition, element)
         elif declared is not None and not _is_open(declared) and not self._holds(element, declared):
             message = f"`{owner.name}` is {_text(owner.type)} here, and {wire} in {name}"
             hint, text = _repair(wire, owner.name)
-            yield Fault(owner, message, hint, text=text)
+            yield Fault(owner, message, hint, text=text, others=None if text else {})
 
     def _nested(self, owner: rsc.ObjectProperty, definition: rsc.ObjectDataType, wire: Nested) -> Iterator[Fault]:
         if (definition, wire) in self._around:

@@ -47,11 +47,25 @@ class Edit:
     text: str
 
 
+@dataclass(frozen=True, order=True)
+class Alternative:
+    """One way of several to do what a hint says, among which a person chooses: in words, and the edits."""
+
+    title: str
+    edits: tuple[Edit, ...]
+
+
 class Repair(NamedTuple):
-    """How to mend a fault: in words, and the text to write in its place (None: that takes more than another text)."""
+    """How to mend a fault: in words, and the text to write in its place (None: that takes more than another text).
+
+    `choices` are the texts of which one can be written there; `elsewhere` what is written at other offsets: the first,
+    the one behind the last, and the text.
+    """
 
     hint: str
     text: str | None = None
+    choices: tuple[str, ...] = ()
+    elsewhere: tuple[tuple[int, int, str], ...] = ()
 
 
 @dataclass(frozen=True, order=True)
@@ -67,8 +81,8 @@ class Related:
 class Diagnostic:
     """One finding of one rule at one place.
 
-    `hint` says how to mend it. Where that is so simple that a program can do it, `edits` do it in the finding's file.
-    `related` are other places that it speaks of. With `is_choice` the edits are one way of several: a person chooses.
+    `hint` says how to mend it. Where there is one way, and a program can go it, `edits` do it in the finding's file;
+    where a person is to choose, `alternatives` are the ways. `related` are other places that it speaks of.
     """
 
     file: str
@@ -79,7 +93,7 @@ class Diagnostic:
     hint: str | None = None
     edits: tuple[Edit, ...] = ()
     related: tuple[Related, ...] = ()
-    is_choice: bool = False
+    alternatives: tuple[Alternative, ...] = ()
 
 
 class ModelError(Exception):
@@ -94,7 +108,15 @@ def in_order(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
     """Each finding once, by file, position and rule."""
     return sorted(
         dict.fromkeys(findings),
-        key=lambda found: (found.file, found.span, found.rule, found.message, found.hint or "", found.edits),
+        key=lambda found: (
+            found.file,
+            found.span,
+            found.rule,
+            found.message,
+            found.hint or "",
+            found.edits,
+            found.alternatives,
+        ),
     )
 
 
@@ -105,9 +127,7 @@ def has_errors(findings: Iterable[Diagnostic]) -> bool:
 
 def certain_edits(findings: Iterable[Diagnostic], file: str) -> list[Edit]:
     """What the hints of findings say to write in a file, where it is not for a person to choose; all at once."""
-    return without_overlaps(
-        edit for finding in findings if finding.file == file and not finding.is_choice for edit in finding.edits
-    )
+    return without_overlaps(edit for finding in findings if finding.file == file for edit in finding.edits)
 
 
 def without_overlaps(edits: Iterable[Edit]) -> list[Edit]:

@@ -10,7 +10,7 @@ from robosc.diagnostics import in_order
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from robosc.diagnostics import Diagnostic, Span
+    from robosc.diagnostics import Diagnostic, Edit, Span
 
 
 def render(findings: Iterable[Diagnostic]) -> str:
@@ -26,8 +26,13 @@ def _object(finding: Diagnostic) -> dict[str, Any]:
         "rule": finding.rule,
         "message": finding.message,
         "hint": finding.hint,
-        "edits": [{**_place(edit.span), "text": edit.text} for edit in finding.edits],
+        "edits": _edits(finding.edits),
+        "alternatives": [{"title": way.title, "edits": _edits(way.edits)} for way in finding.alternatives],
     }
+
+
+def _edits(edits: Iterable[Edit]) -> list[dict[str, Any]]:
+    return [{**_place(edit.span), "text": edit.text} for edit in edits]
 
 
 def _place(span: Span) -> dict[str, int]:

@@ -11,9 +11,9 @@ from robosc.diagnostics import in_order
 from robosc.diagnostics.rules import page, summary
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
 
-    from robosc.diagnostics import Diagnostic, Span
+    from robosc.diagnostics import Diagnostic, Edit, Span
 
 _SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
 
@@ -21,7 +21,8 @@ _SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sa
 def render(findings: Iterable[Diagnostic], version: str) -> str:
     """A SARIF log of one run by this version of the tool, with the findings in order. Ends with a line break.
 
-    Regions count columns in code points. Edits are fixes. The rules that drew a finding are described from their pages.
+    Regions count columns in code points. Edits are fixes, and so is each alternative. The rules that drew a
+    finding are described from their pages.
     """
     found = in_order(findings)
     rules = sorted({finding.rule for finding in found})
@@ -58,13 +59,19 @@ def _result(finding: Diagnostic, rule_index: int) -> dict[str, Any]:
             }
             for other in finding.related
         ]
-    if finding.edits:
-        replacements = [
-            {"deletedRegion": _region(edit.span), "insertedContent": {"text": edit.text}} for edit in finding.edits
-        ]
-        change = {"artifactLocation": artifact, "replacements": replacements}
-        result["fixes"] = [{"description": {"text": finding.hint or finding.message}, "artifactChanges": [change]}]
+    ways = [(finding.hint or finding.message, finding.edits)] if finding.edits else []
+    ways += [(way.title, way.edits) for way in finding.alternatives]
+    if ways:
+        result["fixes"] = [_fix(artifact, title, edits) for title, edits in ways]
     return result
+
+
+def _fix(artifact: Mapping[str, str], title: str, edits: Iterable[Edit]) -> dict[str, Any]:
+    replacements = [{"deletedRegion": _region(edit.span), "insertedContent": {"text": edit.text}} for edit in edits]
+    return {
+        "description": {"text": title},
+        "artifactChanges": [{"artifactLocation": artifact, "replacements": replacements}],
+    }
 
 
 def _region(span: Span) -> dict[str, int]:

@@ -76,26 +76,27 @@ def code_actions(snapshot: Snapshot, analysis: Analysis, params: types.CodeActio
     """What does what a hint says, for each finding in a range; and all that hints say at once, where that is asked."""
     only = params.context.only
     text, uri = analysis.text, params.text_document.uri
-    own = [finding for finding in analysis.findings if finding.file == text.file and finding.edits]
+    own = [finding for finding in analysis.findings if finding.file == text.file]
     found = []
     if only is None or types.CodeActionKind.QuickFix in only:
         for finding in own:
             place = span_range(text, finding.span)
             if place.start <= params.range.end and params.range.start <= place.end:
-                found.append(
-                    types.CodeAction(
-                        finding.hint or finding.message,
-                        kind=types.CodeActionKind.QuickFix,
-                        diagnostics=[diagnostic(snapshot, finding, {text.file: text})],
-                        edit=types.WorkspaceEdit({uri: _edits(text, finding.edits)}),
-                        is_preferred=not finding.is_choice,
+                mended = [diagnostic(snapshot, finding, {text.file: text})]
+                ways = [(finding.hint or finding.message, finding.edits)] if finding.edits else []
+                for title, edits in (*ways, *((way.title, way.edits) for way in finding.alternatives)):
+                    change = types.WorkspaceEdit({uri: _edits(text, edits)})
+                    preferred = edits is finding.edits
+                    found.append(
+                        types.CodeAction(
+                            title, types.CodeActionKind.QuickFix, mended, is_preferred=preferred, edit=change
+                        )
                     )
-                )
         found += _library_folders(snapshot, analysis, params.range)
     if only is not None and any(kind == _MEND_ALL or _MEND_ALL.startswith(f"{kind}.") for kind in only):
-        edits = certain_edits(own, text.file)
-        if edits:
-            whole = types.WorkspaceEdit({uri: _edits(text, edits)})
+        certain = certain_edits(own, text.file)
+        if certain:
+            whole = types.WorkspaceEdit({uri: _edits(text, certain)})
             found.append(types.CodeAction("Do what all hints say", kind=_MEND_ALL, edit=whole))
     return found
 

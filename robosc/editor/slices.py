@@ -179,11 +179,17 @@ class Slices:
                 continue
             elif not (start.line, start.column) <= (finding.span.line, finding.span.column) <= (end.line, end.column):
                 edits = tuple(replace(edit, span=moved(edit.span)) for edit in finding.edits)
+                ways = tuple(
+                    replace(way, edits=tuple(replace(edit, span=moved(edit.span)) for edit in way.edits))
+                    for way in finding.alternatives
+                )
                 related = tuple(
                     replace(other, span=moved(other.span)) if other.file == text.file else other
                     for other in finding.related
                 )
-                found.append(replace(finding, span=moved(finding.span), edits=edits, related=related))
+                found.append(
+                    replace(finding, span=moved(finding.span), edits=edits, related=related, alternatives=ways)
+                )
         return found
 
 

@@ -6,6 +6,7 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from robosc.diagnostics import Repair
 from robosc.language.grammar import attribute
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
@@ -181,7 +182,8 @@ class Builder:
                 return chr(int(code[1:], 16))
             if code not in _ESCAPES:
                 start = node.position + 1 + found.start()
-                self._fault(node, f"`\\{code}` means nothing in a string", "write `\\\\` for a backslash", start)
+                hint = Repair("write `\\\\` for a backslash", f"\\\\{code}")
+                self._fault(node, f"`\\{code}` means nothing in a string", hint, start)
             return _ESCAPES.get(code, code)
 
         text = _ESCAPE.sub(replace, node.value[1:-1])
@@ -192,7 +194,7 @@ class Builder:
             self._fault(node, "a code point between `\\uD800` and `\\uDFFF` is no character")
             return ""
 
-    def _fault(self, node: Node, message: str, hint: str | None = None, start: int | None = None) -> None:
+    def _fault(self, node: Node, message: str, hint: Repair | str | None = None, start: int | None = None) -> None:
         first, end = (node.position, node.position_end) if start is None else (start, start + 2)
         finding = self._text.error("syntax", first + self._offset, end + self._offset, message, hint)
         self.findings.append(finding)

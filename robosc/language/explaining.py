@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from decimal import Decimal, InvalidOperation
 from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
@@ -47,6 +48,7 @@ _TEMPLATE = "write `component name(parameter: type) { … }`, and `component oth
 _QUANTIFIER = "write `all`, `any` or `count`, a name, `in` and an array, or the name of a template, and a colon"
 _CASES = "write a transition for each case: the first whose condition holds is taken"
 _MODULO = "write `mod(a, b)`"
+_CONDITION = "write `if`"
 _CHOICE = "write `if condition then value else value`"
 _MEANT = {
     **dict.fromkeys(("const", "let", "val", "define"), _CONSTANT),
@@ -65,9 +67,26 @@ _MEANT = {
     "then": _CHOICE,
     "?": _CHOICE,
     "not": "write `!` for `not`",
-    "when": "write `if`",
+    "when": _CONDITION,
     "unless": "write `if` and `!` before the condition",
     "var": "write `variable`",
+}
+#: What stands in place of such a word, or in place of it by itself; the rest of the text is what was meant.
+_WRITTEN = {
+    **dict.fromkeys(("const", "let", "val", "define"), "constant"),
+    "param": "parameter",
+    **dict.fromkeys(("timeout", "timer", "wait", "delay", "sleep", "every"), "after"),
+    **dict.fromkeys(("def", "fn", "func", "fun"), "function"),
+    "never": "requirement never",
+    "always": "requirement always",
+    "reachable": "property reachable",
+    "invariant": "requirement always",
+    "assert": "requirement always",
+    "require": "requirement always",
+    "forall": "all",
+    "exists": "any",
+    "when": "if",
+    "var": "variable",
 }
 #: The hints for words of ours that are names where their construct can't stand.
 CONSTRUCTS = {word: _MEANT[word] for word in ("all", "any", "count", "never", "always", "reachable", "each", "after")}
@@ -81,6 +100,8 @@ BASIC_TYPES = {
 }
 #: Where the items of a level stand.
 _PLACES = ((DEFINITIONS, "the robot", "a library"), (COMPONENT, "a component"))
+#: A number with so many characters is not written out.
+_LONGEST_NUMBER = 40
 _RULES = {
     "Name": "a name",
     "UnreservedName": "a name",
@@ -139,10 +160,7 @@ def hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) -> Rep
     token, before = tokens[index], tokens[index - 1]
     symbols = _symbols(token, wanted)
     if token.text in _FOREIGN:
-        own = _FOREIGN[token.text]
-        # A quotation mark has another one at the other end.
-        text = None if own == '"' else own
-        return Repair(f"write `{own}`" if own else "leave it out: nothing ends with a semicolon", text)
+        return _foreign(tokens, index)
     if (stated := _statement_hint(tokens, index, wanted, block)) is not None:
         return stated
     if before.is_name and before.text in wanted and is_reserved(before.text):
@@ -150,16 +168,64 @@ def hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) -> Rep
     if "then" in wanted:
         return _CHOICE
     if before.is_keyword(",") and token.kind is Kind.SYMBOL:
-        return "leave out the comma before it"
+        return Repair("leave out the comma before it", elsewhere=((before.start, before.end, ""),))
     if "->" in wanted and block.level is RULES and (token.is_first or before.text == "default"):
-        return "write `->` before the value that the rule gives"
+        return _before(token, "write `->` before the value that the rule gives", "->")
     if token.text in {"=", ":", ":=", "=>", "->"} and len(symbols) == 1:
         return Repair(f"write `{symbols[0]}`", symbols[0])
     if "." in {token.text, before.text} and Kind.NUMBER in {token.kind, before.kind, tokens[index + 1].kind}:
-        return "a number has digits on both sides of its point, such as `0.5` or `1.0`"
+        return _both_sides(tokens, index)
     if token.kind is Kind.NUMBER and not token.text.replace(".", "").isdigit():
-        return "a number has digits and a point only, no exponent and no letters"
+        return _without_exponent(tokens, index)
     return _word_hint(tokens, index, wanted, block) if token.kind is Kind.WORD else _MEANT.get(token.text)
+
+
+def _foreign(tokens: Tokens, index: int) -> Repair:
+    """A hint for a symbol of another language; a quotation mark has another one at the other end."""
+    own = _FOREIGN[tokens[index].text]
+    said = f"write `{own}`" if own else "leave it out: nothing ends with a semicolon"
+    return Repair(said, own, elsewhere=_other_quotes(tokens, index) if own == '"' else ())
+
+
+def _before(token: Token, said: str, text: str) -> Repair:
+    """A hint that something is to be written before a token."""
+    return Repair(said, elsewhere=((token.start, token.start, f"{text} "),))
+
+
+def _other_quotes(tokens: Tokens, index: int) -> tuple[tuple[int, int, str], ...]:
+    """The other quotation marks of the line, as edits."""
+    found = []
+    other = index + 1
+    while other < len(tokens) - 1 and not tokens[other].is_first:
+        if _FOREIGN.get(tokens[other].text) == '"':
+            found.append((tokens[other].start, tokens[other].end, '"'))
+        other += 1
+    return tuple(found)
+
+
+def _both_sides(tokens: Tokens, index: int) -> Repair:
+    """A hint for a point of a number without digits on one side, and the digit."""
+    said = "a number has digits on both sides of its point, such as `0.5` or `1.0`"
+    point = next((at for at in (index, index - 1) if tokens[at].text == "."), index)
+    before, token, after = tokens[point - 1], tokens[point], tokens[point + 1]
+    is_after = before.kind is Kind.NUMBER and before.end == token.start
+    if is_after and not (after.kind is Kind.NUMBER and after.start == token.end):
+        return Repair(said, elsewhere=((token.end, token.end, "0"),))
+    is_before = after.kind is Kind.NUMBER and after.start == token.end
+    return Repair(said, elsewhere=((token.start, token.start, "0"),) if is_before and not is_after else ())
+
+
+def _without_exponent(tokens: Tokens, index: int) -> Repair:
+    """A hint for a number that other languages write, and the same number as it is written here."""
+    said = "a number has digits and a point only, no exponent and no letters"
+    token, sign, digits = tokens[index], tokens[index + 1], tokens[index + 2]
+    is_signed = token.text[-1] in "eE" and token.end == sign.start and sign.end == digits.start
+    text, end = (token.text + sign.text + digits.text, digits.end) if is_signed else (token.text, token.end)
+    try:
+        written_out = f"{Decimal(text):f}"
+    except InvalidOperation:
+        return Repair(said)
+    return Repair(said, elsewhere=((token.start, end, written_out),) if len(written_out) < _LONGEST_NUMBER else ())
 
 
 def _timed_hint(token: Token, before: Token, wanted: Sequence[str]) -> str | None:
@@ -182,13 +248,13 @@ def _statement_hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Bl
     if starter.is_keyword("requirement", "property"):
         return _requirement_hint(token, before, wanted)
     if starter.is_keyword("component") and "is" in wanted and token.text in {"=", ":"}:
-        return _TEMPLATE
+        return Repair(_TEMPLATE, "is" if tokens[index - 1].end < token.start else " is")
     if starter.is_keyword("function") and token.text == "{" and {"=", "=(?!>)"} & set(wanted):
         return "write `=` and one expression instead of braces"
     return None
 
 
-def _order_hint(tokens: Tokens, index: int, wanted: Sequence[str]) -> str | None:
+def _order_hint(tokens: Tokens, index: int, wanted: Sequence[str]) -> Repair | str | None:
     """What a communication has stands in one order."""
     token = tokens[index]
     if token.text == "," and tokens[index - 2].is_keyword("links"):
@@ -198,13 +264,14 @@ def _order_hint(tokens: Tokens, index: int, wanted: Sequence[str]) -> str | None
     if token.text == "identifier" and token.text not in wanted:
         return "`identifier` stands before all else"
     if "change" in wanted:
-        return "write `send: change`, or leave `send` out: it is sent with every tick then"
+        said = "write `send: change`, or leave `send` out: it is sent with every tick then"
+        return Repair(said, choices=("change",) if token.kind is Kind.WORD else ())
     return None
 
 
 def _requirement_hint(token: Token, before: Token, wanted: Sequence[str]) -> Repair | str | None:
     if ":" in wanted and (before.kind is Kind.STRING or token.is_keyword("automaton")):
-        return "write `:` before it"
+        return _before(token, "write `:` before it", ":")
     if before.kind is Kind.STRING:
         return 'the text stands before the colon: `requirement name "text": …`'
     if "needs" in wanted and token.text in {"when", "if", "requires", "while"}:
@@ -223,6 +290,16 @@ def _symbols(token: Token, wanted: Sequence[str]) -> list[str]:
     return [word for word in (":", ":=", "=", "->", "{", ",") if word in wanted or (word == "=" and "=(?!>)" in wanted)]
 
 
+def _construct(word: Token) -> Repair | str:
+    """The hint for a word that was meant otherwise, and where one word takes its place, that."""
+    if word.text == "not":
+        return Repair(_MEANT["not"], elsewhere=((word.start, word.end, "!"),))
+    text = _WRITTEN.get(word.text)
+    if text is None:
+        return _MEANT[word.text]
+    return Repair(_MEANT[word.text], elsewhere=((word.start, word.end, text),))
+
+
 def _word_hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) -> Repair | str | None:
     token = tokens[index]
     words = {word for word in wanted if word.isalpha() and word.islower()} - {"end"}
@@ -230,10 +307,10 @@ def _word_hint(tokens: Tokens, index: int, wanted: Sequence[str], block: Block) 
         words |= block.level.starters
     close = get_close_matches(token.text, sorted(words - {token.text}), n=1, cutoff=0.7)
     if list(wanted) in ([","], [":"]):
-        return f"write `{wanted[0]}` before it"
+        return _before(token, f"write `{wanted[0]}` before it", wanted[0])
     for word in (token, tokens[index - 1]):  # Where a name can stand, a word that was meant otherwise is read as one.
         if word.text in _MEANT and word.kind is Kind.WORD:
-            return _MEANT[word.text]
+            return _construct(word)
     places = [place for level, *places in _PLACES if level.starter(token) == token.text for place in places]
     if places and index == block.first and block.level not in (DEFINITIONS, COMPONENT):
         return f"such a definition stands in {enumeration(places)}"

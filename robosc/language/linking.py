@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from robosc.diagnostics import Repair
@@ -183,7 +184,8 @@ class Linker:
             argument.parameter = parameters[name.text]
         else:
             repair = did_you_mean(name.text, parameters, cutoff=0.6)
-            named = f"its parameters are {enumeration(f'`{written(other)}`' for other in parameters)}"
+            texts = tuple(written(other) for other in parameters)
+            named = Repair(f"its parameters are {enumeration(f'`{text}`' for text in texts)}", choices=texts)
             self._report(name, f"`{made_of.name}` has no parameter `{name.text}`", repair or named, rule="argument")
 
     def _call(self, call: rsc.Call, name: Name) -> None:
@@ -273,8 +275,10 @@ class Linker:
                 self._missing(name, "there is no communication", self.scope.all_communications())
             return None
         if len({communication for _, communication in found}) < len(found):
-            candidates = " or ".join(f"`{written(component.name)}.{written(name.text)}`" for component, _ in found)
-            self._report(name, f"`{name.text}` is ambiguous: it may be {candidates}", f"write {candidates}")
+            texts = tuple(f"{written(component.name)}.{written(name.text)}" for component, _ in found)
+            candidates = " or ".join(f"`{text}`" for text in texts)
+            hint = Repair(f"write {candidates}", choices=texts)
+            self._report(name, f"`{name.text}` is ambiguous: it may be {candidates}", hint)
             return None
         return found[0]
 
@@ -302,10 +306,11 @@ class Linker:
             self._missing(name, f"component `{component.name}` has no {what}", members, hint)
         return found
 
-    @staticmethod
-    def _value_of_enum(name: Name, value: rsc.EnumValue) -> str:
+    def _value_of_enum(self, name: Name, value: rsc.EnumValue) -> Repair:
         enum = value.eContainer().eContainer()
-        return f"`{written(name.text)}` is a value of `{written(enum.name)}`: write it without a component"
+        said = f"`{written(name.text)}` is a value of `{written(enum.name)}`: write it without a component"
+        qualifier = re.search(r"\^?\w+\s*\.\s*\Z", self._file.text.content[: name.start])
+        return Repair(said, elsewhere=((qualifier.start(), name.start, ""),) if qualifier else ())
 
     def _target(self, transition: rsc.Transition | rsc.RequirementTransition, name: Name) -> None:
         if isinstance(transition, rsc.RequirementTransition):
@@ -476,13 +481,14 @@ class Linker:
     def _elsewhere(self, name: Name) -> Repair | str | None:
         """What to write for a bare name that some component has as a variable or a state."""
         having = [
-            f"`{written(component.name)}.{written(name.text)}`"
+            f"{written(component.name)}.{written(name.text)}"
             for component in self.scope.components.values()
             if name.text in (self.scope.members(component) or {})
         ]
         if len(having) == 1:
-            return Repair(f"write {having[0]}", having[0].strip("`"))
-        return f"write {' or '.join(having)}" if having else None
+            return Repair(f"write `{having[0]}`", having[0])
+        hint = " or ".join(f"`{text}`" for text in having)
+        return Repair(f"write {hint}", choices=tuple(having)) if having else None
 
     def _enum_value(self, access: rsc.Access, name: Name) -> bool:
         """Whether a name is that of an enum value, or of several, which is a finding."""
@@ -491,9 +497,10 @@ class Linker:
             access.item = values[0]
         elif values:
             enums = [value.eContainer().eContainer().name for value in values]
-            written_out = enumeration(f"`{written(enum)}.{written(name.text)}`" for enum in dict.fromkeys(enums))
+            texts = tuple(f"{written(enum)}.{written(name.text)}" for enum in dict.fromkeys(enums))
+            said = f"write {enumeration(f'`{text}`' for text in texts)}"
             message = f"`{name.text}` is a value of several enums"
-            hint = f"write {written_out}" if len({*enums}) > 1 else "declare an enum in this file"
+            hint = Repair(said, choices=texts) if len(texts) > 1 else "declare an enum in this file"
             self._report(name, message, hint, rule="unique-enum-value")
         return bool(values)
 
@@ -538,7 +545,7 @@ class Linker:
             what = (
                 "an enum" if isinstance(of, EnumType) else "an array" if isinstance(of, ArrayType) else f"of type {of}"
             )
-            hint = f"write an index before it: `[0].{name.text}`" if isinstance(of, ArrayType) else None
+            hint = self._index_before(name) if isinstance(of, ArrayType) else None
             self._report(name, f"there is no property `{name.text}`: what stands before it is {what}", hint)
             return None
         if is_made(of.definition):
@@ -558,6 +565,10 @@ class Linker:
         if not self._file.may_declare_within(of.definition, name.text, Declared.PROPERTY):
             self._missing(name, f"object `{of.definition.name}` has no property", properties)
         return None
+
+    def _index_before(self, name: Name) -> Repair:
+        point = self._file.text.content.rfind(".", 0, name.start)
+        return Repair(f"write an index before it: `[0].{name.text}`", elsewhere=((point, point, "[0]"),))
 
     def around(self, element: ex.Located, kind: type[_Element]) -> _Element | None:
         """The component or enum that contains the element, if it is of that kind.
@@ -611,7 +622,8 @@ class Linker:
         names = list(dict.fromkeys(known))
         repair = hint or did_you_mean(name.text, names, cutoff=0.6)
         if repair is None and listed and 0 < len(names) <= _FEW:
-            repair = f"there is {enumeration(f'`{written(other)}`' for other in names)}"
+            texts = tuple(written(other) for other in names)
+            repair = Repair(f"there is {enumeration(f'`{text}`' for text in texts)}", choices=texts)
         self._report(name, f"{message} `{name.text}`", repair)
 
     def _report(self, name: Name, message: str, repair: Repair | str | None = None, rule: str = RULE) -> None:

@@ -181,7 +181,7 @@ class _Recovery:
             # What is missing belongs where the item ends, not to the next one.
             end = tokens[index - 1].end
             message = f"found {found(token)} in line {self._text.span(token.start, token.end).line}, {wanted}"
-            said = repair.hint if isinstance(repair, Repair) else repair
+            said = repair._replace(text=None, choices=()) if isinstance(repair, Repair) else repair
             self._findings.append(self._text.error("syntax", end, end, message, said))
         else:
             self._report(index, message, repair)

@@ -6,12 +6,12 @@ import codecs
 import os
 import re
 from bisect import bisect_right
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from robosc.diagnostics import Diagnostic, Edit, Repair, Severity, Span
+from robosc.diagnostics import Alternative, Diagnostic, Edit, Repair, Severity, Span
 from robosc.files import reading as files
 from robosc.metamodel.places import Place, SourceFile
 
@@ -111,11 +111,15 @@ class Text:
         return Place(self.source_file, self.span(start, end))
 
     def error(self, rule: str, start: int, end: int, message: str, repair: Repair | str | None = None) -> Diagnostic:
-        """A finding between two offsets; a `Repair` with a text is an edit of all that stands between them."""
+        """A finding between two offsets; what a `Repair` writes in its place is written between them."""
         span = self.span(start, end)
-        hint, text = repair if isinstance(repair, Repair) else (repair, None)
-        edits = () if text is None else (Edit(span, text),)
-        return Diagnostic(self.file, span, Severity.ERROR, rule, message, hint, edits)
+        made = Diagnostic(self.file, span, Severity.ERROR, rule, message)
+        if not isinstance(repair, Repair):
+            return replace(made, hint=repair)
+        edits = [Edit(self.span(first, behind), text) for first, behind, text in repair.elsewhere]
+        edits += [] if repair.text is None else [Edit(span, repair.text)]
+        alternatives = [Alternative(f"write `{text}`", (Edit(span, text),)) for text in repair.choices]
+        return replace(made, hint=repair.hint, edits=tuple(edits), alternatives=tuple(alternatives))
 
 
 class Documents:
@@ -162,4 +166,5 @@ def decode(file: str, content: bytes, name: str | None = None) -> tuple[Text, li
         findings.append(before.error("syntax", len(before.content), len(before.content), message, hint))
         # The rest is checked with blanks in such places, so that one fault draws one finding.
         text = content.decode("utf-8", errors="replace").replace("\N{REPLACEMENT CHARACTER}", " ")
-    return Text(file, text.replace("\r\n", "\n").replace("\r", "\n"), SourceFile(name or file, file)), findings
+    text = text.replace("\r\n", "\n").replace("\r", "\n")
+    return Text(file, text, SourceFile(name or file, file, text)), findings

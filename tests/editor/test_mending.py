@@ -66,11 +66,25 @@ def test_a_hint_mends(right: str, wrong: str, rule: str) -> None:
     assert text != ROBOT
     _, actions = ask(text, WHOLE)
     action = next(action for action in actions if action.diagnostics[0].code == rule)
-    assert action.title in action.diagnostics[0].message
+    assert action.diagnostics[0].code == rule
+    assert action.is_preferred is (action.title in action.diagnostics[0].message)
     after = edited(text, action.edit.changes[URI])
     assert rule not in errors(after), after
     nowhere = types.Range(types.Position(0, 0), types.Position(0, 0))
     assert action.title not in {other.title for other in ask(text, nowhere)[1]} or "R { ;" in text
+
+
+def test_each_way_is_a_fix() -> None:
+    """Of several ways each is offered, and none of them is done where all hints are followed at once."""
+    text = ROBOT.replace("initial marked state", "marked state", 1)
+    _, actions = ask(text, WHOLE)
+    assert [(action.title, action.is_preferred) for action in actions] == [
+        (f"write `initial` before `state {name}`", False) for name in ("idle", "busy")
+    ]
+    after = [edited(text, action.edit.changes[URI]) for action in actions]
+    assert ["initial state busy" in other for other in after] == [False, True]
+    assert ["initial-state" in errors(other) for other in after] == [False, False]
+    assert ask(text, WHOLE, "source.fixAll")[1] == []
 
 
 def test_all_at_once() -> None:

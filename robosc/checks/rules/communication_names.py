@@ -6,13 +6,16 @@ from typing import TYPE_CHECKING
 
 from robosc.checks.definitions import of_kind
 from robosc.checks.libraries import fact, instances, reachable
+from robosc.checks.mending import Choice, Removal, Renaming, Rewriting, Together
 from robosc.checks.rule import Finding, rule
 from robosc.diagnostics import Severity
 from robosc.metamodel import robosc as rsc
+from robosc.semantics.naming import written
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from robosc.checks.mending import Hint
     from robosc.metamodel import expression as ex
     from robosc.semantics.instances import PortInstance
 
@@ -46,15 +49,25 @@ def _describe(port: PortInstance) -> str:
     return f"{kind} `{port.communication.name}` of `{port.instance.name}`"
 
 
-def _new_name(first: PortInstance, second: PortInstance, base: rsc.Base) -> str:
+def _new_name(first: PortInstance, second: PortInstance, base: rsc.Base) -> Hint:
     own = [port for port in (second, first) if port.instance.unit is base]
     if not own:
         return "import only one of these components: names that come from libraries can't be changed here"
     name = own[0].communication.name
     new = f"{name}_2" if first.instance is second.instance else f"{name}_{own[0].instance.name.lower()}"
-    topic = own[0].communication.identifier
-    keep = "" if topic else f', and add `identifier: "{name}"` to keep its topic'
-    return f"rename it in `{own[0].instance.name}`, such as `{new}`{keep}"
+    renamed = own[0].communication
+    hint = f"rename it in `{own[0].instance.name}`, such as `{new}`"
+    if renamed.identifier:
+        return Renaming(hint, renamed, new)
+    hint += f', and add `identifier: "{name}"` to keep its topic'
+    return Together(hint, (Renaming(hint, renamed, new), _identified(hint, renamed, name)), is_choice=True)
+
+
+def _identified(hint: str, communication: rsc.CommunicationType, topic: str) -> Rewriting:
+    """A hint that gives communication a topic of its own."""
+    if communication.identifier:
+        return Rewriting(hint, r"\bidentifier\s*:\s*(\"[^\"]*\"|'[^']*')", f'"{topic}"', communication, is_choice=True)
+    return Rewriting(hint, r"\bwith\b()", f' identifier: "{topic}",', communication, is_choice=True)
 
 
 @rule("unique-topic", Severity.WARNING)
@@ -94,7 +107,13 @@ def _remapped_twice(base: rsc.Base) -> Iterator[Finding]:
                     second,
                     f"`{second.communicationType.name}` of `{component.name}` has the topic `{first.identifier}`"
                     f" already, expected one topic: `{second.identifier}` has no effect",
-                    "remove one of the two",
+                    Choice(
+                        "remove one of the two",
+                        (
+                            Removal(f"remove `{second.identifier}`", second),
+                            Removal(f"remove `{first.identifier}`", first),
+                        ),
+                    ),
                 )
 
 
@@ -107,9 +126,17 @@ def _place(port: PortInstance, base: rsc.Base) -> ex.Located:
     return next((mapped for mapped in remappings if mapped.communicationType is port.communication), component)
 
 
-def _own_topic(port: PortInstance, base: rsc.Base) -> str:
+def _own_topic(port: PortInstance, base: rsc.Base) -> Hint:
     name = port.communication.name
     topic = f"/{port.instance.name.lower()}/{name}"
     if port.instance.unit is base:
-        return f'give it a topic of its own, such as `identifier: "{topic}"`'
-    return f'give it a topic of its own, such as `with {{ {name}: "{topic}" }}` after the import'
+        return _identified(f'give it a topic of its own, such as `identifier: "{topic}"`', port.communication, topic)
+    hint = f'give it a topic of its own, such as `with {{ {name}: "{topic}" }}` after the import'
+    imported = port.instance.component.type
+    assert isinstance(imported, rsc.ImportedComponent)
+    place = _place(port, base)
+    if isinstance(place, rsc.TopicRemapping):
+        return Rewriting(hint, r":\s*(.*)\Z", f'"{topic}"', place, is_choice=True)
+    if imported.remappings:
+        return Rewriting(hint, r"\bwith\s*\{()", f' {written(name)}: "{topic}",', imported, is_choice=True)
+    return Rewriting(hint, r"()\Z", f' with {{ {written(name)}: "{topic}" }}', imported, is_choice=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.checks.definitions import communications, of_kind
+from robosc.checks.mending import Choice, Removal, Replacement
 from robosc.checks.rule import Finding, rule
 from robosc.metamodel import robosc as rsc
 from robosc.semantics.communication import carried, sent_type
@@ -13,6 +14,10 @@ from robosc.semantics.typing import NONE, ArrayType, EnumType, declared_type
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+
+    from robosc.checks.mending import Hint
+
+_BASIC = ("boolean", "integer", "double", "string")
 
 
 @rule("data-type")
@@ -38,21 +43,44 @@ def data_type(base: rsc.Base) -> Iterator[Finding]:
                 sent,
                 f"`{communication.name}` sends an enum{through}, expected the type of the ROS data: there is no way"
                 " back from an enum value to the data that it stands for",
-                "write the type that the enum is from, and provide a value of that type"
-                if not path
-                else "declare an object without the enum for what is sent",
+                _sent_as(sent) if not path else "declare an object without the enum for what is sent",
             )
+
+
+def _sent_as(sent: rsc.DataType) -> Hint:
+    hint = "write the type that the enum is from, and provide a value of that type"
+    while isinstance(sent, rsc.Array):
+        sent = sent.type
+    assert isinstance(sent, rsc.ComplexDataTypeReference)
+    return _without_enum(hint, sent) or hint
+
+
+def _without_enum(hint: str, declared: rsc.ComplexDataTypeReference) -> Replacement | None:
+    """A hint that writes the type that an enum is from in its place."""
+    found: rsc.DataType | None = declared
+    seen = set()
+    while isinstance(found, rsc.ComplexDataTypeReference) and isinstance(found.type, rsc.EnumDataType):
+        if found.type in seen:
+            return None
+        seen.add(found.type)
+        found = found.type.type
+    return Replacement(hint, _text(found), declared, is_choice=True) if found is not None else None
 
 
 def _base_of(enum: rsc.EnumDataType) -> Iterator[Finding]:
     found = declared_type(enum.type)
-    repair = None
+    repair: Hint | None = None
     if isinstance(found, EnumType):
         repair = f"declare it from the type that `{found.definition.name}` is from"
+        if isinstance(enum.type, rsc.ComplexDataTypeReference):
+            repair = _without_enum(repair, enum.type) or repair
     elif isinstance(found, ArrayType):
         repair = "declare it from the object that has the array, and read elements by `value.….[0]`"
     elif found == NONE:
-        repair = "declare it from `boolean`, `integer`, `double`, `string` or an object"
+        repair = Choice(
+            "declare it from `boolean`, `integer`, `double`, `string` or an object",
+            tuple(Replacement(f"declare it from `{name}`", name, enum.type) for name in _BASIC),
+        )
     if repair:
         what = {EnumType: "another enum", ArrayType: "an array"}.get(type(found), "no data")
         yield Finding(
@@ -84,7 +112,7 @@ def _endless(base: rsc.Base) -> Iterator[Finding]:
                 yield Finding(
                     part,
                     f"property `{part.name}` makes object `{inner.name}` contain itself, expected data of finite size",
-                    "leave the property out, or give it a type that does not contain the object",
+                    Removal("leave the property out, or give it a type that does not contain the object", part),
                 )
             elif inner is not None and inner not in done and inner.eContainer() is base:
                 open_types.add(inner)

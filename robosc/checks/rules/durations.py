@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 from robosc.checks.definitions import behaviours, common_transitions, of_kind, transitions
 from robosc.checks.libraries import instances, meanings
-from robosc.checks.rule import Finding, Replacement, rule
+from robosc.checks.mending import Replacement
+from robosc.checks.rule import Finding, rule
 from robosc.metamodel import robosc as rsc
 from robosc.semantics.durations import (
     LONGEST,

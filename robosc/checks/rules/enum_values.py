@@ -6,12 +6,14 @@ from typing import TYPE_CHECKING
 
 from robosc.checks.definitions import of_kind, unit_of
 from robosc.checks.libraries import fact, imports, instances, reachable
-from robosc.checks.rule import Finding, Insertion, rule
+from robosc.checks.mending import Insertion, Removal, Renaming, Rewriting
+from robosc.checks.rule import Finding, rule
 from robosc.metamodel import robosc as rsc
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from robosc.checks.mending import Hint
     from robosc.semantics.instances import Instance
 
 
@@ -32,14 +34,20 @@ def enum_default(base: rsc.Base) -> Iterator[Finding]:
                     is_choice=True,
                 )
                 if enum.rules
-                else "add a last rule, such as `default -> other`",
+                else Rewriting(
+                    "add a last rule, such as `default -> other`",
+                    r"\{()",
+                    " default -> other ",
+                    enum,
+                    is_choice=True,
+                ),
                 relies_on=enum,
             )
         for other in defaults[1:]:
             yield Finding(
                 other,
                 f"enum `{enum.name}` has a second default rule, expected one",
-                "give this rule a condition in place of `default`, or leave it out",
+                Removal("give this rule a condition in place of `default`, or leave it out", other),
             )
 
 
@@ -81,11 +89,12 @@ def _import(base: rsc.Base, instance: Instance, unit: rsc.Base) -> rsc.Component
     return instance.component
 
 
-def _repair_overlap(value: rsc.EnumValue, state: rsc.State, own_value: bool, own_state: bool) -> str:
+def _repair_overlap(value: rsc.EnumValue, state: rsc.State, own_value: bool, own_state: bool) -> Hint:
     if own_value:
-        return f"rename the value, such as `{value.name}_{_enum(value).name.lower()}`"
+        name = f"{value.name}_{_enum(value).name.lower()}"
+        return Renaming(f"rename the value, such as `{name}`", value, name)
     if own_state:
-        return f"rename the state, such as `is_{state.name}`"
+        return Renaming(f"rename the state, such as `is_{state.name}`", state, f"is_{state.name}")
     return "import only one of these libraries: names that come from libraries can't be changed here"
 
 

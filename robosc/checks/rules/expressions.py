@@ -17,6 +17,7 @@ from robosc.checks.definitions import (
     variables,
 )
 from robosc.checks.expression_types import CONSTANT, ENUM_RULE, ExpressionCheck, Place, Restriction
+from robosc.checks.mending import Choice, Replacement
 from robosc.checks.rule import Finding, rule
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
@@ -112,7 +113,10 @@ def _of_one_value(declared: rsc.DataType | None, what: str) -> Iterator[Finding]
     found = declared_type(declared)
     if declared is not None and (found == NONE or isinstance(found, ArrayType | ObjectType)):
         hint = "write `boolean`, `integer`, `double`, `string` or the name of an enum"
-        yield Finding(declared, f"{what} is of type {found}, expected a type of one value", hint)
+        ways = tuple(
+            Replacement(f"write `{name}`", name, declared) for name in ("boolean", "integer", "double", "string")
+        )
+        yield Finding(declared, f"{what} is of type {found}, expected a type of one value", Choice(hint, ways))
 
 
 def _constant(value: ex.Expression | None, wanted: Type, what: str) -> Iterator[Finding]:
@@ -169,7 +173,8 @@ def _duration(value: ex.Expression | None) -> Iterator[Finding]:
     check = ExpressionCheck(Place(None) if set_on_robot(value) else replace(CONSTANT, what="a duration"))
     found = check.type(value)
     if value is not None and found not in {INTEGER, DOUBLE, UNKNOWN}:
-        check.report(value, f"a duration must be integer or double, found {found}", "write a number, such as `3.0 s`")
+        hint = Replacement("write a number, such as `3.0 s`", "3.0", value, is_choice=True)
+        check.report(value, f"a duration must be integer or double, found {found}", hint)
     yield from check.findings
 
 

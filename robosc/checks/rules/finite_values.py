@@ -15,7 +15,8 @@ from robosc.checks.definitions import (
     variables,
 )
 from robosc.checks.libraries import Meaning, meanings
-from robosc.checks.rule import Finding, Replacement, rule
+from robosc.checks.mending import Choice, Cut, Removal, Replacement, Together
+from robosc.checks.rule import Finding, rule
 from robosc.checks.supervised import Fault, function_faults, readings, supervised_faults, table_faults
 from robosc.metamodel import robosc as rsc
 from robosc.ros_types.wire import INTEGER_RANGES
@@ -40,7 +41,7 @@ from robosc.semantics.typing import (
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from robosc.checks.rule import Hint
+    from robosc.checks.mending import Hint
     from robosc.metamodel import expression as ex
     from robosc.semantics.cone_of_influence import Reading
     from robosc.semantics.instances import Instances
@@ -58,17 +59,26 @@ def variable_type(base: rsc.Base) -> Iterator[Finding]:
             yield Finding(
                 variable,
                 f"variable `{variable.name}` holds no value, expected data",
-                "leave it out, or declare it boolean to remember that something happened",
+                Choice(
+                    "leave it out, or declare it boolean to remember that something happened",
+                    (
+                        Removal("leave it out", variable),
+                        Replacement("declare it boolean", "boolean", variable.type),
+                    ),
+                ),
             )
         elif isinstance(found, ArrayType | ObjectType):
             starts = "an array starts empty" if isinstance(found, ArrayType) else "each field starts as a variable does"
             if variable.initial is not None:
                 message = f"variable `{variable.name}` is {found} and takes no initial value: {starts}"
-                yield Finding(variable.initial, message, f"write `variable {variable.name}: …` without `=`")
+                hint = Cut(f"write `variable {variable.name}: …` without `=`", variable.type, variable.initial)
+                yield Finding(variable.initial, message, hint)
             if _has_objects(found) and variable not in stored:
                 message = f"variable `{variable.name}` is {found}, and no event stores anything in it"
                 yield Finding(
-                    variable, message, f"write `do {variable.name} := value` where it comes in, or leave it out"
+                    variable,
+                    message,
+                    Removal(f"write `do {variable.name} := value` where it comes in, or leave it out", variable),
                 )
     yield from supervised_faults(base, _without_domain)
     yield from supervised_faults(base, function_faults)
@@ -181,17 +191,29 @@ def _parameters(meaning: Meaning) -> Iterator[Finding]:
             )
         elif meaning.made is None and parameter.lowest is not None and declared_type(parameter.type) != DOUBLE:
             message = f"parameter `{parameter.name}` is {declared_type(parameter.type)} and has no range"
-            yield Finding(parameter.lowest, message, "leave it out, or declare it double")
+            yield Finding(parameter.lowest, message, _unranged(parameter))
         low, value, high = meaning.values(parameter.lowest, parameter.value, parameter.highest)
-        if isinstance(low, float) and isinstance(high, float) and parameter.lowest is not None:
+        lowest, highest = parameter.lowest, parameter.highest
+        if isinstance(low, float) and isinstance(high, float) and lowest is not None and highest is not None:
             if low > high:
                 message = f"the range {low}..{high} is empty, expected the lower bound first"
-                yield meaning.finding(parameter.lowest, message, f"write `double({high}..{low})`")
+                swapped = (
+                    Replacement("", f"{high}", lowest),
+                    Replacement("", f"{low}", highest),
+                )
+                yield meaning.finding(lowest, message, Together(f"write `double({high}..{low})`", swapped))
             elif isinstance(value, float) and parameter.value is not None and not low <= value <= high:
                 message = f"{value} is not in the range {low}..{high} of `{parameter.name}`, expected a value that is"
                 nearest = low if value < low else high
-                hint = Replacement(f"write `{nearest}`, or widen it", f"{nearest}", parameter.value, is_choice=True)
-                yield meaning.finding(parameter.value, message, hint)
+                way = Replacement(f"write `{nearest}`, or widen it", f"{nearest}", parameter.value, is_choice=True)
+                yield meaning.finding(parameter.value, message, way)
+
+
+def _unranged(parameter: rsc.Parameter) -> Choice:
+    """The ways out of a range that only a double has."""
+    double = Replacement("declare it double", "double", parameter.type)
+    ways = () if parameter.highest is None else (Cut("leave the range out", parameter.type, parameter.highest, ")"),)
+    return Choice("leave it out, or declare it double", (*ways, double))
 
 
 def _is_unranged(declared: rsc.DataType) -> bool:

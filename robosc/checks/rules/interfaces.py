@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 from robosc.checks.definitions import communications, of_kind, unit_of
 from robosc.checks.libraries import imports, instances, reachable
-from robosc.checks.rule import Finding, Insertion, Replacement, interface_rule, rule
+from robosc.checks.mending import Choice, Insertion, Removal, Renaming, Replacement
+from robosc.checks.rule import Finding, interface_rule, rule
 from robosc.checks.wire_data import Carried, UsedData, Uses, carried_data, carries
 from robosc.checks.wire_faults import Fault, Unknown, faults, misfits, wire_type
 from robosc.diagnostics import Severity
@@ -21,7 +22,7 @@ from robosc.semantics.typing import NONE, UNKNOWN, ObjectType, Type, declared_ty
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from robosc.checks.rule import Hint
+    from robosc.checks.mending import Hint
     from robosc.ros_types import RosTypes
 
 
@@ -145,11 +146,26 @@ def _faulty(base: rsc.Base, interfaces: RosTypes) -> Iterator[tuple[ex.Located, 
                 element = _place(base, data, fault, uses)
                 if element is not None:
                     hint: Hint = fault.hint
-                    if fault.text is not None and fault.property is not None and fault.property is element:
-                        hint = Replacement(fault.hint, fault.text, fault.property)
+                    if fault.property is element and fault.property is not None:
+                        hint = _of_property(fault, fault.property)
+                    elif fault.text is not None and fault.property is None and element is data.declared:
+                        hint = Replacement(fault.hint, fault.text, element)
                     key = (element, fault.message, hint)
                     found[key] = found.get(key, False) or fault.is_used(uses)
     yield from ((*key, used) for key, used in found.items())
+
+
+def _of_property(fault: Fault, declared: rsc.ObjectProperty) -> Hint:
+    """The hint at the property itself, as what does what it says."""
+    if fault.text is not None:
+        return Replacement(fault.hint, fault.text, declared)
+    if fault.new_name is not None:
+        return Renaming(fault.hint, declared, fault.new_name, is_choice=False)
+    if fault.others is None:
+        return fault.hint
+    fields = [f"{written(name)}: {kind}" for name, kind in fault.others.items()]
+    ways = [Replacement(f"write `{text}`", text, declared) for text in fields]
+    return Choice(fault.hint, (*ways, Removal("leave it out", declared)))
 
 
 def _place(base: rsc.Base, data: Carried, fault: Fault, uses: Uses) -> ex.Located | None:

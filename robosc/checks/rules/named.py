@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 from robosc.checks.definitions import of_kind, statements
 from robosc.checks.expression_types import CONSTANT, ExpressionCheck, Place
 from robosc.checks.libraries import Meaning, instances, meanings
-from robosc.checks.rule import Finding, Replacement, on_line, rule
+from robosc.checks.mending import Choice, Cut, Insertion, Removal, Replacement
+from robosc.checks.rule import Finding, on_line, rule
 from robosc.checks.type_repairs import repair
 from robosc.diagnostics import Severity
 from robosc.metamodel import expression as ex
@@ -18,11 +19,12 @@ from robosc.semantics.cone_of_influence import accesses, conditions
 from robosc.semantics.durations import bounds, set_on_robot
 from robosc.semantics.expansion import LARGEST, Expansion, constant_value
 from robosc.semantics.instances import bound_arguments
+from robosc.semantics.naming import written
 from robosc.semantics.operators import operator_of
 from robosc.semantics.typing import INTEGER, UNKNOWN, declared_type, type_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Collection, Iterator, Sequence
 
     from robosc.semantics.instances import Instances
     from robosc.semantics.operators import Operator
@@ -142,10 +144,16 @@ def _given(
                 names = [parameter.name for parameter in parameters]
                 yield _wrong_number(argument, definition.name, len(given), names)
                 return
-            yield Finding(argument, "an argument without name stands behind one with a name", "name its parameter")
+            message = "an argument without name stands behind one with a name"
+            yield Finding(argument, message, _naming(argument, parameters, found, given))
         elif parameter in found:
             message = f"parameter `{parameter.name}` has an argument already{on_line(found[parameter])}"
-            yield Finding(argument, message, "leave one of the two out", related=found[parameter])
+            first = found[parameter]
+            ways = (
+                Removal(f"leave this one out{on_line(argument)}", argument),
+                Removal(f"leave the other one out{on_line(first)}", first),
+            )
+            yield Finding(argument, message, Choice("leave one of the two out", ways), related=first)
         else:
             found[parameter] = argument
             yield from _typed(argument.value, parameter, settable=isinstance(definition, rsc.EnumDataType))
@@ -156,6 +164,21 @@ def _given(
         yield Finding(user, f"`{definition.name}` gets no argument for {lacking}", hint)
 
 
+def _naming(
+    argument: rsc.Argument,
+    parameters: Sequence[rsc.FormalParameter],
+    found: Collection[rsc.FormalParameter],
+    given: Sequence[rsc.Argument],
+) -> Choice:
+    """The parameters that an argument can be for, by the names before it."""
+    named = {other.parameter for other in given}
+    free = [parameter for parameter in parameters if parameter not in found and parameter not in named]
+    ways = (
+        Insertion(f"write `{written(other.name)}:` before it", f"{written(other.name)}: ", argument) for other in free
+    )
+    return Choice("name its parameter", tuple(ways))
+
+
 def _typed(value: ex.Expression | None, parameter: rsc.FormalParameter, *, settable: bool = False) -> Iterator[Finding]:
     """What is wrong with an argument or a default value; `settable`: it may be a parameter of the node."""
     constant = _ENUM_ARGUMENT if settable else _ARGUMENT
@@ -163,8 +186,14 @@ def _typed(value: ex.Expression | None, parameter: rsc.FormalParameter, *, setta
     check.expect(value, declared_type(parameter.type), f"the argument for `{parameter.name}`")
     yield from check.findings
     number = constant_value(value)
-    if type(number) is int and value is not None and not _fits(number, number, parameter):
-        yield Finding(value, *_out_of_range(str(number), parameter))
+    kind = parameter.type
+    if type(number) is not int or value is None or not isinstance(kind, rsc.IntegerDataType):
+        return
+    if not _fits(number, number, parameter):
+        message, hint = _out_of_range(str(number), parameter)
+        low = kind.minimum or 0
+        nearest = low if number < low else kind.maximum
+        yield Finding(value, message, Replacement(f"{hint}, such as `{nearest}`", str(nearest), value, is_choice=True))
 
 
 def _fits(lowest: float | None, highest: float | None, parameter: rsc.FormalParameter) -> bool:
@@ -234,7 +263,8 @@ def _defaults(base: rsc.Base) -> Iterator[Finding]:
         for parameter in function.parameters:
             if parameter.default is not None:
                 message = f"parameter `{parameter.name}` of a function has a default value"
-                yield Finding(parameter.default, message, "leave it out: each call gives all arguments")
+                hint = Cut("leave it out: each call gives all arguments", parameter.type, parameter.default)
+                yield Finding(parameter.default, message, hint)
 
 
 def _wrong_number(where: ex.Located, name: str, count: int, names: Sequence[str]) -> Finding:
@@ -252,7 +282,7 @@ def unused_template(base: rsc.Base) -> Iterator[Finding]:
                 yield Finding(
                     component,
                     f"nothing is made of the template `{component.name}`, so that it is no part of the robot",
-                    f"write `component ... is {component.name}(...)`, or leave the template out",
+                    Removal(f"write `component ... is {component.name}(...)`, or leave the template out", component),
                     relies_on=base,
                 )
 
@@ -266,7 +296,8 @@ def _built_in(element: ex.FunctionCall) -> Iterator[Finding]:
     for position in sorted(row.divisors):
         divisor = given[position]
         if not _reads_parameter(divisor) and type_of(divisor) == INTEGER and not _is_positive(constant_value(divisor)):
-            yield Finding(divisor, *_wrong_divisor(row, position))
+            message, hint = _wrong_divisor(row, position)
+            yield Finding(divisor, message, Replacement(hint, "10", divisor, is_choice=True))
 
 
 def _made(meaning: Meaning) -> Iterator[Finding]:

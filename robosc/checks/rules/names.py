@@ -9,6 +9,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from robosc.checks.definitions import behaviours, components, of_kind, statements, states
+from robosc.checks.mending import Choice, Removal, Renaming
 from robosc.checks.rule import Finding, on_line, rule
 from robosc.metamodel import robosc as rsc
 
@@ -115,15 +116,16 @@ def unique_property(base: rsc.Base) -> Iterator[Finding]:
 def _provided_again(value: ex.Expression) -> Iterator[Finding]:
     if not isinstance(value, rsc.ObjectValue):
         return
-    named = set()
+    named: dict[rsc.ObjectProperty, rsc.ObjectPropertyValue] = {}
     for given in value.properties:
-        if given.property is not None and given.property in named:
+        first = named.setdefault(given.property, given)
+        if given.property is not None and first is not given:
+            ways = Removal("leave the first one out", first), Removal("leave the last one out", given)
             yield Finding(
                 given,
                 f"property `{given.property.name}` has a value already, expected one for each property",
-                "leave one of the two out",
+                Choice("leave one of the two out", ways),
             )
-        named.add(given.property)
         yield from _provided_again(given.value)
 
 
@@ -159,6 +161,6 @@ def _declared_again(kind: str, second: ex.NamedElement, first: ex.NamedElement, 
     return Finding(
         second,
         f"{kind} `{second.name}` has the name of {other}{on_line(first)}, expected a name of its own in {where}",
-        f"rename one of the two, such as `{second.name}_2`",
+        Renaming(f"rename one of the two, such as `{second.name}_2`", second, f"{second.name}_2"),
         related=first,
     )

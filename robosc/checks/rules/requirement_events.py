@@ -16,7 +16,8 @@ from robosc.checks.definitions import (
     transitions,
 )
 from robosc.checks.libraries import instances
-from robosc.checks.rule import Finding, Replacement, on_line, rule
+from robosc.checks.mending import Choice, Insertion, Removal, Replacement, Rewriting
+from robosc.checks.rule import Finding, on_line, rule
 from robosc.metamodel import robosc as rsc
 from robosc.metamodel.reflection import tree
 from robosc.semantics.communication import event_names, meant
@@ -24,8 +25,9 @@ from robosc.semantics.cone_of_influence import accesses
 from robosc.semantics.naming import enumeration, written
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
 
+    from robosc.checks.mending import Way
     from robosc.metamodel import expression as ex
 
 
@@ -52,7 +54,9 @@ def _sent_on_change(base: rsc.Base) -> Iterator[Finding]:
     for message in communications(base):
         if isinstance(message, rsc.Message) and message.onChange and message.direction == rsc.MessageDirection.outgoing:
             what = f"`{message.name}` comes from its component whenever that sends it, expected an incoming message"
-            yield Finding(message, f"{what} before `send: change`", "leave `, send: change` out")
+            yield Finding(
+                message, f"{what} before `send: change`", _with_every_tick("leave `, send: change` out", message)
+            )
     named: list[tuple[ex.Located, rsc.CommunicationReference]] = []
     named += [(event, event.communicationType) for event in named_events(base)]
     for _, transition in transitions(base):
@@ -61,12 +65,19 @@ def _sent_on_change(base: rsc.Base) -> Iterator[Finding]:
     for where, reference in named:
         sent = communication_of(reference)
         if isinstance(sent, rsc.Message) and sent.onChange and sent.direction == rsc.MessageDirection.incoming:
+            ways: list[Way] = [_with_every_tick("leave `, send: change` out", sent, is_choice=True)]
+            if isinstance(where, rsc.Transition):
+                ways.append(Removal("leave the transition out", where))
             yield Finding(
                 where,
                 f"`{sent.name}` is sent when its data changes, expected no transition, order, count or automaton that"
                 " names it",
-                "leave `, send: change` out, or this",
+                Choice("leave `, send: change` out, or this", tuple(ways)),
             )
+
+
+def _with_every_tick(hint: str, message: rsc.Message, *, is_choice: bool = False) -> Rewriting:
+    return Rewriting(hint, r"\s*,\s*send\s*:\s*change\b", "", message, is_choice)
 
 
 def _readers(base: rsc.Base) -> Iterator[Finding]:
@@ -118,7 +129,7 @@ def unknown_events(base: rsc.Base) -> Iterator[Finding]:
                 f" {enumeration(f'`{name}`' for name in allowed)}",
                 Replacement(f"write `{written(communication.name)}` alone", written(communication.name), named)
                 if named.communicationType.component is None
-                else f"write `{written(communication.name)}` alone",
+                else Rewriting(f"write `{written(communication.name)}` alone", r"\A\w+\s+(?:to|from)\s+", "", named),
             )
 
 
@@ -128,10 +139,33 @@ def initial_states(base: rsc.Base) -> Iterator[Finding]:
         initial = [state for state in automaton.states if state.initial]
         for other in initial[1:]:
             message = f"the automaton has a second initial state `{other.name}`, expected one"
-            yield Finding(other, message, f"leave `initial` out before `{other.name}` or `{initial[0].name}`")
+            hint = f"leave `initial` out before `{other.name}` or `{initial[0].name}`"
+            yield Finding(other, message, one_initial(hint, other, initial[0]))
         if not initial:
             message = "no state of the automaton is initial, expected one"
-            yield Finding(automaton, message, "write `initial` before the state it starts in", relies_on=automaton)
+            starts = start_of("write `initial` before the state it starts in", automaton.states)
+            yield Finding(automaton, message, starts, relies_on=automaton)
+
+
+def start_of(hint: str, states: Iterable[rsc.State | rsc.RequirementState]) -> Choice:
+    """The states of which one may be initial."""
+    ways = (Insertion(f"write `initial` before `state {written(state.name)}`", "initial ", state) for state in states)
+    return Choice(hint, tuple(ways))
+
+
+def one_initial(hint: str, *states: rsc.State | rsc.RequirementState) -> Choice:
+    """The states of which one is not to be initial."""
+    ways = (Rewriting(f"leave `initial` out before `{state.name}`", r"\binitial\s+", "", state) for state in states)
+    return Choice(hint, tuple(ways))
+
+
+def one_out(hint: str, later: rsc.Transition | rsc.RequirementTransition, earlier: ex.Located) -> Choice:
+    """Two transitions of which one is to be left out."""
+    ways = (
+        Removal(f"leave this one out{on_line(later)}", later),
+        Removal(f"leave the other one out{on_line(earlier)}", earlier),
+    )
+    return Choice(hint, ways)
 
 
 def repeated_events(base: rsc.Base) -> Iterator[Finding]:
@@ -150,7 +184,7 @@ def repeated_events(base: rsc.Base) -> Iterator[Finding]:
                         transition,
                         f"this transition of state `{state.name}` is never tried: another one for this event, without"
                         f" condition, stands before it{on_line(always[key])}",
-                        "move it before that one, or leave one of the two out",
+                        one_out("move it before that one, or leave one of the two out", transition, always[key]),
                         related=always[key],
                     )
                 elif transition.guard is None:

@@ -5,9 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.checks.definitions import communication_of, restricted_events, statements
-from robosc.checks.rule import Finding, Replacement, rule
+from robosc.checks.mending import Choice, Removal, Rewriting
+from robosc.checks.rule import Finding, rule
 from robosc.metamodel import robosc as rsc
 from robosc.semantics.communication import sent
+from robosc.semantics.naming import written
 from robosc.semantics.typing import NONE, provided_data_type
 
 if TYPE_CHECKING:
@@ -17,6 +19,12 @@ if TYPE_CHECKING:
 _DIRECTIONS = (
     "or, if the controller sends it, declare it as `incoming message {}`: incoming is what a component receives"
 )
+_NAMELESS = "name what it restricts, or leave the requirement out"
+
+
+def _as_incoming(communication: rsc.CommunicationType) -> Rewriting:
+    name = written(communication.name)
+    return Rewriting(f"declare `incoming message {name}`", r"\Aoutgoing\b", "incoming", communication)
 
 
 @rule("data-provisioning")
@@ -29,15 +37,18 @@ def data_provisioning(base: rsc.Base) -> Iterator[Finding]:
                 statement.communicationType,
                 f"data is provided to `{communication.name}`, which the controller receives, expected a communication"
                 " that it sends: an incoming message, a service or an action",
-                "leave the provide statement out: the data of an outgoing message comes from its component;"
-                f" {_DIRECTIONS.format(communication.name)}",
+                Choice(
+                    "leave the provide statement out: the data of an outgoing message comes from its component;"
+                    f" {_DIRECTIONS.format(communication.name)}",
+                    (Removal("leave the provide statement out", statement), _as_incoming(communication)),
+                ),
             )
         elif communication is not None and provided_data_type(communication) == NONE:
             what = "it" if isinstance(communication, rsc.Message) else "its request"
             yield Finding(
                 statement.data or statement,
                 f"data is provided to `{communication.name}`, expected none: {what} is declared with the type `none`",
-                Replacement("leave the provide statement out: there is no data to send along", "", statement),
+                Removal("leave the provide statement out: there is no data to send along", statement, is_choice=False),
             )
 
 
@@ -47,7 +58,7 @@ def requirement_target(base: rsc.Base) -> Iterator[Finding]:
     for events in restricted_events(base):
         if events is not None and not events.events:
             message = "the requirement restricts nothing, expected at least one event in the braces"
-            yield Finding(events, message, "name what it restricts, or leave the requirement out")
+            yield Finding(events, message, Removal(_NAMELESS, events.eContainer()))
     for requirement in statements(rsc.CommunicationRequirement, base):
         if requirement.target is None:
             continue
@@ -55,7 +66,7 @@ def requirement_target(base: rsc.Base) -> Iterator[Finding]:
             yield Finding(
                 requirement.target,
                 "the requirement restricts nothing, expected at least one message, service or action in the braces",
-                "name what it restricts, or leave the requirement out",
+                Removal(_NAMELESS, requirement),
                 relies_on=requirement,
             )
         for reference in requirement.target.communicationTypes:
@@ -65,5 +76,8 @@ def requirement_target(base: rsc.Base) -> Iterator[Finding]:
                     reference,
                     f"`{communication.name}` comes from its component whenever that sends it, expected a communication"
                     " that the controller starts: an incoming message, a service or an action",
-                    f"restrict what the controller does about it; {_DIRECTIONS.format(communication.name)}",
+                    Choice(
+                        f"restrict what the controller does about it; {_DIRECTIONS.format(communication.name)}",
+                        (_as_incoming(communication),),
+                    ),
                 )

@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.checks.definitions import behaviours, common_transitions, states
-from robosc.checks.rule import Finding, Insertion, Replacement, rule
-from robosc.checks.rules.requirement_events import initial_states
+from robosc.checks.mending import Choice, Insertion, Rewriting
+from robosc.checks.rule import Finding, rule
+from robosc.checks.rules.requirement_events import initial_states, one_initial, start_of
 from robosc.metamodel import robosc as rsc
 
 if TYPE_CHECKING:
@@ -25,31 +26,29 @@ def initial_state(base: rsc.Base) -> Iterator[Finding]:
                 other,
                 f"`{component.name}` has a second initial state `{other.name}`, expected one: it starts in"
                 f" `{initial[0].name}`",
-                f"leave `initial` out before `{other.name}` or before `{initial[0].name}`",
+                one_initial(
+                    f"leave `initial` out before `{other.name}` or before `{initial[0].name}`", other, initial[0]
+                ),
             )
         if not every:
             yield Finding(
                 behaviour,
                 f"the behaviour of `{component.name}` has no state, expected one that is initial",
-                Replacement(
+                Rewriting(
                     "add a state, such as `initial marked state idle { }`",
-                    "behaviour { initial marked state idle { } }",
+                    r"\{()",
+                    " initial marked state idle { }",
                     behaviour,
                     is_choice=True,
-                )
-                if not behaviour.automaton.definitions
-                else "add a state, such as `initial marked state idle { }`",
+                ),
                 relies_on=behaviour,
             )
         elif not initial:
             yield Finding(
                 behaviour,
                 f"no state of `{component.name}` is initial, expected one",
-                Insertion(
-                    f"write `initial` before the state it starts in, such as `initial state {every[0].name}`",
-                    "initial ",
-                    every[0],
-                    is_choice=True,
+                start_of(
+                    f"write `initial` before the state it starts in, such as `initial state {every[0].name}`", every
                 ),
                 relies_on=behaviour,
             )
@@ -82,16 +81,21 @@ def marked_state(base: rsc.Base) -> Iterator[Finding]:
                     " reachable state leads to one",
                     Insertion(
                         f"write `marked` before `state {state.name}`, or add a transition to "
-                        + " or ".join(f"`{other.name}`" for other in marked[:3])
-                        if marked
-                        else f"write `marked` before a state of `{component.name}` where it may rest",
+                        + " or ".join(f"`{other.name}`" for other in marked[:3]),
                         "marked ",
                         state,
                         is_choice=True,
-                    ),
+                    )
+                    if marked
+                    else _rest(f"write `marked` before a state of `{component.name}` where it may rest", every),
                     relies_on=behaviour,
                     relies_on_names=(rsc.Transition,),
                 )
+
+
+def _rest(hint: str, states: Iterable[rsc.State]) -> Choice:
+    ways = (Insertion(f"write `marked` before `state {state.name}`", "marked ", state) for state in states)
+    return Choice(hint, tuple(ways))
 
 
 def _closure(start: Iterable[rsc.State], edges: Mapping[rsc.State, Iterable[rsc.State]]) -> set[rsc.State]:

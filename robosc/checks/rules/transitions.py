@@ -16,8 +16,9 @@ from robosc.checks.definitions import (
     states,
     transitions,
 )
-from robosc.checks.rule import Finding, Replacement, on_line, rule
-from robosc.checks.rules.requirement_events import repeated_events, unknown_events
+from robosc.checks.mending import Choice, Removal, Replacement, Rewriting, Unassigned
+from robosc.checks.rule import Finding, on_line, rule
+from robosc.checks.rules.requirement_events import one_out, repeated_events, unknown_events
 from robosc.diagnostics import Severity
 from robosc.metamodel import robosc as rsc
 from robosc.semantics.communication import event_names
@@ -25,6 +26,8 @@ from robosc.semantics.naming import enumeration, written
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+
+    from robosc.checks.mending import Hint, Way
 
 _Event: TypeAlias = "tuple[rsc.Component | None, rsc.CommunicationType, str]"
 
@@ -46,23 +49,26 @@ def result_type(base: rsc.Base) -> Iterator[Finding]:
         event, allowed = str(transition.resultType), event_names(communication)
         if communication is not None and event not in allowed:
             prepositions = {name: "to" if name == "request" else "from" for name in allowed}
-            forms = [f"`on {name} {word} {written(communication.name)}`" for name, word in prepositions.items()]
+            forms = {
+                f"on {name} {word} ": f"`on {name} {word} {written(communication.name)}`"
+                for name, word in prepositions.items()
+            }
+            ways: list[Way] = [
+                Replacement(f"write {form}", text, transition, until=transition.communicationType)
+                for text, form in forms.items()
+            ]
             direction = f"{communication.direction} " if isinstance(communication, rsc.Message) else ""
-            hint = f"write {enumeration(forms)}"
-            if direction and event in _SENT_BY:
+            hint = f"write {enumeration(forms.values())}"
+            if isinstance(communication, rsc.Message) and event in _SENT_BY:
                 opposite, sender = _SENT_BY[event]
-                hint += f", or, if {sender} sends it, declare it as `{opposite} message {written(communication.name)}`"
+                declared = f"declare it as `{opposite} message {written(communication.name)}`"
+                hint += f", or, if {sender} sends it, {declared}"
+                ways.append(Rewriting(declared, rf"\A{communication.direction}\b", opposite, communication))
             yield Finding(
                 transition,
                 f"{direction}{type(communication).__name__.lower()} `{communication.name}` has no {event}, expected"
                 f" {enumeration(f'`{name}`' for name in allowed)}",
-                Replacement(
-                    hint,
-                    f"on {allowed[0]} {prepositions[allowed[0]]} ",
-                    transition,
-                    is_choice=len(forms) > 1,
-                    until=transition.communicationType,
-                ),
+                ways[0] if len(ways) == 1 else Choice(hint, tuple(ways)),
             )
 
 
@@ -119,7 +125,8 @@ def _repeated(
             firsts.setdefault(event, (second, state))
             if first is not second and second not in reported:
                 reported.add(second)
-                yield Finding(second, *_never_taken(component, event, (first, other), state), related=first)
+                message, hint = _never_taken(component, event, (first, other), state)
+                yield Finding(second, message, one_out(hint, second, first), related=first)
 
 
 def _never_taken(
@@ -163,7 +170,10 @@ def assignment_on_message_to_node(base: rsc.Base) -> Iterator[Finding]:
                 transition.assignments[0],
                 f"`{component.name}` assigns a value when it is sent `{name}`, expected no assignment: a message"
                 " to a component brings no data back",
-                "leave `do …` out; a state that the transition goes to can remember that the message was sent",
+                Unassigned(
+                    "leave `do …` out; a state that the transition goes to can remember that the message was sent",
+                    transition,
+                ),
             )
 
 
@@ -178,7 +188,7 @@ def assignment_scope(base: rsc.Base) -> Iterator[Finding]:
                 yield Finding(
                     target,
                     f"{_describe(target)} is assigned a value, expected a variable of `{component.name}`",
-                    _repair(target, component),
+                    _repair(target, component, transition),
                 )
 
 
@@ -186,17 +196,22 @@ def assignment_scope(base: rsc.Base) -> Iterator[Finding]:
 def repeated_assignment(base: rsc.Base) -> Iterator[Finding]:
     """A transition assigns a variable once."""
     for _, transition in transitions(base):
-        assigned = set()
+        assigned: dict[rsc.Variable, rsc.Assignment] = {}
         for assignment in transition.assignments:
             variable = assigned_variable(assignment)
             if variable is not None and variable in assigned:
+                ways = (
+                    Removal("leave the first one out", assigned[variable]),
+                    Removal("leave the last one out", assignment),
+                )
                 yield Finding(
                     assignment,
                     f"`{variable.name}` is assigned a value by this transition already, expected one: the last one"
                     " counts",
-                    "leave out the one that is not meant: assignments of one transition are simultaneous",
+                    Choice("leave out the one that is not meant: assignments of one transition are simultaneous", ways),
                 )
-            assigned.add(variable)
+            elif variable is not None:
+                assigned[variable] = assignment
 
 
 def _describe(target: rsc.Access) -> str:
@@ -209,10 +224,12 @@ def _describe(target: rsc.Access) -> str:
     return f"{type(item).__name__.lower()} `{item.name}`{owner}"
 
 
-def _repair(target: rsc.Access, component: rsc.Component) -> str:
+def _repair(target: rsc.Access, component: rsc.Component, transition: rsc.Transition) -> Hint:
     item = target.item
     if isinstance(item, rsc.State) and target.component is component:
-        return f"write `goto {item.name}`"
+        text = f"goto {written(item.name)}"
+        alone = len(transition.assignments) == 1 and transition.target is None
+        return Unassigned(f"write `{text}`", transition, f" {text}") if alone else f"write `{text}`"
     if isinstance(item, rsc.Variable) and target.component:
         return f"assign it in `{target.component.name}`, by a transition of its own that reads `{component.name}`"
     return f"declare `variable … : …` in the behaviour of `{component.name}` and assign that"
