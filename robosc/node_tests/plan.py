@@ -66,6 +66,13 @@ class Step(NamedTuple):
     shows: int
 
 
+class _Way(NamedTuple):
+    """Steps that follow each other, and what they show together."""
+
+    steps: tuple[Step, ...]
+    shows: int
+
+
 @dataclass
 class _Known:
     saved: SavedLoop
@@ -82,6 +89,7 @@ class Plan:
     #: No time that is longer, in milliseconds, is waited for.
     longest: int
     _known: dict[Place, _Known] = field(default_factory=dict)
+    _found: dict[Place, dict[Place, list[_Way]]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self._loop = ControlLoop(self.model, self.settings, Hooks(self._before))
@@ -286,9 +294,11 @@ class Plan:
             places = [start, *(step.end for step in tour)]
             before, after = _running(tour), _running(tour[::-1])[::-1]
             for first in range(len(tour)):
+                seen, ways = _running(tour[first:]), self._ways(places[first], detour)
                 for last in range(len(tour), first, -1):
-                    lost = _together(tour[first:last]) & wanted & ~before[first] & ~after[last]
-                    way = self._way(places[first], places[last], min(last - first - 1, detour), lost)
+                    lost = seen[last - first] & wanted & ~before[first] & ~after[last]
+                    shorter = (way for way in ways.get(places[last], ()) if len(way.steps) < last - first)
+                    way = next((way.steps for way in shorter if not lost & ~way.shows), None)
                     if way is not None:
                         tour = [*tour[:first], *way, *tour[last:]]
                         improved = True
@@ -299,23 +309,30 @@ class Plan:
             tour.pop()
         return tour
 
-    def _way(self, start: Place, end: Place, longest: int, shown: int) -> list[Step] | None:
-        """A way of at most so many steps, the shortest there is, if it shows all that is asked for; else None."""
-        if start == end and not shown:
-            return []
-        ways: dict[Place, list[Step]] = {start: []}
-        layer = [start]
+    def _ways(self, start: Place, longest: int) -> dict[Place, list[_Way]]:
+        """Ways of at most so many steps to all places, the short ones first; each shows what none before it does.
+
+        They are kept where all places were looked at: each of many tours asks for them.
+        """
+        if (found := self._found.get(start)) is not None:
+            return found
+        first = _Way((), 0)
+        found, nearest, layer = {start: [first]}, {start: first}, [start]
         for _ in range(longest):
             onwards = []
             for place in layer:
                 for step in self._known[place].steps or ():
-                    if step.end == end and not shown & ~(_together(ways[place]) | step.shows):
-                        return [*ways[place], step]
-                    if step.end not in ways:
-                        ways[step.end] = [*ways[place], step]
+                    way = _Way((*nearest[place].steps, step), nearest[place].shows | step.shows)
+                    others = found.setdefault(step.end, [])
+                    if all(way.shows & ~other.shows for other in others):
+                        others.append(way)
+                    if step.end not in nearest:
+                        nearest[step.end] = way
                         onwards.append(step.end)
             layer = onwards
-        return None
+        if self.is_whole:
+            self._found[start] = found
+        return found
 
 
 def _unlike(stimulus: Stimulus, event: str, inputs: Mapping[str, Value]) -> int:
