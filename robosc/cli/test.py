@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import shlex
+import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -12,7 +14,16 @@ import robosc
 from robosc.analysis.verify.c_program import CProgram, c_compiler
 from robosc.checks import check
 from robosc.cli import CallError, say
-from robosc.cli.options import FILE, Paths, configuration, findings_format, model, paths, synthesizer
+from robosc.cli.options import (
+    FILE,
+    Paths,
+    chosen_synthesizer,
+    configuration,
+    findings_format,
+    model,
+    paths,
+    synthesizer,
+)
 from robosc.cli.progress import progress
 from robosc.cli.reading import read_configuration, read_models, supervise_models
 from robosc.cli.report import Report
@@ -21,9 +32,11 @@ from robosc.files.writing import temporary_folder, write
 from robosc.language import Documents
 from robosc.language import read as read_text
 from robosc.language.text import decode
-from robosc.m2t.models import Models
+from robosc.m2t.models import Models, TraceTest
+from robosc.m2t.targets import TARGETS
+from robosc.node_tests.trace_test import player_files
 from robosc.ros_types import RosTypes
-from robosc.scenario_tests import RULE, Player, read_scenarios, unknown_events
+from robosc.scenario_tests import RULE, LiveError, LiveNode, Player, read_scenarios, unknown_events
 from robosc.scenario_tests.conditions import extended
 from robosc.scenario_tests.operations import Operations
 
@@ -42,6 +55,13 @@ if TYPE_CHECKING:
 @model
 @click.argument("scenarios", nargs=-1, required=True, type=FILE, metavar="FILE...")
 @click.option("--engine", type=click.Choice(["python", "c"]), default="python", show_default=True, help="What plays.")
+@click.option("--ros1", "version", flag_value=1, type=int, help="Play with a node of ROS 1, too.")
+@click.option("--ros2", "version", flag_value=2, type=int, help="Play with a node of ROS 2, too.")
+@click.option(
+    "--node",
+    metavar="COMMAND",
+    help="With --ros1, --ros2: what starts the node, such as a compiled one; else `robosc run` is.",
+)
 @click.option("--traces", type=click.Path(file_okay=False), help="Write the event log of each scenario to FOLDER, too.")
 @configuration
 @findings_format
@@ -51,6 +71,8 @@ def command(
     model: str,
     scenarios: Sequence[str],
     engine: str,
+    version: int | None,
+    node: str | None,
     traces: str | None,
     chosen: str | None,
     form: str,
@@ -60,18 +82,23 @@ def command(
 
     MODEL is a .rscd file with a robot. docs/scenarios.md says what stands in a FILE. They are played with the robot's
     controller in Python; with `--engine c` its control loop is also compared with that of the generated C, compiled, in
-    every step. Traces in the folder test/traces of a generated package are played against the node by its own tests.
+    every step. With `--ros1` or `--ros2` a node plays them, too: it is started for each of them, in simulated time, and
+    has to do the same with the same data. Nothing else is to be on these topics, least of all a robot.
 
     \b
     Examples:
       robosc test line_follower.rscd line_follower.scenarios
       robosc test line_follower.rscd *.scenarios --engine c
+      robosc test line_follower.rscd *.scenarios --ros2
+      robosc test porter.rscd *.scenarios --ros1 --node "rosrun porter_controller porter_controller"
       robosc test line_follower.rscd line_follower.scenarios --traces ros2/line_follower_controller/test/traces
 
     Exit status: 0 all is as expected, 1 something is not, or errors, 2 a wrong call, 3 no supervisor exists.
     """
     if not model.endswith(".rscd"):
         raise CallError(f"{model} is no text: scenarios speak of a robot in a .rscd file")
+    if node is not None and version is None:
+        raise click.UsageError("--node needs --ros1 or --ros2")
     with Report(form, aside=form != "text") as report:
         models, expressions, played = _read(model, scenarios, paths, report)
         settings = read_configuration(model, chosen, report)
@@ -81,6 +108,11 @@ def command(
         assert models.rosgraph is not None
         distribution = RosTypes(paths.interfaces).distributions[0]
         player = Player(models.rosgraph, settings, distribution, expressions)
+        live: LiveNode | None = None
+        if version is not None:
+            report.add(TARGETS[f"ros{version}"].findings(models, settings))
+            report.stop_on_errors()
+            live = _live(models, settings, player, version, node)
         logs: dict[str, str] = {}
         with progress("playing"):
             failed = 0
@@ -88,6 +120,8 @@ def command(
             for number, scenario in enumerate(played, 1):
                 operations = Operations()
                 found = player.play(scenario, operations)
+                if live is not None and not found:
+                    found = _followed(live, scenario, player)
                 runs.append(operations)
                 failed += bool(found)
                 report.add(found)
@@ -135,6 +169,35 @@ def _meant(
     model = robosc.to_sct(robot)
     meant = dict(zip(conditions, longer.expressions(model), strict=True))
     return Models(model, robosc.to_rosgraph(robot, paths.interfaces), robot), meant
+
+
+def _live(models: Models, settings: Configuration, player: Player, version: int, node: str | None) -> LiveNode:
+    """The node that plays scenarios: the one that a command starts, else the model run as it is here."""
+    assert models.rosgraph is not None
+    files = player_files(models.rosgraph, settings, player.parameters, player.incoming)
+    generated = TARGETS[f"ros{version}"].files(models, settings, TraceTest(player.parameters, files, "", ()))
+    tests = {name.removeprefix("test/"): text for name, text in generated.items() if name.startswith("test/")}
+    return LiveNode(version, _command(version) if node is None else shlex.split(node), player.parameters, tests)
+
+
+def _command(version: int) -> list[str]:
+    """What runs the model as a node, found and configured as for this call."""
+    given = click.get_current_context().params
+    options = [word for folder in given["library_paths"] for word in ("-I", folder)]
+    options += [word for folder in given["interface_paths"] for word in ("--interface-path", folder)]
+    options += ["--config", given["chosen"]] if given["chosen"] else []
+    synthesizer = chosen_synthesizer()
+    options += ["--synthesizer", synthesizer.name] if synthesizer else []
+    return [sys.executable, "-m", "robosc", "run", given["model"], f"--ros{version}", *options]
+
+
+def _followed(live: LiveNode, scenario: Scenario, player: Player) -> list[Diagnostic]:
+    """What the node does otherwise than the scenario. Raises CallError where there is no node."""
+    try:
+        difference = live.follow(scenario, player.trace, player.sources)
+    except LiveError as error:
+        raise CallError(str(error)) from error
+    return [] if difference is None else [difference]
 
 
 def _compared(models: Models, settings: Configuration, runs: Sequence[Operations]) -> list[Diagnostic]:

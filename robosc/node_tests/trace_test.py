@@ -40,12 +40,22 @@ def trace_test(
     distribution = next(known for known in RosTypes(interface_paths).distributions if known.name == f"ROS {version}")
     tour = Tour(graph, configuration, distribution)
     started = tour.parameters
-    connected = json.dumps(_connections(graph, configuration, started, tour.incoming), indent=1) + "\n"
-    player = locate("node_tests/trace_player.py").read_text(encoding="utf-8")
-    files = {"connections.json": connected, "trace_player.py": player}
+    files = player_files(graph, configuration, started, tour.incoming)
     for number, lines in enumerate(tour.traces, 1):
         files[f"traces/tour_{number}.jsonl"] = "".join(f"{line}\n" for line in lines)
     return TraceTest(started, files, str(tour.coverage), [told(goal) for goal in tour.coverage.missed])
+
+
+def player_files(
+    graph: rosgraph.RosGraph,
+    configuration: Configuration,
+    started: Mapping[str, bool | int],
+    incoming: Mapping[sct.Event, Incoming],
+) -> dict[str, str]:
+    """The player, and what it has to know of a node that is started with these parameters: file to text."""
+    connected = json.dumps(_connections(graph, configuration, started, incoming), indent=1) + "\n"
+    player = locate("node_tests/trace_player.py").read_text(encoding="utf-8")
+    return {"connections.json": connected, "trace_player.py": player}
 
 
 def told(goal: Goal) -> str:

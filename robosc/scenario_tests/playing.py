@@ -90,6 +90,7 @@ class Player(Drive):
     ) -> None:
         super().__init__(graph, configuration, distribution)
         self._conditions = conditions
+        self._sources: list[Line] = []
         self._acts: dict[sct.Event, tuple[sct.Event, Callable[[Any, bool], None]]] = {}
         for topic in graph.subscriptions:
             for reception in topic.receptions:
@@ -107,6 +108,11 @@ class Player(Drive):
         """The lines of the event log."""
         return self._lines.kept
 
+    @property
+    def sources(self) -> list[Line]:
+        """Of each line of the event log the line of the scenario that brought it about."""
+        return self._sources
+
     def play(self, scenario: Scenario, operations: Operations) -> list[Diagnostic]:
         """What is not as the scenario expects it; after something that can't be played nothing is tried any more."""
         self._controller = self._begin(_Controller)
@@ -114,11 +120,14 @@ class Player(Drive):
         self._controller.start()
         findings: list[Diagnostic] = []
         self._since = 0
+        self._sources = []
         try:
             self._pass_period()
+            self._attribute(scenario.line)
             for line in scenario.steps:
                 operations.line = line
                 fault = self._played(line)
+                self._attribute(line)
                 if fault is not None:
                     findings.append(fault)
                     if isinstance(line, (Incoming, Wait)):
@@ -128,6 +137,9 @@ class Player(Drive):
         finally:
             self._controller.close()
         return findings
+
+    def _attribute(self, line: Line) -> None:
+        self._sources += [line] * (len(self._lines.kept) - len(self._sources))
 
     def _played(self, line: Line) -> Diagnostic | None:
         try:

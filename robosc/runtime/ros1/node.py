@@ -15,14 +15,12 @@ from robosc.ros_types import Section
 from robosc.runtime.core.event_loop import EventLoop
 from robosc.runtime.core.node import DIAGNOSTICS, FAREWELL, LONGEST_WAIT, Node, StartError
 from robosc.runtime.core.port import CallHandlers, Endpoint, GoalHandlers
+from robosc.runtime.ros1 import DEBIAN
 from robosc.semantics.communication import QUEUE_DEPTH
 from robosc.semantics.naming import below_layer
 
-#: Where Debian has the Python of ROS 1; appended, so that nothing of this Python's own is hidden.
-_DEBIAN = "/usr/lib/python3/dist-packages"
-
-if (Path(_DEBIAN) / "rospy").is_dir() and _DEBIAN not in sys.path:
-    sys.path.append(_DEBIAN)
+if (Path(DEBIAN) / "rospy").is_dir() and DEBIAN not in sys.path:
+    sys.path.append(DEBIAN)
 try:
     import genpy
     import rospy

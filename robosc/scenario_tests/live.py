@@ -1,0 +1,169 @@
+"""Scenarios against a node over ROS: the event log of each is played as a generated package plays its traces."""
+
+from __future__ import annotations
+
+import os
+import re
+import shlex
+import signal
+import subprocess
+import sys
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from typing import IO, TYPE_CHECKING
+from xmlrpc.client import Fault, ServerProxy
+
+from robosc.files.writing import temporary_folder
+from robosc.runtime.ros1 import DEBIAN
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+    from pathlib import Path
+
+    from robosc.diagnostics import Diagnostic
+    from robosc.scenario_tests.reading import Line, Scenario
+
+#: Seconds that a node has to end in after it was interrupted.
+_PATIENCE = 20.0
+_DIFFERENCE = re.compile(r"line (\d+): (.*)")
+_MISSING = re.compile(r"(?:ModuleNotFound|Import)Error: (.*)")
+#: So much of what a program wrote is shown.
+_SHOWN = 1500
+_MASTER = "http://localhost:11311"
+
+
+class LiveError(Exception):
+    """There is no node to play with: the message says why."""
+
+
+@dataclass(frozen=True)
+class LiveNode:
+    """A node that is started anew for each scenario, in simulated time.
+
+    `command` starts it; parameters and the place of its event log are added. `files` are those of the folder `test` of
+    the package that would be generated for its model and this ROS.
+    """
+
+    ros: int
+    command: Sequence[str]
+    parameters: Mapping[str, bool | int]
+    files: Mapping[str, str]
+
+    def follow(self, scenario: Scenario, trace: Sequence[str], lines: Sequence[Line]) -> Diagnostic | None:
+        """Where the node does something else than the event log of a scenario says.
+
+        `lines` are those of the scenario that brought about the lines of the log. Raises LiveError where there is no
+        ROS, or the node does not start.
+        """
+        with temporary_folder() as folder, self._simulated_time():
+            for name, text in self.files.items():
+                (folder / name).parent.mkdir(parents=True, exist_ok=True)
+                (folder / name).write_text(text, encoding="utf-8")
+            log, played = folder / "events.jsonl", folder / "scenario.jsonl"
+            played.write_text("".join(f"{line}\n" for line in trace), encoding="utf-8")
+            with (folder / "node.txt").open("w+b") as told, self._started(log, told) as node:
+                status, said = self._play(folder, played, log, node)
+                missing = _MISSING.search(said)
+                if status is None:
+                    raise LiveError(f"the node has ended before the scenario did:\n{_end(told)}")
+                if missing is not None:
+                    raise LiveError(f"ROS {self.ros} is not there for this Python: {missing[1]}")
+                if not status:
+                    return None
+                found = _DIFFERENCE.search(said)
+                if found is None:
+                    message = f"this could not be played over ROS: {said.strip()[-_SHOWN:]}"
+                    return scenario.line.fault(message, _end(told))
+        line = lines[int(found[1]) - 1] if int(found[1]) <= len(lines) else scenario.line
+        return line.fault(f"the node does something else: {found[2].strip()}")
+
+    @contextmanager
+    def _simulated_time(self) -> Iterator[None]:
+        """In ROS 1 the master says that time is simulated, as long as this lasts."""
+        if self.ros != 1:
+            yield
+            return
+        address = os.environ.get("ROS_MASTER_URI") or _MASTER
+        master = ServerProxy(address)
+        try:
+            before = master.getParam("/robosc", "/use_sim_time")
+            master.setParam("/robosc", "/use_sim_time", True)
+        except (OSError, Fault) as error:
+            raise LiveError(f"there is no master of ROS 1 at {address}: start roscore ({error})") from None
+        try:
+            yield
+        finally:
+            with suppress(OSError, Fault):
+                if before[0] == 1:  # type: ignore[index]  # a code first, then what it is about
+                    master.setParam("/robosc", "/use_sim_time", before[2])  # type: ignore[index]
+                else:
+                    master.deleteParam("/robosc", "/use_sim_time")
+
+    @contextmanager
+    def _started(self, log: Path, told: IO[bytes]) -> Iterator[subprocess.Popen[bytes]]:
+        given = {"event_log": str(log), **self.parameters}
+        values = {name: str(value).lower() if isinstance(value, bool) else str(value) for name, value in given.items()}
+        if self.ros == 1:
+            arguments = [f"_{name}:={value}" for name, value in values.items()]
+        else:
+            values["use_sim_time"] = "true"
+            arguments = ["--ros-args", *(word for name in values for word in ("-p", f"{name}:={values[name]}"))]
+        try:
+            node = subprocess.Popen(  # noqa: S603  # the user says what starts the node
+                [*self.command, *arguments],
+                stdin=subprocess.DEVNULL,
+                stdout=told,
+                stderr=subprocess.STDOUT,
+                start_new_session=True,
+            )
+        except OSError as error:
+            raise LiveError(f"`{shlex.join(self.command)}` does not start: {error.strerror}") from None
+        try:
+            yield node
+        finally:
+            _ended(node)
+
+    def _play(self, folder: Path, played: Path, log: Path, node: subprocess.Popen[bytes]) -> tuple[int | None, str]:
+        """The exit status of the player, and what it said; no status where the node ends first."""
+        command: list[str | Path] = [sys.executable, folder / "play_trace.py", played, log]
+        with (folder / "player.txt").open("w+b") as told:
+            player = subprocess.Popen(  # noqa: S603  # this Python, and a program that was just written
+                command,
+                cwd=folder,
+                env=self._environment(),
+                stdin=subprocess.DEVNULL,
+                stdout=told,
+                stderr=subprocess.STDOUT,
+                start_new_session=True,
+            )
+            try:
+                while player.poll() is None:
+                    if node.poll() is not None:
+                        return None, ""
+                    with suppress(subprocess.TimeoutExpired):
+                        player.wait(0.1)
+            finally:
+                _ended(player)
+            told.seek(0)
+            return player.returncode, told.read().decode(errors="replace")
+
+    def _environment(self) -> dict[str, str]:
+        """That of the player, which finds ROS where `robosc run` does."""
+        environment = dict(os.environ)
+        if self.ros == 1:
+            environment["PYTHONPATH"] = os.pathsep.join(filter(None, (environment.get("PYTHONPATH"), DEBIAN)))
+        return environment
+
+
+def _end(told: IO[bytes]) -> str:
+    told.seek(0)
+    return told.read().decode(errors="replace").strip()[-_SHOWN:]
+
+
+def _ended(process: subprocess.Popen[bytes]) -> None:
+    """Ends a program and all that it has started."""
+    for number in (signal.SIGINT, signal.SIGKILL):
+        with suppress(ProcessLookupError):
+            os.killpg(process.pid, number)
+        with suppress(subprocess.TimeoutExpired):
+            process.wait(_PATIENCE)

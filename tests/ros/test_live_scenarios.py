@@ -1,0 +1,120 @@
+"""`robosc test` with a node: scenarios of users over a real ROS, on nodes run from models and on a compiled one."""
+
+from __future__ import annotations
+
+import shlex
+import shutil
+import subprocess
+from typing import TYPE_CHECKING
+
+import pytest
+
+from tests.ros.running import PROJECT, Runner
+from tests.ros.workspaces import EXAMPLES, Workspace, middleware
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+LINE_FOLLOWER = EXAMPLES / "line_follower" / "line_follower.rscd"
+STOPS = """\
+scenario "stops"
+  response from correction with 0.1
+  response from scan with clear
+  expect move sent with {"linear": {"x": 0.2}}
+  stop
+  expect halt sent
+"""
+PUMP = """\
+robot Plant {
+  component Pump {
+    service fill with identifier: "/fill", request: none, response: none
+
+    behaviour {
+      initial state empty {
+        on request to fill goto filling
+      }
+
+      state filling {
+        on response from fill goto full
+        on error from fill goto pausing
+      }
+
+      state pausing {
+        after 2 s goto empty
+      }
+
+      marked state full {}
+    }
+  }
+}
+"""
+FILLS = """\
+scenario "a call that fails, a pause, and another call"
+  expect fill sent
+  error from fill
+  expect Pump.pausing
+  wait 1500 ms
+  expect Pump.pausing
+  wait 3 s
+  expect fill sent
+  response from fill
+  expect Pump.full
+"""
+
+
+def played(
+    nodes: Workspace | Runner, python: str, folder: Path, text: str, *options: str, model: Path = LINE_FOLLOWER
+) -> tuple[int, str]:
+    """The exit status of `robosc test`, and what it said."""
+    scenarios = folder / "own.scenarios"
+    scenarios.write_text(text, encoding="utf-8")
+    command = [python, "-m", "robosc", "test", str(model), str(scenarios), f"--ros{nodes.ros.version}", *options]
+    with middleware(nodes, folder / "run") as processes:
+        environment = {**processes.environment, "PYTHONPATH": _path(processes.environment)}
+        done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=600, check=False)
+    return done.returncode, done.stdout + done.stderr
+
+
+def _path(environment: dict[str, str]) -> str:
+    return ":".join(filter(None, (str(PROJECT), environment.get("PYTHONPATH"))))
+
+
+def test_a_node_plays_scenarios(runner: Runner, tmp_path: Path) -> None:
+    status, said = played(runner, runner.robosc, tmp_path, STOPS)
+    assert (status, "1 scenario, 0 failed" in said) == (0, True), said
+
+
+def test_a_call_that_fails_and_times(runner: Runner, tmp_path: Path) -> None:
+    model = tmp_path / "plant.rscd"
+    model.write_text(PUMP, encoding="utf-8")
+    status, said = played(runner, runner.robosc, tmp_path, FILLS, model=model)
+    assert (status, "1 scenario, 0 failed" in said) == (0, True), said
+
+
+def test_a_node_that_does_something_else_is_told_at_the_line(runner: Runner, tmp_path: Path) -> None:
+    """It has forgotten its stop button."""
+    shutil.copytree(LINE_FOLLOWER.parent, tmp_path / "careless")
+    model = tmp_path / "careless" / LINE_FOLLOWER.name
+    text = model.read_text(encoding="utf-8")
+    model.write_text(text.replace(" and EmergencyStop.in_service", "").replace(" or EmergencyStop.stopped", ""))
+    status, said = played(runner, runner.robosc, tmp_path, STOPS, "--node", shlex.join(runner.command(model)))
+    assert (status, "1 scenario, 1 failed" in said) == (1, True), said
+    assert "own.scenarios:5:3: error: the node does something else: the trace says out message_halt.c_trigger" in said
+
+
+@pytest.mark.parametrize(
+    ("command", "told"),
+    [
+        ("false", "the node has ended before the scenario did"),
+        ("none-such-program", "`none-such-program` does not start: No such file"),
+    ],
+)
+def test_a_node_that_does_not_start(run_ros1: Runner, tmp_path: Path, command: str, told: str) -> None:
+    status, said = played(run_ros1, run_ros1.robosc, tmp_path, STOPS, "--node", command)
+    assert (status, told in said) == (2, True), said
+
+
+def test_a_compiled_node_plays_scenarios(ros1_workspace: Workspace, run_ros1: Runner, tmp_path: Path) -> None:
+    package = "line_follower_controller"
+    status, said = played(ros1_workspace, run_ros1.robosc, tmp_path, STOPS, "--node", f"rosrun {package} {package}")
+    assert (status, "1 scenario, 0 failed" in said) == (0, True), said
