@@ -57,13 +57,12 @@ def report(  # noqa: PLR0913 - all that a report is of
     # Packages of both ROS have the same traces.
     different = {text: path for path, text in reversed(traces.items())}
     shown = play(models, {path: text for path, text in traces.items() if different[text] == path})
-    told = {path: printing.comments(text) for path, text in outputs.items() if path.endswith((".c", ".h"))}
     model = models.sct
     stated = [*model.requirements, *model.invariants, *model.properties]
     return {
         "notice": NOTICE,
         "robot": model.name,
-        "requirements": _requirements(model, stated, verdicts, shown, told),
+        "requirements": _requirements(model, stated, verdicts, shown, printing.Sources(outputs)),
         "verdicts": [
             {
                 "property": verdict.property,
@@ -117,7 +116,7 @@ def _requirements(
     stated: Sequence[sct.StatedRequirement],
     verdicts: Sequence[Verdict],
     shown: Shown,
-    told: Mapping[str, list[tuple[int, str]]],
+    sources: printing.Sources,
 ) -> list[dict[str, Any]]:
     """One entry for each requirement and property of the text: several of the model may come from one."""
     guards = {guard.event: guard for guard in model.supervisor.guards} if model.supervisor else {}
@@ -130,7 +129,7 @@ def _requirements(
         file, span = place(parts[0])
         generated: dict[str, set[int]] = {}
         for part in parts:
-            for path, lines in printing.places(part, told).items():
+            for path, lines in sources.places(part).items():
                 generated.setdefault(path, set()).update(lines)
         about = [verdict for verdict in verdicts if verdict.requirement == name]
         found.append(
