@@ -20,10 +20,9 @@ from robosc.m2t.targets import TARGETS, Target, targets, together
 from robosc.synthesis.memory import bounded
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
 
     from robosc.configuration import Configuration
-    from robosc.diagnostics import Diagnostic
     from robosc.m2t.models import Models, TraceTest
 
 
@@ -138,8 +137,6 @@ def command(
         supervise_models(models, report, memory=megabytes << 20)
         for target in targets:
             report.add(target.findings(models, settings))
-        if with_tests:
-            report.add(_untested(settings))
         report.stop_on_errors()
         folder = Path(output or f"build/{models.sct.name}")
         tests: dict[Target, TraceTest | None] = {}
@@ -168,8 +165,12 @@ def _settings(model: str, chosen: str | None, typed_state: bool, into: str | Non
     settings = read_configuration(model, chosen, report)
     settings = settings.model_copy(update={"typed_state": typed_state or settings.typed_state})
     if into and settings.typed_state:
-        message = "what a package of yours includes can't have a typed state yet: that is a package of its own"
-        report.add([settings.error(("typedState",), message, "leave out --into, or the typed state")])
+        message = (
+            "what a package of yours includes can't have a typed state: a message is built before the node that sends"
+            " it, in a package of its own"
+        )
+        hint = "leave the typed state out, or --into: without it both packages are written"
+        report.add([settings.error(("typedState",), message, hint)])
     return settings
 
 
@@ -196,13 +197,6 @@ def _refuse_what_does_not_fit(targets: Sequence[Target], with_tests: bool, typed
 def _inputs() -> list[str]:
     """The files that were read, by their own paths."""
     return sorted(str(Path(name).resolve()) for name in inputs())
-
-
-def _untested(configuration: Configuration) -> Iterator[Diagnostic]:
-    """What can't be tested yet: the Dockerfile of a package builds this one alone."""
-    if configuration.typed_state:
-        message = "a package with trace tests can't have a typed state yet: its Dockerfile builds one package"
-        yield configuration.error(("typedState",), message, "leave out --with-tests, or the typed state")
 
 
 def _copies(

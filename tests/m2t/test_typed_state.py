@@ -76,6 +76,20 @@ def test_every_file(courier: robosc.Models, target: str, golden: Callable[[Path,
     assert "typed" not in plain["src/courier_controller_node.cpp"]
 
 
+@pytest.mark.parametrize("target", ["ros1", "ros2"])
+def test_the_image_of_a_package_with_tests_builds_both(courier: robosc.Models, target: str) -> None:
+    typed, plain = (
+        robosc.generate(target, courier, configuration, with_tests=True)["Dockerfile"].splitlines()
+        for configuration in (TYPED, Configuration())
+    )
+    assert [line for line in plain if line.startswith("COPY . ")] == ["COPY . src/courier_controller"]
+    assert [line for line in typed if line.startswith("COPY courier")] == [
+        "COPY courier_controller src/courier_controller",
+        "COPY courier_msgs src/courier_msgs",
+    ]
+    assert any("docker build -t courier_controller -f Dockerfile .. " in line for line in typed)
+
+
 def test_the_platform_s_linter_is_content(courier: robosc.Models, tmp_path: Path) -> None:
     for path, text in TARGETS["ros1"].beside(courier, TYPED).items():
         (tmp_path / path).parent.mkdir(parents=True, exist_ok=True)

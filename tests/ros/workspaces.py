@@ -72,7 +72,9 @@ def _packages(target: str) -> list[Package]:
         Package("supervised_line_follower_layer", supervised / "supervised_line_follower.rscd", f"{target}-layer"),
         Package("line_stepper_controller", supervised / "controller" / "line_stepper.rscd", target),
         Package("courier_controller", CPP / "courier.rscd", target, typed=True),
-        Package("porter_controller", CPP / "porter.rscd", target, CPP / "porter-config.json", with_tests=True),
+        Package(
+            "porter_controller", CPP / "porter.rscd", target, CPP / "porter-config.json", with_tests=True, typed=True
+        ),
         Package("scout_controller", HERE / "faults" / "scout.rscd", target),
         Package("cruise_controller", HERE.parent / "runtime" / "cruise.rscd", target),
         Package("patience_controller", HERE / "times" / "patience.rscd", target),
