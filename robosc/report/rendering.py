@@ -16,6 +16,9 @@ from robosc.files.resources import locate
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+#: What reStructuredText would read as markup: backquotes stay, which show what they hold.
+_MARKUP = re.compile(r"[\\*|]|(?<=\w)_(?!\w)")
+
 
 def as_json(found: Mapping[str, Any]) -> str:
     """JSON for programs; its schema is `report.schema.json`."""
@@ -60,7 +63,7 @@ def as_needs(found: Mapping[str, Any]) -> str:
             "id": names[requirement["name"]],
             "type": "req",
             "title": requirement["name"],
-            "content": "\n\n".join(map(visible, requirement["texts"])),
+            "content": "\n\n".join(map(_plain, requirement["texts"])),
             "status": _status(outcomes),
             "tags": [requirement["kind"].replace(" ", "_"), found["robot"]],
             "links": [],
@@ -71,7 +74,7 @@ def as_needs(found: Mapping[str, Any]) -> str:
             "id": identifier,
             "type": "test",
             "title": visible(verdict["property"]),
-            "content": visible(verdict["explanation"] or verdict["evidence"]),
+            "content": _plain(verdict["explanation"] or verdict["evidence"]),
             "status": verdict["outcome"],
             "tags": ["robosc_verify", found["robot"]],
             "links": [names[verdict["requirement"]]] if verdict["requirement"] in names else [],
@@ -80,6 +83,11 @@ def as_needs(found: Mapping[str, Any]) -> str:
     held = {"needs": needs, "needs_amount": len(needs)}
     answer = {"project": found["robot"], "current_version": version, "versions": {version: held}}
     return json.dumps(answer, indent=2, ensure_ascii=False) + "\n"
+
+
+def _plain(text: str) -> str:
+    """A text that says the same as reStructuredText: no star begins emphasis, no underscore ends a reference."""
+    return _MARKUP.sub(r"\\\g<0>", visible(text))
 
 
 def _identifier(prefix: str, robot: str, name: str) -> str:

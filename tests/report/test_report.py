@@ -227,6 +227,18 @@ def test_the_needs_are_linked() -> None:
     assert linked == {one["id"] for one in requirements}
 
 
+def test_the_texts_of_needs_are_no_markup() -> None:
+    """As a program that reads reStructuredText finds them again."""
+    found = told(QUICK)
+    text = "requirement move needs 2 *level_ < |a_b| and `Gauge.on`"
+    odd = {**found, "requirements": [{**found["requirements"][0], "texts": [text]}]}
+    [version] = json.loads(as_needs(odd))["versions"].values()
+    content = next(one["content"] for one in version["needs"].values() if one["type"] == "req")
+    settings = {"report_level": 1, "halt_level": 2}
+    core = pytest.importorskip("docutils.core", reason="the packages of [docs] are not installed")
+    assert core.publish_doctree(content, settings_overrides=settings).astext() == text.replace("`", "")
+
+
 def test_a_refuted_property_is_an_error(tmp_path: Path) -> None:
     text = MODELS[QUICK].read_text()
     file = tmp_path / "wrong.rscd"
