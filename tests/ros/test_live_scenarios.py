@@ -116,5 +116,6 @@ def test_a_node_that_does_not_start(run_ros1: Runner, tmp_path: Path, command: s
 
 def test_a_compiled_node_plays_scenarios(ros1_workspace: Workspace, run_ros1: Runner, tmp_path: Path) -> None:
     package = "line_follower_controller"
-    status, said = played(ros1_workspace, run_ros1.robosc, tmp_path, STOPS, "--node", f"rosrun {package} {package}")
+    node = ros1_workspace.folder / "devel" / "lib" / package / package
+    status, said = played(ros1_workspace, run_ros1.robosc, tmp_path, STOPS, "--node", str(node))
     assert (status, "1 scenario, 0 failed" in said) == (0, True), said
