@@ -204,8 +204,9 @@ OPENERS = {
     "runtime.ros2.interfaces",  # a tool of its own, whose files are made for the generators
     "runtime.core.event_log",  # what `output` has opened
     "node_tests.trace_player",  # ships with generated packages, and sees nothing of ours
-    "analysis.verify.c_program",  # a temporary folder, here and in the next
+    "analysis.verify.c_program",  # a temporary folder, here and in the next two
     "analysis.verify.c_exploration",
+    "scenario_tests.live",
     "report.digests",  # what ships with the tool
     "report.rendering",
     "extensions",  # what an installed package declares
