@@ -170,7 +170,9 @@ def encoded(model: sct.SupervisoryControlModel, look: Callable[[Encoding], T], m
     Raises MemoryError where the decision diagrams would take more than `memory` bytes.
     """
     layout = Layout(model)
-    return with_enough_memory(lambda capacity: look(Encoding(layout, Diagrams(layout.levels, capacity))), memory)
+    return with_enough_memory(
+        lambda capacity: look(Encoding(layout, Diagrams(layout.levels, capacity))), memory, layout.levels
+    )
 
 
 def _refuse_data_of_controllable_events(model: sct.SupervisoryControlModel) -> None:
@@ -215,7 +217,9 @@ def _with_states(
     _refuse_data_of_controllable_events(model)
     with statistics.during(Phase.ORDER):
         layout = Layout(model)
-    return with_enough_memory(lambda capacity: use(_found(model, layout, capacity, statistics, supervising)), memory)
+    return with_enough_memory(
+        lambda capacity: use(_found(model, layout, capacity, statistics, supervising)), memory, layout.levels
+    )
 
 
 def _found(

@@ -27,6 +27,8 @@ _BYTES_PER_NODE = 40
 #: The addresses that the library takes beside the nodes, most of them for the stack of its one thread, measured.
 _LIBRARY = (1 << 30) + (192 << 20)
 _FIRST_CAPACITY = 1 << 18
+#: Up to so many levels a diagram is small, and so is the room that is made first: making it takes its time.
+_FEW_LEVELS, _SMALL_CAPACITY = 64, 1 << 15
 _GROWTH = 4
 #: The share of the room at which the library would collect garbage, a little less, and the one that may be in use then.
 _FULL = 0.94
@@ -42,16 +44,18 @@ class Diagrams:
         self._manager = BCDDManager(capacity, capacity, 1)
         self._manager.add_vars(levels)
         self._capacity = capacity
+        self._full = capacity * _FULL
         self._crowded = capacity // 2
         self._collections = self._manager.gc_count()
         self.statistics = statistics or Statistics()
         self.levels = levels
+        self._variables = [self._manager.var(level) for level in range(levels)]
         self.true = self._manager.true()
         self.false = self._manager.false()
 
     def variable(self, level: int) -> Diagram:
         """True where the variable is."""
-        return self._manager.var(level)
+        return self._variables[level]
 
     def all_of(self, parts: Iterable[Diagram]) -> Diagram:
         """The conjunction, from the first part to the last; true of none."""
@@ -74,11 +78,11 @@ class Diagrams:
         Where room gets really short the library would collect garbage on a thread of its own: then no two runs would be
         the same. So that counts as too little room, and DDMemoryError is raised.
         """
-        manager = self._manager
+        manager, statistics = self._manager, self.statistics
         nodes = manager.approx_num_inner_nodes()
-        self.statistics.peak_nodes = max(self.statistics.peak_nodes, nodes)
-        full = self._capacity * _FULL
-        if nodes > full or manager.gc_count() != self._collections:
+        if nodes > statistics.peak_nodes:  # noqa: PLR1730 - `max` takes twice as long
+            statistics.peak_nodes = nodes
+        if nodes > self._full or manager.gc_count() != self._collections:
             raise DDMemoryError
         if nodes > self._crowded:
             manager.gc()
@@ -90,7 +94,7 @@ class Diagrams:
 
     def node(self, level: int, high: Diagram, low: Diagram) -> Diagram:
         """`high` where the variable is true, else `low`."""
-        return self.variable(level).ite(high, low)
+        return self._variables[level].ite(high, low)
 
 
 def and_exists(left: Diagram, right: Diagram, cube: Diagram) -> Diagram:
@@ -100,11 +104,8 @@ def and_exists(left: Diagram, right: Diagram, cube: Diagram) -> Diagram:
 
 def split(diagram: Diagram, level: int) -> tuple[Diagram, Diagram]:
     """The function where the variable is true and where it is false; no variable above it may occur."""
-    if diagram.node_level() != level:
-        return diagram, diagram
-    cofactors = diagram.cofactors()
-    assert cofactors is not None
-    return cofactors
+    cofactors = diagram.cofactors() if diagram.node_level() == level else None
+    return cofactors or (diagram, diagram)
 
 
 def _refuse_where_addresses_lack(capacity: int) -> None:
@@ -116,14 +117,16 @@ def _refuse_where_addresses_lack(capacity: int) -> None:
         )
 
 
-def with_enough_memory(run: Callable[[int], T], memory: int) -> T:
+def with_enough_memory(run: Callable[[int], T], memory: int, levels: int | None = None) -> T:
     """`run` with room for a number of nodes, again from the start with more room each time that it did not suffice.
+
+    There is less room at first where diagrams are known to have few `levels`.
 
     `memory` bounds the bytes that the nodes may take, and those of the whole process; raises MemoryError beyond it, and
     where the system allows too few addresses.
     """
     most = memory // _BYTES_PER_NODE
-    capacity = min(_FIRST_CAPACITY, most)
+    capacity = min(_FIRST_CAPACITY, most, most if levels is None or levels > _FEW_LEVELS else _SMALL_CAPACITY)
     while True:
         try:
             with bounded(memory, "synthesis"):

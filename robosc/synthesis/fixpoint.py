@@ -17,11 +17,11 @@ from itertools import groupby
 from typing import TYPE_CHECKING
 
 from robosc.synthesis.acceleration import Acceleration
-from robosc.synthesis.bdd import Diagram, Diagrams, split
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from robosc.synthesis.bdd import Diagram, Diagrams
     from robosc.synthesis.encoding import Element, Encoding
     from robosc.synthesis.relation import Move, Step
 
@@ -31,6 +31,8 @@ if TYPE_CHECKING:
 _PAIR = 2
 #: The nodes up to which a relation of present and next values costs no more than two steps without next values.
 _SMALL = 40
+#: The level of what depends on no variable: no states, or all.
+_TERMINAL = sys.maxsize
 
 
 @dataclass(frozen=True)
@@ -51,13 +53,21 @@ class SupervisedStates:
 class _Halves:
     """The closing of some states half by half: where the variable of a level is true, then where it is false."""
 
-    __slots__ = ("below", "high", "level", "part")
+    __slots__ = ("above", "below", "high", "level", "part")
 
-    def __init__(self, part: Part, level: int, below: Part) -> None:
-        """`below` is the second half, `high` the first one, once it is closed."""
+    def __init__(self, part: Part, own: int, bound: int) -> None:
+        """`above` is the first half, `high` the same, once it is closed; `below` is the second one.
+
+        The states begin at the level `own`, and what they stay within at `bound`.
+        """
+        states, within, group = part
+        level = min(own, bound)
+        high, low = (own == level and states.cofactors()) or (states, states)
+        high_within, low_within = (bound == level and within.cofactors()) or (within, within)
         self.part = part
         self.level = level
-        self.below = below
+        self.above: Part = high, high_within, group
+        self.below: Part = low, low_within, group
         self.high: Diagram | None = None
 
 
@@ -90,7 +100,7 @@ class _Saturation:
 
         The search is a loop with a stack of its own: this is where synthesis spends its time, and diagrams are deep.
         """
-        levels, last = self._levels, len(self._levels)
+        levels, last, node = self._levels, len(self._levels), self._diagrams.node
         known: dict[Part, Diagram] = {}
         waiting: list[_Halves | _Firing] = []
         part = states, within, 0
@@ -98,19 +108,19 @@ class _Saturation:
             # Down to what is closed already, or at a glance.
             while True:
                 states, within, group = part
-                is_closed = group == last or states == within or not states.satisfiable()
+                level = _level(states)
+                is_closed = level == _TERMINAL or group == last or states == within
                 closed = states if is_closed else known.get(part)
                 if closed is not None:
                     break
-                level = min(_level(states), _level(within))
-                if level >= levels[group]:
+                bound = _level(within)
+                if min(level, bound) >= levels[group]:
                     waiting.append(_Firing(part))
                     part = states, within, group + 1
                 else:
-                    high, low = split(states, level)
-                    high_within, low_within = split(within, level)
-                    waiting.append(_Halves(part, level, (low, low_within, group)))
-                    part = high, high_within, group
+                    opened = _Halves(part, level, bound)
+                    waiting.append(opened)
+                    part = opened.above
             # Up to what has more to be closed.
             while waiting:
                 upper = waiting[-1]
@@ -118,7 +128,7 @@ class _Saturation:
                     if upper.high is None:
                         upper.high, part = closed, upper.below
                         break
-                    closed = self._diagrams.node(upper.level, upper.high, closed)
+                    closed = node(upper.level, upper.high, closed)
                 elif type(upper) is _Firing:
                     _, within, group = upper.part
                     if not self._is_closed_after_turn(upper, closed):
@@ -249,4 +259,4 @@ def supervise_only(encoding: Encoding, moves: Sequence[Move], violating: Diagram
 
 def _level(diagram: Diagram) -> int:
     level = diagram.node_level()
-    return sys.maxsize if level is None else level
+    return _TERMINAL if level is None else level
