@@ -21,7 +21,6 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from contextlib import suppress
 from pathlib import Path
 from threading import Timer
 from time import perf_counter
@@ -77,16 +76,22 @@ def robots(folder: Path) -> dict[str, Path]:
     return found
 
 
-def run(command: list[str], seconds: float) -> tuple[float, float, str] | None:
-    """The seconds that a process takes, its megabytes at the most, and what it says; None where it takes too long."""
-    with tempfile.TemporaryFile("w+") as said:
+def run(command: list[str], seconds: float, given: str = "") -> tuple[Results, str] | None:
+    """What a process takes (seconds that go by, those of the processor, megabytes), and what it says.
+
+    None where it takes too long; `given` is what it reads.
+    """
+    with tempfile.TemporaryFile("w+") as said, tempfile.TemporaryFile("w+") as asked:
+        asked.write(given)
+        asked.seek(0)
         began = perf_counter()
-        process = subprocess.Popen(command, cwd=ROOT, stdout=said, stderr=subprocess.STDOUT, text=True)
+        process = subprocess.Popen(command, cwd=ROOT, stdin=asked, stdout=said, stderr=subprocess.STDOUT, text=True)
         timer = Timer(seconds, process.kill)
         timer.start()
         _, status, usage = os.wait4(process.pid, 0)
         process.returncode = os.waitstatus_to_exitcode(status)
-        took = perf_counter() - began
+        took = {"elapsed": perf_counter() - began, "cold": usage.ru_utime + usage.ru_stime}
+        took["memory"] = usage.ru_maxrss / 1000
         timer.cancel()
         said.seek(0)
         output = said.read()
@@ -95,7 +100,7 @@ def run(command: list[str], seconds: float) -> tuple[float, float, str] | None:
     if process.returncode not in {0, 3}:
         print(" ".join(command), output, sep="\n", file=sys.stderr)
         return None
-    return took, usage.ru_maxrss / 1000, output
+    return took, output
 
 
 def robosc_measured(path: Path, rounds: int, seconds: float) -> Results | None:
@@ -105,8 +110,8 @@ def robosc_measured(path: Path, rounds: int, seconds: float) -> Results | None:
     warm = None if cold is None else run([sys.executable, script, str(path), str(rounds)], rounds * seconds)
     if cold is None or warm is None:
         return None
-    said = json.loads(warm[2])
-    return said | {"seconds": min(said["seconds"]), "cold": cold[0], "memory": cold[1]}
+    said = json.loads(warm[1])
+    return said | {"seconds": min(said["seconds"])} | cold[0]
 
 
 class Cif:
@@ -134,12 +139,9 @@ class Cif:
             f"{class_path(self._folder)}{os.pathsep}{self._calls}",
             "Calls",
         ]
-        began = perf_counter()
-        with suppress(subprocess.TimeoutExpired):
-            subprocess.run(
-                command, input=f"{call}\n", capture_output=True, text=True, timeout=self._seconds, check=True
-            )
-            found["cold"] = perf_counter() - began
+        cold = run(command, self._seconds, f"{call}\n")
+        if cold is not None:
+            found |= cold[0]
             timer = Timer(rounds * self._seconds, self._tools.kill)
             timer.start()
             calls = [self._tools.call(SYNTHESIS, str(path), *_OPTIONS, "-o", self._output) for _ in range(rounds)]

@@ -19,7 +19,7 @@ from robosc.cli.report import Report
 from robosc.metamodel import sct
 from robosc.metamodel.places import place
 from robosc.semantics.printing import RobotPrinter, SctPrinter, conjunction
-from robosc.semantics.roles import SILENT, event_name
+from robosc.semantics.roles import SILENT, event_name, input_values
 from robosc.semantics.walks import copied
 from robosc.synthesis import count
 
@@ -35,10 +35,13 @@ if TYPE_CHECKING:
 @model
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 @click.option("--counts", is_flag=True, help="Count states only: no guards, no findings.")
+@click.option(
+    "--count-inputs", is_flag=True, help="Count states as CIF does: each once for each value that inputs may have."
+)
 @memory
 @synthesizer
 @paths
-def command(model: str, as_json: bool, counts: bool, megabytes: int, paths: Paths) -> None:
+def command(model: str, as_json: bool, counts: bool, count_inputs: bool, megabytes: int, paths: Paths) -> None:
     """Synthesize the supervisor of a robot: its states, and when it allows what.
 
     MODEL is a .rscd file with a robot, a .cif file, or an .xmi file that `transform --to xmi` wrote. A guard says where
@@ -46,7 +49,8 @@ def command(model: str, as_json: bool, counts: bool, megabytes: int, paths: Path
     to add is shown apart. Of each requirement it is said in how many states it matters: where it forbids what the robot
     could do; of `never` and `always`, how many states they forbid. --json lists all events, those for the data to send
     and those from the robot, too, and tells what synthesis cost. --counts writes no guards out, which for some models
-    takes longer than all else.
+    takes longer than all else. --count-inputs counts each state once for each value of what the robot sends, as CIF's
+    tools do; in a .cif file that is how states are counted at any rate.
 
     \b
     Examples:
@@ -59,44 +63,46 @@ def command(model: str, as_json: bool, counts: bool, megabytes: int, paths: Path
         raise click.UsageError("--counts is what our own synthesis counts: leave it or --synthesizer out")
     with Report(aside=True) as report:
         plants = read_models(model, paths, report, cif=True).sct
+        times = input_values(plants) if count_inputs else 1
         if counts:
-            _count(plants, megabytes << 20, as_json=as_json)
+            _count(plants, megabytes << 20, times, as_json=as_json)
             return
         found = supervise_otherwise(plants, memory=megabytes << 20)
         if found is not None:
             show = _show_json if as_json else _show
-            show(plants, Diagnosis(**vars(found)))
+            show(plants, Diagnosis(**vars(found)), times)
             return
         try:
             with synthesizing() as statistics:
                 supervision = supervise(plants, memory=megabytes << 20, statistics=statistics, weigh=True)
         except EmptySupervisorError as error:
             if as_json:
-                _show_json(plants, error.synthesis)
+                _show_json(plants, error.synthesis, times)
             raise
         report.add(supervision.findings)
         show = _show_json if as_json else _show
-        show(plants, supervision.synthesis)
+        show(plants, supervision.synthesis, times)
 
 
-def _count(model: sct.SupervisoryControlModel, memory: int, *, as_json: bool) -> None:
+def _count(model: sct.SupervisoryControlModel, memory: int, times: int, *, as_json: bool) -> None:
     with synthesizing() as statistics:
         counted = count(model, memory=memory, statistics=statistics)
     if as_json:
-        put(json.dumps(_counts(model, counted, statistics), indent=2))
+        put(json.dumps(_counts(model, counted, statistics, times), indent=2))
     else:
-        say(_states(model, counted))
+        say(_states(model, counted, times))
     if not counted.controlled_states:
         raise click.exceptions.Exit(EMPTY_SUPERVISOR)
 
 
 def _counts(
-    model: sct.SupervisoryControlModel, counted: Counts | Synthesis, statistics: Statistics, **more: Any
+    model: sct.SupervisoryControlModel, counted: Counts | Synthesis, statistics: Statistics, times: int, **more: Any
 ) -> dict[str, Any]:
+    without = counted.uncontrolled_states
     return {
         "robot": model.name,
-        "uncontrolled_states": counted.uncontrolled_states,
-        "controlled_states": counted.controlled_states,
+        "uncontrolled_states": None if without is None else without * times,
+        "controlled_states": counted.controlled_states * times,
         "empty": counted.controlled_states == 0,
         **more,
         "seconds": round(sum(statistics.seconds.values()), 3),
@@ -105,13 +111,14 @@ def _counts(
     }
 
 
-def _show_json(model: sct.SupervisoryControlModel, synthesis: Diagnosis) -> None:
+def _show_json(model: sct.SupervisoryControlModel, synthesis: Diagnosis, times: int) -> None:
     guards = {guard.event: guard for guard in synthesis.supervisor.guards} if synthesis.supervisor else {}
     events = [event for plant in model.plants for event in plant.events] if synthesis.supervisor else []
     answer = _counts(
         model,
         synthesis,
         synthesis.statistics,
+        times,
         requirements=[_weight(weight) for weight in synthesis.weights],
         events=[_event(event, guards.get(event), synthesis) for event in events],
     )
@@ -167,16 +174,17 @@ def _event(event: sct.Event, guard: sct.EventGuard | None, synthesis: Synthesis)
     }
 
 
-def _states(model: sct.SupervisoryControlModel, counted: Counts | Synthesis) -> str:
+def _states(model: sct.SupervisoryControlModel, counted: Counts | Synthesis, times: int) -> str:
+    """How many states there are, each counted so many times."""
     without = counted.uncontrolled_states
-    beside = "" if without is None else f", of {without} without requirements"
-    return f"{model.name}: {counted.controlled_states} states{beside}"
+    beside = "" if without is None else f", of {without * times} without requirements"
+    return f"{model.name}: {counted.controlled_states * times} states{beside}"
 
 
-def _show(model: sct.SupervisoryControlModel, synthesis: Diagnosis) -> None:
+def _show(model: sct.SupervisoryControlModel, synthesis: Diagnosis, times: int) -> None:
     """What tells something: the choice among data to send restricts nothing that the robot does."""
     assert synthesis.supervisor is not None
-    say(_states(model, synthesis))
+    say(_states(model, synthesis, times))
     for guard in synthesis.supervisor.guards:
         if guard.event.kind == sct.EventKind.data:
             continue

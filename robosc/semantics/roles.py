@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from math import prod
 from typing import TYPE_CHECKING
 
 from robosc.metamodel import sct
+from robosc.semantics.domains import domain
 from robosc.semantics.edges import edges_of
 
 if TYPE_CHECKING:
@@ -26,6 +28,16 @@ def plant_of(event: sct.Event) -> sct.Plant:
 def is_from_cif(model: sct.SupervisoryControlModel) -> bool:
     """Whether a model was read from CIF: its events stand for no communication."""
     return any(event.kind == sct.EventKind.plain for plant in model.plants for event in plant.events)
+
+
+def input_values(model: sct.SupervisoryControlModel) -> int:
+    """How many values the inputs of a robot have together: to CIF these are part of a state, at any time.
+
+    1 for a model that was read from CIF: its inputs are variables.
+    """
+    if is_from_cif(model):
+        return 1
+    return prod(domain(parameter.type).size for plant in model.plants for parameter in plant.inputs)
 
 
 def event_name(event: sct.Event) -> str:

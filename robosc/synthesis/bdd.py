@@ -27,8 +27,9 @@ _BYTES_PER_NODE = 40
 #: The addresses that the library takes beside the nodes, most of them for the stack of its one thread, measured.
 _LIBRARY = (1 << 30) + (192 << 20)
 _FIRST_CAPACITY = 1 << 18
-#: Up to so many levels a diagram is small, and so is the room that is made first: making it takes its time.
-_FEW_LEVELS, _SMALL_CAPACITY = 64, 1 << 15
+#: Up to so many levels a diagram is small, and so is the room that is made first, since making it takes its time; from
+#: so many on it is large.
+_FEW_LEVELS, _SMALL_CAPACITY, _MANY_LEVELS = 64, 1 << 15, 512
 _GROWTH = 4
 #: The share of the room at which the library would collect garbage, a little less, and the one that may be in use then.
 _FULL = 0.94
@@ -120,13 +121,18 @@ def _refuse_where_addresses_lack(capacity: int) -> None:
 def with_enough_memory(run: Callable[[int], T], memory: int, levels: int | None = None) -> T:
     """`run` with room for a number of nodes, again from the start with more room each time that it did not suffice.
 
-    There is less room at first where diagrams are known to have few `levels`.
+    There is less room at first where diagrams are known to have few `levels`, and more where they have many.
 
     `memory` bounds the bytes that the nodes may take, and those of the whole process; raises MemoryError beyond it, and
     where the system allows too few addresses.
     """
     most = memory // _BYTES_PER_NODE
-    capacity = min(_FIRST_CAPACITY, most, most if levels is None or levels > _FEW_LEVELS else _SMALL_CAPACITY)
+    capacity = _FIRST_CAPACITY
+    if levels is not None and levels <= _FEW_LEVELS:
+        capacity = min(capacity, _SMALL_CAPACITY)
+    elif levels is not None and levels >= _MANY_LEVELS:
+        capacity *= _GROWTH
+    capacity = min(capacity, most)
     while True:
         try:
             with bounded(memory, "synthesis"):

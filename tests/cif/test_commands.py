@@ -57,6 +57,11 @@ def test_synthesize_counts_as_cif_does(specification: str) -> None:
     assert answer["events"][0]["guard"] == "Motor.n != 2"
 
 
+def test_inputs_of_cif_are_counted_at_any_rate(specification: str) -> None:
+    answer = json.loads(CliRunner().invoke(main, ["synthesize", specification, "--count-inputs", "--json"]).stdout)
+    assert answer["controlled_states"] == 14
+
+
 def test_synthesize_says_why_there_is_no_supervisor(tmp_path: Path) -> None:
     path = tmp_path / "empty.cif"
     path.write_text(_TEXT + "requirement u_fail needs false; requirement Motor.n > 0;")

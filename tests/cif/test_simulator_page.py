@@ -42,6 +42,15 @@ def test_the_inputs_and_events_are_there(supervised: Path) -> None:
     assert "CIF counts 128" in text
 
 
+@pytest.mark.parametrize("option", [[], ["--counts"]])
+def test_states_are_counted_as_cif_counts_them(option: list[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(ROOT)
+    for inputs, states in (([], 64), (["--count-inputs"], 128)):
+        told = json.loads(call("synthesize", MODEL, "--json", *option, *inputs))
+        assert (told["controlled_states"], told["uncontrolled_states"]) == (states, states)
+        assert call("synthesize", MODEL, *option, *inputs).startswith(f"LineFollower: {states} states, of {states} ")
+
+
 def test_the_same_steps_on_the_desk(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(ROOT)
     [given] = re.findall(r"^printf '%s\\n' (.*) \|$", PAGE, re.MULTILINE)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from itertools import groupby
-from math import prod
 from textwrap import wrap
 from typing import TYPE_CHECKING
 
@@ -15,10 +14,9 @@ from robosc.m2t.cif.names import CifNames, is_numbered
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 from robosc.metamodel.reflection import tree
-from robosc.semantics.domains import domain
 from robosc.semantics.durations import timer_text
 from robosc.semantics.edges import edges_from, edges_of
-from robosc.semantics.roles import provide_numbers
+from robosc.semantics.roles import input_values, provide_numbers
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -176,7 +174,7 @@ class Writer:
 
     def _counted(self, supervisor: sct.Supervisor) -> list[str]:
         """What the supervisor leaves of the plants, as it is counted here and in CIF."""
-        inputs = prod(domain(parameter.type).size for plant in self._model.plants for parameter in plant.inputs)
+        inputs = input_values(self._model)
         left, all_of = supervisor.controlledStates, supervisor.uncontrolledStates
         told = f"The plants of {self._model.name} under their supervisor"
         if left is None or all_of is None:  # A supervisor of a saved model need not have been counted.
