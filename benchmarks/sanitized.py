@@ -1,10 +1,13 @@
 """Builds generated packages with sanitizers and drives them: one scenario, the faults, load and unload, the end.
 
-python benchmarks/sanitized.py [--ros 1|2] [--sanitizer address|thread] [--folder FOLDER] [--page] [PYTEST...]
+python benchmarks/sanitized.py [--ros 1|2] [--sanitizer address|thread] [--packages NAME,...] [--folder FOLDER] [--page]
+                               [PYTEST...]
 
 Without options all that this machine can: ROS 1 where it is installed, ROS 2 where `rclcpp` is. The tests are those of
-`tests/ros`; further arguments go to pytest. What came of it goes into `sanitized.json` and `docs/sanitizers.md`;
-`--page` writes the latter alone. Status 1: a sanitizer has found something in generated code.
+`tests/ros`, or those that are named among the further arguments, which go to pytest; then `--packages` says what they
+need, the only ones that are built. What is built and what is reported stays in `--folder`, if it is named. What came of
+it goes into `sanitized.json` and `docs/sanitizers.md`; `--page` writes the latter alone. Status 1: a sanitizer has
+found something in generated code.
 """
 
 from __future__ import annotations
@@ -68,7 +71,7 @@ well, and so both containers, it reports nothing (2026-11-24, `scout_controller`
 Results = dict[str, dict[str, Any]]
 
 
-def drive(ros: int, sanitizer: str, folder: Path, more: list[str]) -> dict[str, Any]:
+def drive(ros: int, sanitizer: str, packages: list[str], folder: Path, more: list[str]) -> dict[str, Any]:
     """Builds and drives one kind of packages; the tests that passed and failed, and what was reported where."""
     reports = folder / f"reports-{ros}-{sanitizer}"
     reports.mkdir(parents=True, exist_ok=True)
@@ -85,7 +88,7 @@ def drive(ros: int, sanitizer: str, folder: Path, more: list[str]) -> dict[str, 
         "CXXFLAGS": flags,
         # Libraries of ROS may lack what only Python has.
         "LDFLAGS": "-Wl,--unresolved-symbols=ignore-in-shared-libs",
-        "ROBOSC_PACKAGES": " ".join(PACKAGES),
+        "ROBOSC_PACKAGES": " ".join(packages),
         "ROBOSC_PRELOAD": found.stdout.strip(),
         "ROBOSC_ROUNDS": str(ROUNDS),
         f"ROBOSC_ROS{ros}_WORKSPACE": str(workspace),
@@ -102,7 +105,7 @@ def drive(ros: int, sanitizer: str, folder: Path, more: list[str]) -> dict[str, 
     ours, others = sorted_reports(path.read_text(errors="replace") for path in sorted(reports.iterdir()))
     return {
         "date": datetime.now(UTC).date().isoformat(),
-        "packages": [package for package in PACKAGES if (workspace / "src" / package).exists()],
+        "packages": [package for package in packages if (workspace / "src" / package).exists()],
         "passed": int(suite.get("tests", 0)) - failed - int(suite.get("skipped", 0)),
         "failed": sorted(
             f"{case.get('classname')}::{case.get('name')}"
@@ -171,6 +174,7 @@ def main() -> int:
     parser = argparse.ArgumentParser()
     parser.add_argument("--ros", type=int, choices=[1, 2])
     parser.add_argument("--sanitizer", choices=SANITIZERS)
+    parser.add_argument("--packages", type=lambda names: names.split(","), default=PACKAGES)
     parser.add_argument("--folder", type=Path)
     parser.add_argument("--page", action="store_true")
     chosen, more = parser.parse_known_args()
@@ -183,7 +187,8 @@ def main() -> int:
         with tempfile.TemporaryDirectory() as temporary:
             for ros in [chosen.ros] if chosen.ros else there:
                 for sanitizer in [chosen.sanitizer] if chosen.sanitizer else SANITIZERS:
-                    result = drive(ros, sanitizer, (chosen.folder or Path(temporary)).absolute(), more)
+                    folder = (chosen.folder or Path(temporary)).absolute()
+                    result = drive(ros, sanitizer, chosen.packages, folder, more)
                     results[f"ros{ros}-{sanitizer}"] = result
                     RESULTS.write_text(json.dumps(results, indent=1, sort_keys=True) + "\n", encoding="utf-8")
     PAGE.write_text(page(results), encoding="utf-8")
