@@ -163,3 +163,32 @@ def test_rosdep_is_told_of_the_program() -> None:
 def test_the_tool_says_where_they_are() -> None:
     done = CliRunner().invoke(main, ["--cmake-dir"])
     assert (done.exit_code, done.output) == (0, f"{CMAKE}\n")
+
+
+@pytest.mark.build
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        ("guard.rscd LAYER", "// The supervisory layer of Guard"),
+        ("gate.rscd LIBRARY_PATH libraries TESTS", "// The controller of Gate"),
+    ],
+)
+def test_what_a_node_is_generated_with_reaches_the_program(tmp_path: Path, arguments: str, told: str) -> None:
+    """By the function behind `robosc_generate_controller` of both ROS, which hands on all that it is given."""
+    project = Project(tmp_path)
+    shutil.copy(HERE.parent / "runtime" / "guard.rscd", project.source)
+    settings = project.source / "settings" / "own.json"
+    settings.parent.mkdir()
+    settings.write_text('{"package": {"name": "steward"}}', encoding="utf-8")
+    (project.source / "CMakeLists.txt").write_text(
+        "cmake_minimum_required(VERSION 3.15)\nproject(own C)\nfind_package(robosc REQUIRED)\n"
+        f"robosc_generate(fragment ros1 own {arguments} CONFIG settings/own.json)\n"
+        "message(NOTICE made=${fragment})\n",
+        encoding="utf-8",
+    )
+    done = project.configure()
+    assert done.returncode == 0, done.stderr
+    made = Path(done.stderr.rpartition("made=")[2].strip()).parent
+    assert told in (made / "src" / "steward_node.cpp").read_text(encoding="utf-8")
+    assert (made / "test" / "traces").is_dir() == arguments.endswith("TESTS")
+    assert str(settings.resolve()) in (made / "inputs.txt").read_text(encoding="utf-8").splitlines()
