@@ -181,11 +181,24 @@ function hash(text: string): number {
   return found;
 }
 
+/** How wide texts are: the same ones are drawn in every frame. */
+const widths = new Map<string, number>();
+const MOST_WIDTHS = 5000;
+
+function widthOf(context: CanvasRenderingContext2D, text: string): number {
+  let width = widths.get(text);
+  if (width === undefined) {
+    if (widths.size === MOST_WIDTHS) widths.clear();
+    widths.set(text, (width = context.measureText(text).width));
+  }
+  return width;
+}
+
 /** A text, cut where it is wider than its place. */
 function shortened(context: CanvasRenderingContext2D, text: string, width: number): string {
-  if (context.measureText(text).width <= width) return text;
+  if (widthOf(context, text) <= width) return text;
   let length = Math.min(text.length, Math.floor(width / 4));
-  while (length > 0 && context.measureText(`${text.slice(0, length)}…`).width > width) length--;
+  while (length > 0 && widthOf(context, `${text.slice(0, length)}…`) > width) length--;
   return length === 0 ? "" : `${text.slice(0, length)}…`;
 }
 
