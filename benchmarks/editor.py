@@ -71,6 +71,8 @@ async def measure(lines: int, keys: int, edits: int) -> str:
             assert bool(told) == (key % 2 == 0)
         at_first = _megabytes(client)
         for edit in range(edits):
+            if edit == edits // 10:
+                at_first = _megabytes(client)
             version += 1
             replace(client, uri, version, (inserted, "x") if edit % 2 == 0 else (taken, ""))
             if edit % 10 == 9:  # as fast as somebody types, findings come now and then
@@ -80,8 +82,8 @@ async def measure(lines: int, keys: int, edits: int) -> str:
         await client.stop()
     count = text.count("\n")
     return (
-        f"| {count:,} | {opened:,.1f} s | {statistics.median(times) * 1000:,.0f} ms | {at_first:,.0f} MB |"
-        f" {at_last:,.0f} MB after {edits:,} edits |"
+        f"| {count:,} | {opened:,.1f} s | {statistics.median(times) * 1000:,.0f} ms |"
+        f" {at_first:,.0f} MB after {edits // 10:,} edits | {at_last:,.0f} MB after {edits:,} |"
     )
 
 

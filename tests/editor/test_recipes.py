@@ -8,14 +8,11 @@ import shutil
 import subprocess
 import sys
 import tomllib
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import pytest
 
 from tests.editor.server import LIBRARY, ROBOT, ROOT
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 PAGE = (ROOT / "docs" / "editor.md").read_text()
 #: What the editors wait for, in seconds, however busy the machine is.
@@ -55,15 +52,15 @@ def run(folder: Path, *words: str | Path) -> str:
 
 
 def neovim(version: tuple[int, int]) -> str:
-    """A Neovim that is at least of a version, and below 0.11 if that is."""
-    program = os.environ.get("NEOVIM") if version >= (0, 11) else None
-    program = program or shutil.which("nvim")
+    """A Neovim that is at least of a version, and below 0.11 if that is: from the tests' packages or the system."""
+    own = shutil.which("nvim", path=str(Path(sys.executable).parent))
+    program = own if version >= (0, 11) and own else shutil.which("nvim", path=os.defpath)
     if program is None:
         pytest.skip("there is no Neovim here")
     said = subprocess.run([program, "--version"], capture_output=True, text=True, check=True).stdout
     found = tuple(int(part) for part in re.search(r"v(\d+)\.(\d+)", said).groups())
     if (found >= (0, 11)) is not (version >= (0, 11)) or found < version:
-        pytest.skip(f"this Neovim is {found[0]}.{found[1]}; NEOVIM may name another one")
+        pytest.skip(f"this Neovim is {found[0]}.{found[1]}")
     return program
 
 
