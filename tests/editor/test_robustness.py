@@ -40,13 +40,13 @@ def project(text: str) -> Project:
     return made
 
 
-def parameters(method: str, text: Text, offset: int) -> object:
+def parameters(method: str, text: Text, offset: int, uri: str = URI) -> object:
     """What an editor sends with a request at an offset."""
     position = types.Position(*text.to_utf16(offset))
     place = types.Range(position, types.Position(*text.to_utf16(offset + 40)))
     made = types.METHOD_TO_TYPES[method][2]
     known = {
-        "text_document": types.TextDocumentIdentifier(URI),
+        "text_document": types.TextDocumentIdentifier(uri),
         "position": position,
         "positions": [position],
         "range": place,
@@ -57,7 +57,7 @@ def parameters(method: str, text: Text, offset: int) -> object:
     if method == types.TEXT_DOCUMENT_REFERENCES:
         known["context"] = types.ReferenceContext(include_declaration=True)
     elif method in {types.CALL_HIERARCHY_INCOMING_CALLS, types.CALL_HIERARCHY_OUTGOING_CALLS}:
-        known["item"] = types.CallHierarchyItem("s", types.SymbolKind.EnumMember, URI, place, place)
+        known["item"] = types.CallHierarchyItem("s", types.SymbolKind.EnumMember, uri, place, place)
     elif method == types.TEXT_DOCUMENT_CODE_ACTION:
         known["context"] = types.CodeActionContext([])
     names = {attribute.name for attribute in made.__attrs_attrs__}
