@@ -202,6 +202,17 @@ def constant_value(expression: ex.Expression | None, within: Instance | None = N
     return None if expression is None else _value(Expansion(None)(expression, within))
 
 
+def is_unreadable(expression: ex.Expression, within: Instance | None = None) -> bool | None:
+    """Whether a constant expression rounds what is no number, and so has no value; None where it is not constant."""
+    try:
+        evaluate(Expansion(None)(expression, within), _enum_value)
+    except UnreadableError:
+        return True
+    except (_NoValueError, TypeError, ValueError, OverflowError, AttributeError):
+        return None
+    return False
+
+
 def _folded(expression: ex.Expression) -> ex.Expression:
     value = _value(expression)
     if value is None:

@@ -237,7 +237,7 @@ def _too_large(meaning: Meaning) -> Iterator[Finding]:
 
 def _without_range(_: Instances, result: ConeOfInfluence) -> Iterator[Fault]:
     for owned, reason in result.variables.items():
-        if _is_unbounded(owned.type):
+        if _is_unbounded(owned.type) and not _has_wrong_bounds(owned.type):
             name = f"{owned.instance.name}.{owned.variable.name}"
             yield Fault(
                 owned.variable,
@@ -259,6 +259,8 @@ def _without_range(_: Instances, result: ConeOfInfluence) -> Iterator[Fault]:
         hint: Hint = "compare it with a literal, or assign it as it is to a variable, whose range it takes"
         path = property_path(reading.part) if isinstance(reading.part, rsc.Access) else None
         declared = None if path is None else Data(told.port, told.event, path).type
+        if _has_wrong_bounds(declared):
+            continue
         if _is_unbounded(declared):
             assert declared is not None
             field = declared.eContainer()
@@ -284,6 +286,11 @@ def _without_range(_: Instances, result: ConeOfInfluence) -> Iterator[Fault]:
 
 def _is_unbounded(declared: rsc.DataType | None) -> bool:
     return isinstance(declared, rsc.IntegerDataType) and (declared.minimum is None or declared.maximum is None)
+
+
+def _has_wrong_bounds(declared: rsc.DataType | None) -> bool:
+    """Whether a range of an instance has bounds of which nothing is known: that they are no constants is told there."""
+    return declared is not None and _is_unbounded(declared) and declared.eContainer() is None
 
 
 def _bounds(declared: rsc.IntegerDataType, meaning: Meaning) -> tuple[int | None, int | None]:

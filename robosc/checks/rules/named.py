@@ -14,10 +14,10 @@ from robosc.checks.type_repairs import repair
 from robosc.diagnostics import Severity
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
-from robosc.metamodel.reflection import tree
+from robosc.metamodel.reflection import contents, tree
 from robosc.semantics.cone_of_influence import accesses, conditions
 from robosc.semantics.durations import bounds, set_on_robot
-from robosc.semantics.expansion import LARGEST, Expansion, constant_value
+from robosc.semantics.expansion import LARGEST, Expansion, constant_value, is_unreadable
 from robosc.semantics.instances import bound_arguments
 from robosc.semantics.naming import written
 from robosc.semantics.operators import operator_of
@@ -103,6 +103,7 @@ def arguments(base: rsc.Base) -> Iterator[Finding]:
     yield from _defaults(base)
     for meaning in meanings(base):
         yield from _of_enums(meaning, instances(base))
+        yield from _unreadable(meaning)
         if meaning.made is not None:
             yield from _made(meaning)
 
@@ -307,6 +308,30 @@ def _made(meaning: Meaning) -> Iterator[Finding]:
         (value,) = meaning.values(divisor)
         if type(value) is int and value < 1:
             yield meaning.finding(divisor, *_wrong_divisor(row, position))
+
+
+def _unreadable(meaning: Meaning) -> Iterator[Finding]:
+    """Constant expressions that round what is no number; of a template those that do so by its arguments."""
+    waiting: list[Any] = list(meaning.definitions)[::-1] if meaning.made is None else [meaning.made.local]
+    if not any(_may_round(part) for root in waiting for _, part in tree(root)):
+        return
+    while waiting:
+        part = waiting.pop()
+        inside = [child for _, child in contents(part)][::-1]
+        unreadable = is_unreadable(part, meaning.made) if isinstance(part, ex.Expression) else None
+        if unreadable:
+            inside = [child for child in inside if is_unreadable(child, meaning.made)]
+        if unreadable is None or (unreadable and inside):
+            waiting += inside
+        elif unreadable and not isinstance(part, rsc.Access) and (meaning.made is None or is_unreadable(part) is None):
+            yield meaning.finding(
+                part, "this rounds what is no number, and so has no value", "write another expression"
+            )
+
+
+def _may_round(part: ex.Located) -> bool:
+    row = operator_of(part) if isinstance(part, ex.FunctionCall) else None
+    return isinstance(part, rsc.Call) or (row is not None and row.is_partial)
 
 
 def _wrong_divisor(row: Operator, position: int) -> tuple[str, str]:
