@@ -163,6 +163,9 @@ class Encoding:
         self._places: dict[ex.NamedElement, int] = {}
         self._between: dict[tuple[Element, int, int], Diagram] = {}
         self._vectors: dict[ex.Expression, Vector] = {}
+        self._reads: dict[Element, Vector] = {}
+        self._kept: dict[Element, Diagram] = {}
+        self._next: dict[sct.Location, Diagram] = {}
 
     def bits(self, element: Element) -> tuple[Diagram, ...]:
         """The bits of an element's code, least significant first."""
@@ -207,7 +210,9 @@ class Encoding:
 
     def keeps(self, element: Element) -> Diagram:
         """Where the element's next value is its present one."""
-        return self.becomes(element, self.bits(element))
+        if element not in self._kept:
+            self._kept[element] = self.becomes(element, self.bits(element))
+        return self._kept[element]
 
     def _same(self, bits: Sequence[Diagram], code: Vector) -> Diagram:
         result = self.diagrams.true
@@ -227,7 +232,10 @@ class Encoding:
 
     def next_location(self, location: sct.Location) -> Diagram:
         """Where the location's plant will be in it."""
-        return self.becomes(location.eContainer(), arithmetic.constant(self.diagrams, self.location_code(location)))
+        if location not in self._next:
+            code = arithmetic.constant(self.diagrams, self.location_code(location))
+            self._next[location] = self.becomes(location.eContainer(), code)
+        return self._next[location]
 
     def marked(self, plant: sct.Plant) -> Diagram:
         """Where the plant is in a marked location."""
@@ -384,8 +392,10 @@ class Encoding:
         raise foreign(expression)
 
     def _read(self, element: sct.DiscreteVariable | sct.Input) -> Vector:
-        code = (*self.bits(element), self.diagrams.false)
-        return arithmetic.add(code, arithmetic.constant(self.diagrams, smallest(element)))
+        if element not in self._reads:
+            code = (*self.bits(element), self.diagrams.false)
+            self._reads[element] = arithmetic.add(code, arithmetic.constant(self.diagrams, smallest(element)))
+        return self._reads[element]
 
     def location_code(self, location: sct.Location) -> int:
         """The code of a location among those of its plant."""
