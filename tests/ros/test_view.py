@@ -134,6 +134,9 @@ def compare(moments: list[dict[str, Any]], log: list[dict[str, Any]]) -> None:
         engine = simulation.engine
         state = whole_state(engine)
         assert {name: whole["state"][name] for name in components} == {name: state[name] for name in components}
+        # And the number that the node keeps beside its supervisor.
+        offsets = [one["data"]["value"] for one in happened[:at] if one["event"] == "message_correction.u_response"]
+        assert whole["state"]["LineDetector.offset"] == (offsets[-1] if offsets else 0.0)
         verdicts = {command: verdict and verdict["by"] for command, verdict in whole["commands"].items()}
         assert verdicts == {command: by and str(by) for command in verdicts for by in [engine.blocked_by(command)]}
 
