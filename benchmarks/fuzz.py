@@ -69,8 +69,8 @@ class Result:
         """What a trial of these arguments returns; None where it fails."""
         began = process_time()
         _forget_peak()
-        # What no signal can stop ends with its process.
-        faulthandler.dump_traceback_later(20 * limit, exit=True)
+        # What no signal can stop ends with its process; of a busy machine it gets a small part.
+        faulthandler.dump_traceback_later(200 * limit, exit=True)
         try:
             with time_limit(limit):
                 return trial(*arguments)
