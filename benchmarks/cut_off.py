@@ -4,7 +4,7 @@
 
 Each text is cut off behind each of its characters, as somebody leaves it who types it, and each kind of request is
 answered there, as tests/editor/test_robustness.py does at some of them. Prints a row for each example, and ends with
-the first failure. All of them take an hour and a half of one processor. Needs `pip install 'robosc[test]'`.
+the first failure. All of them take hours of one processor. Needs `pip install 'robosc[test]'`.
 """
 
 from __future__ import annotations
