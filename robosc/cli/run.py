@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from robosc.cli import CallError, interruption
-from robosc.cli.options import Paths, configuration, findings_format, model, paths, synthesizer
+from robosc.cli.options import Paths, configuration, findings_format, model, paths, ros_version, synthesizer
 from robosc.cli.parameters import parameters, set_parameters
 from robosc.cli.reading import read_configuration, read_models, supervise_models
 from robosc.cli.report import Report
@@ -23,8 +23,7 @@ if TYPE_CHECKING:
 
 @click.command("run", context_settings={"ignore_unknown_options": True})
 @model
-@click.option("--ros1", "version", flag_value=1, type=int, help="Be a node of ROS 1.")
-@click.option("--ros2", "version", flag_value=2, type=int, help="Be a node of ROS 2.")
+@ros_version("Be a node of ROS {}.")
 @click.option("--layer", is_flag=True, help="Be the supervisory layer between an existing controller and the robot.")
 @configuration
 @findings_format

@@ -22,6 +22,7 @@ from robosc.cli.options import (
     findings_format,
     model,
     paths,
+    ros_version,
     synthesizer,
 )
 from robosc.cli.progress import progress
@@ -55,8 +56,7 @@ if TYPE_CHECKING:
 @model
 @click.argument("scenarios", nargs=-1, required=True, type=FILE, metavar="FILE...")
 @click.option("--engine", type=click.Choice(["python", "c"]), default="python", show_default=True, help="What plays.")
-@click.option("--ros1", "version", flag_value=1, type=int, help="Play with a node of ROS 1, too.")
-@click.option("--ros2", "version", flag_value=2, type=int, help="Play with a node of ROS 2, too.")
+@ros_version("Play with a node of ROS {}, too.")
 @click.option(
     "--node",
     metavar="COMMAND",

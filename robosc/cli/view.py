@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from robosc.cli import CallError, put, say
-from robosc.cli.options import FILE, Paths, paths, synthesizer
+from robosc.cli.options import FILE, Paths, paths, ros_version, synthesizer
 from robosc.cli.parameters import parameters, set_parameters
 from robosc.cli.reading import read_configuration, read_models, supervise_models
 from robosc.cli.report import Report
@@ -29,8 +29,7 @@ if TYPE_CHECKING:
 
 @click.command("view")
 @click.argument("models", metavar="MODEL...", nargs=-1, required=True, type=FILE)
-@click.option("--ros1", "version", flag_value=1, type=int, help="Show a robot of ROS 1 that runs.")
-@click.option("--ros2", "version", flag_value=2, type=int, help="Show a robot of ROS 2 that runs.")
+@ros_version("Show a robot of ROS {} that runs.")
 @click.option("--node", help="Of this node, such as /robot/line_follower_controller; without it, by its usual name.")
 @click.option("--log", type=click.Path(), help="Show an event log, a script, or a recording: a bag, MCAP.")
 @click.option("--trace", "refuted", metavar="PROPERTY", help="Show a counterexample of `verify`; `any`: the first.")
