@@ -27,10 +27,11 @@ def built_again(output: str) -> list[str]:
 
 def no_work_is_done(output: str) -> bool:
     """Whether make says nothing but that all is built, and CMake at most that what is installed is as it was."""
-    lines = [line for line in output.splitlines() if re.match(r"(\[|-- )", line)]
-    # ament lists its environment anew each time.
-    idle = r"\[ *\d+%\] Built target |-- Install configuration|-- Up-to-date: |-- Installing: .*/package\.dsv$"
-    return any("Built target" in line for line in lines) and all(re.match(idle, line) for line in lines)
+    lines = [line for line in output.splitlines() if re.match(r"(\[ *\d+%|-- )", line)]
+    idle = r"\[ *\d+%\] Built target |-- Install configuration|-- Up-to-date: "
+    # ament lists its environment anew each time, and rosidl installs some of what it makes of messages again.
+    again = r"-- Installing: .*/(package\.dsv|\w+__type_support\.c|[\w.-]+\.egg-info/\S+)$"
+    return any("Built target" in line for line in lines) and all(re.match(f"{idle}|{again}", line) for line in lines)
 
 
 @contextmanager
