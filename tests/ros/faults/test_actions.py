@@ -88,6 +88,18 @@ def test_cancelled_before_acceptance(scout: Scout, server: Peer) -> None:
     assert len(scout.events(since, RESPONSE)) == 1
 
 
+def test_rejected_after_cancel(scout: Scout, server: Peer) -> None:
+    """The next goal has waited for the end of this one."""
+    since, number = travel(scout, server, accept=None)
+    scout.send("/travel_order", data=False)
+    scout.until_event(since, CANCEL)
+    scout.send("/travel_order", data=True)
+    scout.until_event(since, "message_travel_order.u_response", count=3)
+    server.do("decide", number=number, accept=False)
+    succeed(scout, server, number + 1)
+    assert scout.events(since, ERROR) == []
+
+
 def test_cancel_refused(scout: Scout, server: Peer) -> None:
     server.do("on_cancel", answer="refuse")
     since, number = travel(scout, server)
