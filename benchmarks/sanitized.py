@@ -66,6 +66,19 @@ well, and so both containers, it reports nothing (2026-11-24, `scout_controller`
 `porter_controller`, `usher_layer`): all 20 tests of `tests/ros/test_ros2_node.py` passed, and 53 of 54 of
 `tests/ros/faults`; the other one is the flood, whose memory is more than its bound.
 
+With the same built with the thread sanitizer (2026-11-25, `scout_controller`, `managed_porter`), 19 tests passed: of
+actions, services and the ways to end a node, of managed nodes, of two components in one container. On generated code it
+reports no data race and 30 orders of locks; with those libraries as they come, in the same tests, no data race and 93.
+Components that come and go were not among them, so this run does not tell what the two reports of `operator delete` in
+ROS 2 below are; nor that in ROS 1.
+
+Most of the 93 are orders within Fast DDS and of the logging of rclcpp, which nobody has looked into. The others are of
+actions: `rclcpp_action` calls back while it holds a lock of its own; callbacks take the lock of the node's
+`CallbackGuard`, and may send or cancel a goal, which takes the lock of `rclcpp_action`. All of a node is in one
+callback group, of which an executor runs one callback at a time, so these do not wait for each other. One case is
+different, and open: a component that is unloaded in a second thread asks again to cancel a goal that is being
+cancelled; if it does so just as the answer to the first request comes, both threads wait for ever.
+
 | | last run | packages | tests passed | failed | reports on generated code | on libraries alone |
 |---|---|---|---|---|---|---|"""
 Results = dict[str, dict[str, Any]]
