@@ -75,9 +75,9 @@ ROS 2 below are; nor that in ROS 1.
 Most of the 93 are orders within Fast DDS and of the logging of rclcpp, which nobody has looked into. The others are of
 actions: `rclcpp_action` calls back while it holds a lock of its own; callbacks take the lock of the node's
 `CallbackGuard`, and may send or cancel a goal, which takes the lock of `rclcpp_action`. All of a node is in one
-callback group, of which an executor runs one callback at a time, so these do not wait for each other. One case is
-different, and open: a component that is unloaded in a second thread asks again to cancel a goal that is being
-cancelled; if it does so just as the answer to the first request comes, both threads wait for ever.
+callback group, of which an executor runs one callback at a time, so these do not wait for each other. One case was
+different: a component that was unloaded in a second thread asked again to cancel a goal that was being cancelled, and
+could do so just as the answer to the first request came. Now nobody asks again before there is an answer.
 
 | | last run | packages | tests passed | failed | reports on generated code | on libraries alone |
 |---|---|---|---|---|---|---|"""

@@ -50,7 +50,8 @@ class GoalClient {
   void interrupt() {
     if (!busy()) return;
     ending_ = true;
-    if (known_) ask_to_cancel();
+    // Not again while it is to answer: rclcpp_action may be about to tell of the answer, with a lock that asking takes.
+    if (known_ && !(asked_ && deadline_.running())) ask_to_cancel();
   }
 
  protected:
