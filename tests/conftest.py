@@ -3,14 +3,20 @@
 The tests of a file run in one process, unless `pytest_collection_modifyitems` of its folder has given them a group.
 """
 
+import json
 import signal
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
 import pytest
+from click.testing import CliRunner
 from hypothesis import settings
+
+from robosc.cli import main
+from tests.sharing import made_once
 
 #: Characters of a parameter that stand in the name of a test.
 LONGEST = 80
@@ -59,11 +65,27 @@ def shared_folder(pytestconfig: pytest.Config) -> Path:
     return pytestconfig.stash[_SHARED]
 
 
-@pytest.hookimpl(trylast=True)
+@pytest.fixture(scope="session")
+def verified(shared_folder: Path) -> Callable[[Path], Any]:
+    """What `verify --json` says of a model in which nothing is refuted, asked once in this run of the tests."""
+
+    def asked(path: Path) -> str:
+        done = CliRunner().invoke(main, ["verify", "--json", str(path)])
+        assert done.exit_code == 0, done.output
+        return done.stdout
+
+    @cache
+    def answer(path: Path) -> Any:
+        return json.loads(made_once(shared_folder, f"verified-{path.parent.name}-{path.stem}", lambda: asked(path)))
+
+    return answer
+
+
+@pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Tests over ROS come first: they wait, and others fill the time. What they need is built meanwhile.
 
-    At the end come short tests, which leave no process idle.
+    At the end come short tests, which leave no process idle. Before xdist reads the groups, and after those of `ros`.
     """
     for item in items:
         if item.get_closest_marker("xdist_group") is None:

@@ -1,9 +1,7 @@
 """Nothing is refuted of any example or listing of the thesis, nor of what is generated from it; the page shows it."""
 
-import json
 import re
-from collections.abc import Mapping
-from functools import cache
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -20,13 +18,6 @@ LISTINGS = ROOT.parent / "shared" / "thesis" / "models"
 LISTED = [path for path in sorted(LISTINGS.glob("*.rscd")) if path.stem != "language-concepts"]
 
 
-@cache
-def answer(path: Path) -> Mapping[str, Any]:
-    done = CliRunner().invoke(main, ["verify", "--json", str(path)])
-    assert done.exit_code == 0, done.output
-    return json.loads(done.stdout)
-
-
 #: The showcases take more of the processor than all others together.
 CASES = [
     pytest.param(path, id=path.stem, marks=[pytest.mark.slow] if path.stem in SHOWCASES else [])
@@ -35,8 +26,8 @@ CASES = [
 
 
 @pytest.mark.parametrize("path", CASES)
-def test_all_is_proved(path: Path) -> None:
-    said = answer(path)
+def test_all_is_proved(path: Path, verified: Callable[[Path], Any]) -> None:
+    said = verified(path)
     assert said["proved"]
     sampled = {answered["property"] for answered in said["properties"] if answered["outcome"] == "sampled"}
     assert {answered["outcome"] for answered in said["properties"]} <= {"proved", "sampled"}
@@ -62,9 +53,9 @@ SAMPLED = {
 
 
 @pytest.mark.parametrize("path", [case for case in CASES[: len(MODELS)] if case.id in PAGES])
-def test_the_page_sums_up_the_examples(path: Path) -> None:
+def test_the_page_sums_up_the_examples(path: Path, verified: Callable[[Path], Any]) -> None:
     page = (ROOT / "docs" / "verify.md").read_text()
-    name, answered = path.stem, answer(path)["properties"]
+    name, answered = path.stem, verified(path)["properties"]
     by_name = {one["property"]: one["evidence"] for one in answered}
     row = [name, by_name["controllability"].partition(" state")[0], str(len(by_name))]
     row += [re.findall(r"at most (\d+)", by_name["bounded response"])[0], by_name["c-translation"]]

@@ -4,6 +4,7 @@ import json
 import re
 import shutil
 import subprocess
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -27,8 +28,15 @@ from tests.examples.conftest import MODELS, PAGES, models_of
 
 ROOT = Path(__file__).parents[2]
 QUICK = "supervised_line_follower"
-#: With other robots, in a run of all tests.
-EACH = [QUICK, *(pytest.param(name, marks=pytest.mark.slow) for name in PAGES if name != QUICK)]
+#: With other robots, in a run of all tests; those of one robot look at the same report.
+EACH = [
+    QUICK,
+    *(
+        pytest.param(name, marks=[pytest.mark.slow, pytest.mark.xdist_group(f"report {name}")])
+        for name in PAGES
+        if name != QUICK
+    ),
+]
 
 
 @cache
@@ -46,11 +54,10 @@ def test_the_json_keeps_its_schema(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", EACH)
-def test_its_verdicts_are_those_of_verify(name: str) -> None:
-    done = CliRunner().invoke(main, ["verify", str(MODELS[name]), "--json"])
+def test_its_verdicts_are_those_of_verify(name: str, verified: Callable[[Path], Any]) -> None:
     keys = ("property", "outcome", "evidence")
     ours = [[one[key] for key in keys] for one in told(name)["verdicts"]]
-    assert ours == [[one[key] for key in keys] for one in json.loads(done.stdout)["properties"]]
+    assert ours == [[one[key] for key in keys] for one in verified(MODELS[name])["properties"]]
     by_requirement = [verdict for one in told(name)["requirements"] for verdict in one["verdicts"]]
     assert len(by_requirement) == sum(one["requirement"] is not None for one in told(name)["verdicts"])
 
