@@ -26,8 +26,12 @@ def plant_of(event: sct.Event) -> sct.Plant:
 
 
 def is_from_cif(model: sct.SupervisoryControlModel) -> bool:
-    """Whether a model was read from CIF: its events stand for no communication."""
-    return any(event.kind == sct.EventKind.plain for plant in model.plants for event in plant.events)
+    """Whether a model was read from CIF: its events stand for no communication, or it may start in several states."""
+    return any(
+        any(event.kind == sct.EventKind.plain for event in plant.events)
+        or any(variable.initial is None for variable in plant.variables)
+        for plant in model.plants
+    ) or bool(model.initialPredicates)
 
 
 def input_values(model: sct.SupervisoryControlModel) -> int:

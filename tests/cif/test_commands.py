@@ -229,3 +229,19 @@ def test_no_supervisor_where_each_initial_state_is_lost_in_its_own_way(tmp_path:
     assert result.exit_code == 3
     assert "the supervisor is empty" in result.output
     assert "`u`" in result.output
+
+
+@pytest.mark.parametrize(
+    ("text", "states"),
+    [
+        ("controllable c; plant p: disc int[0..5] x in {1, 3}; location: initial; marked; end", 2),
+        ("plant p: disc bool b in any; location c: initial b; marked; location d: initial not b; marked; end", 2),
+    ],
+)
+def test_a_specification_may_have_no_event_that_happens(text: str, states: int, tmp_path: Path) -> None:
+    path = tmp_path / "still.cif"
+    path.write_text(text)
+    result = CliRunner().invoke(main, ["transform", str(path), "--to", "cif,supervisor,xmi", "-o", str(tmp_path)])
+    assert result.exit_code == 0, result.output
+    made = (tmp_path / "still.supervised.cif").read_text()
+    assert made.startswith(f'@@doc("still under its supervisor: {states} states.")\nimport "still.cif";\n')
