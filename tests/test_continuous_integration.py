@@ -177,3 +177,10 @@ def test_a_hook_runs_and_can_fail(job: Job, hook: dict[str, Any]) -> None:
     door.write_text(DOOR.replace("open needs Leaf.closed", "open  needs Leaf.x"))
     status, changed = run()
     assert bool(status) != changed
+
+
+def test_the_tests_of_a_file_run_in_one_process(request: pytest.FixtureRequest) -> None:
+    """They share what one of them has made; xdist reads the groups before any hook that comes late."""
+    if not getattr(request.config.option, "loadgroup", False):
+        pytest.skip("only processes of xdist have groups")
+    assert request.node.nodeid.endswith(f"@{Path(__file__).name}")

@@ -10,7 +10,7 @@ import subprocess
 import sys
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
-from typing import IO, TYPE_CHECKING
+from typing import IO, TYPE_CHECKING, cast
 from xmlrpc.client import Fault, ServerProxy
 
 from robosc.files.writing import temporary_folder
@@ -86,7 +86,8 @@ class LiveNode:
         address = os.environ.get("ROS_MASTER_URI") or _MASTER
         master = ServerProxy(address)
         try:
-            before = master.getParam("/robosc", "/use_sim_time")
+            # A code, 1 where it has a value, what it is about, and the value.
+            found, _, value = cast("tuple[int, str, bool]", master.getParam("/robosc", "/use_sim_time"))
             master.setParam("/robosc", "/use_sim_time", True)
         except (OSError, Fault) as error:
             raise LiveError(f"there is no master of ROS 1 at {address}: start roscore ({error})") from None
@@ -94,8 +95,8 @@ class LiveNode:
             yield
         finally:
             with suppress(OSError, Fault):
-                if before[0] == 1:  # type: ignore[index]  # a code first, then what it is about
-                    master.setParam("/robosc", "/use_sim_time", before[2])  # type: ignore[index]
+                if found == 1:
+                    master.setParam("/robosc", "/use_sim_time", value)
                 else:
                     master.deleteParam("/robosc", "/use_sim_time")
 

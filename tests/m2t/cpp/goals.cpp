@@ -1,25 +1,15 @@
 // Checks of the goal of an action, with a middleware that only counts. Prints what does not hold, as `headers.cpp`.
 #include <chrono>
 #include <functional>
-#include <iostream>
 #include <string>
 #include <utility>
 
+#include "checks.hpp"
 #include "robosc/goal_client.hpp"
 
 namespace {
 
 using namespace robosc;
-
-int faults = 0;
-
-#define CHECK(condition)                                         \
-  do {                                                           \
-    if (!(condition)) {                                          \
-      std::cout << __LINE__ << ": " << #condition << std::endl; \
-      ++faults;                                                  \
-    }                                                            \
-  } while (false)
 
 /// Is never over.
 class Countdown {

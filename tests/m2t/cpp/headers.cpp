@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "checks.hpp"
 #include "robosc/data.hpp"
 #include "robosc/event_log.hpp"
 #include "robosc/fields.hpp"
@@ -15,16 +16,6 @@
 namespace {
 
 using namespace robosc;
-
-int faults = 0;
-
-#define CHECK(condition)                                         \
-  do {                                                           \
-    if (!(condition)) {                                          \
-      std::cout << __LINE__ << ": " << #condition << std::endl; \
-      ++faults;                                                  \
-    }                                                            \
-  } while (false)
 
 constexpr auto kMost = std::numeric_limits<std::int64_t>::max();
 constexpr auto kLeast = std::numeric_limits<std::int64_t>::min();
