@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections import deque
 from dataclasses import dataclass
+from functools import reduce
 from itertools import product
 from math import prod
+from operator import or_
 from random import Random
 from typing import TYPE_CHECKING, NamedTuple, cast
 
@@ -32,6 +34,8 @@ if TYPE_CHECKING:
 
 #: How much longer it takes to compute what an event does than to know it from before.
 _COMPUTED = 30
+#: What so many values of slots do is looked up at once.
+_TOGETHER = 1000
 
 
 class DifferenceError(Exception):
@@ -47,11 +51,13 @@ class DifferenceError(Exception):
 class Effort:
     """How far to look.
 
-    Up to so many `states`, and in memory so many `bits` of them; asking so often (`tries`) what an event does in a
-    state; of one event in one state for so many values of its `inputs`. Where that is not all, with so many `values` of
-    what events read, reachable or not; where that does not do, so many tries more on a random way.
+    At a `first` part of the states; where that is not all, with so many `values` of what events read, reachable or not;
+    where that does not do, at so many `states`, and in memory so many `bits` of them, asking so often (`tries`) what an
+    event does in a state, of one event in one state for so many values of its `inputs`. Where that is not all, either,
+    so many tries more on a random way.
     """
 
+    first: int = 100_000
     states: int = 1_000_000
     bits: int = 1 << 28
     tries: int = 50_000_000
@@ -133,6 +139,39 @@ class _Layout:
         return kept, added
 
 
+class _Group:
+    """Pairs that stand one after the other and read few slots all in all: what they do is looked up at once."""
+
+    def __init__(self, pairs: Sequence[_Pair]) -> None:
+        self.pairs = pairs
+        self.mask = reduce(or_, (pair.mask for pair in pairs), 0)
+        self.known: dict[int, tuple[tuple[int, int], ...]] = {}
+
+    def learn(self, state: int, changes: Iterable[tuple[int, int]]) -> tuple[tuple[int, int], ...]:
+        """Keeps what the pairs change in a state and all that are like it; says it without what changes nothing."""
+        found = tuple(
+            (kept, added)
+            for kept, added in dict.fromkeys(changes)
+            if ~kept & ~self.mask or state & kept | added != state
+        )
+        self.known[state & self.mask] = found
+        return found
+
+
+def _groups(pairs: Iterable[_Pair], layout: _Layout) -> Iterator[_Group]:
+    """All pairs in their order."""
+    together: list[_Pair] = []
+    slots: set[Slot] = set()
+    for pair in pairs:
+        if together and prod(_size(layout.domains[slot]) for slot in slots.union(pair.reads)) > _TOGETHER:
+            yield _Group(together)
+            together, slots = [], set()
+        together.append(pair)
+        slots.update(pair.reads)
+    if together:
+        yield _Group(together)
+
+
 class Lockstep:
     """The comparison of a text with its plants."""
 
@@ -153,37 +192,45 @@ class Lockstep:
             for claim, other in claims
             for reads in [claim.condition.reads | other.condition.reads]
         ]
+        self._groups = list(_groups(self._pairs, self._layout))
+        self._claim_mask = reduce(or_, (mask for _, _, mask, _, _ in self._claims), 0)
+        self._claimed_in = set[int]()
         self._initial = self._layout.change(text.initial)[1]
-        self._before: dict[int, int] = {}
+        self._before = {self._initial: self._initial}
+        self._waiting = deque(self._before)
 
     def run(self) -> Walked:
         """Compares all states, or as many as the effort allows and then some more; raises DifferenceError."""
-        is_whole = self._explore() and not any(pair.is_sampled for pair in self._pairs)
-        steps = 0 if is_whole or self._is_same_everywhere() else max(1, self._effort.random // len(self._pairs))
+        most = min(self._effort.states, self._effort.bits // self._layout.bits)
+        is_sampled = any(pair.is_sampled for pair in self._pairs)
+        is_whole = self._explore(min(self._effort.first, most)) and not is_sampled
+        steps = 0
+        if not is_whole and not self._is_same_everywhere():
+            is_whole = self._explore(most) and not is_sampled
+            steps = 0 if is_whole else max(1, self._effort.random // len(self._pairs))
         self._wander(steps)
         return Walked(len(self._before), len(self._pairs), is_whole, steps)
 
-    def _explore(self) -> bool:
-        """Goes to all states by the fewest events; whether these are all."""
-        self._before = {self._initial: self._initial}
-        waiting = deque(self._before)
-        most = min(self._effort.states, self._effort.bits // self._layout.bits)
+    def _explore(self, most: int) -> bool:
+        """Goes on to so many states by the fewest events; whether these are all."""
+        before, waiting = self._before, self._waiting
         while waiting:
+            if len(before) > most or self._tries > self._effort.tries:
+                return False
             state = waiting.popleft()
-            self._claimed(state, state)
+            if state & self._claim_mask not in self._claimed_in:
+                self._claimed_in.add(state & self._claim_mask)
+                self._claimed(state, state)
             self._tries += len(self._pairs)
-            for pair in self._pairs:
-                key = state & pair.mask
-                found = pair.known.get(key)
+            for group in self._groups:
+                found = group.known.get(state & group.mask)
                 if found is None:
-                    found = pair.known[key] = self._compared(pair, state)
+                    found = group.learn(state, self._changes(group, state))
                 for kept, added in found:
                     successor = state & kept | added
-                    if successor not in self._before:
-                        self._before[successor] = state
+                    if successor not in before:
+                        before[successor] = state
                         waiting.append(successor)
-            if len(self._before) > most or self._tries > self._effort.tries:
-                return False
         return True
 
     def _is_same_everywhere(self) -> bool:
@@ -191,12 +238,13 @@ class Lockstep:
         left = self._effort.values
         asked: list[tuple[Sequence[Slot], _Pair | None, Sequence[Claim]]] = [(p.reads, p, ()) for p in self._pairs]
         asked += [(reads, None, (claim, other)) for claim, other, _, reads, _ in self._claims]
+        for reads, pair, _ in asked:
+            read = [self._layout.domains[slot] for slot in reads]
+            left -= prod(map(_size, [*read, *(pair.domains.values() if pair else ())]))
+        if left < 0:
+            return False
         for reads, pair, claims in asked:
-            domains = [self._layout.domains[slot] for slot in reads]
-            left -= prod(map(_size, [*domains, *(pair.domains.values() if pair else ())]))
-            if left < 0:
-                return False
-            for values in product(*domains):
+            for values in product(*(self._layout.domains[slot] for slot in reads)):
                 held = dict(zip(reads, values, strict=True))
                 if len({_holds(claim, held) for claim in claims}) > 1:
                     return False
@@ -224,6 +272,14 @@ class Lockstep:
             (kept, added), step = self._random.choice(possible)
             state = state & kept | added
             trace.append(step)
+
+    def _changes(self, group: _Group, state: int) -> Iterator[tuple[int, int]]:
+        """What the events of a group change in a state."""
+        for pair in group.pairs:
+            key = state & pair.mask
+            if key not in pair.known:
+                pair.known[key] = self._compared(pair, state)
+            yield from pair.known[key]
 
     def _compared(self, pair: _Pair, state: int) -> tuple[tuple[int, int], ...]:
         held = self._state(pair.reads, state)
@@ -347,6 +403,9 @@ def _same_event(ours: Event, theirs: Event) -> None:
 
 def _unlike(ours: Outcome, theirs: Outcome, held: Mapping[Slot, Value], pair: _Pair) -> str:
     """How two readings of an event in a state differ; empty where they do not."""
+    mine, other = _changed(ours, held), _changed(theirs, held)
+    if (bool(ours.refused), bool(ours.forbidden), mine) == (bool(theirs.refused), bool(theirs.forbidden), other):
+        return ""
     said = words(pair.plants.element)
     if bool(ours.refused) != bool(theirs.refused):
         if ours.refused:
@@ -358,13 +417,12 @@ def _unlike(ours: Outcome, theirs: Outcome, held: Mapping[Slot, Value], pair: _P
         assert found is not None
         who = ("the text", "the model") if ours.forbidden else ("the model", "the text")
         return f"{said} is forbidden by {who[0]}{_line(found.source)}, and not by {who[1]}"
-    mine, other = _changed(ours, held), _changed(theirs, held)
     for slot in dict.fromkeys([*mine, *other]):
         if mine.get(slot) != other.get(slot):
             lines = _lines(taken.source for taken in ours.taken if slot in taken.writes) or _line(pair.text.element)
             told = f"{_becomes(slot, mine)} by the text{lines}, and {_becomes(slot, other)} in the plants"
             return f"after {said}, {_called(slot)} {told}"
-    return ""
+    raise AssertionError("they do not differ")
 
 
 def _changed(outcome: Outcome, held: Mapping[Slot, Value]) -> dict[Slot, Value]:
