@@ -5,10 +5,10 @@ from __future__ import annotations
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING
 
+from robosc.checks.facts import fact, keeping_facts
 from robosc.checks.rule import Finding, on_line
-from robosc.metamodel import robosc as rsc
 from robosc.semantics.expansion import constant_value
 from robosc.semantics.instances import Instances, imported, libraries
 
@@ -17,14 +17,12 @@ if TYPE_CHECKING:
 
     from robosc.checks.mending import Hint
     from robosc.metamodel import expression as ex
+    from robosc.metamodel import robosc as rsc
     from robosc.semantics.evaluation import Value
     from robosc.semantics.instances import Instance, Resolved
 
     #: Says whether a robot or library by itself has what a rule looks for.
     Holds = Callable[[rsc.Base], bool]
-
-_Base = TypeVar("_Base", bound=rsc.Base)
-_Fact = TypeVar("_Fact")
 
 
 @dataclass
@@ -34,7 +32,6 @@ class _Memory:
     instances: dict[rsc.Base, Instances] = field(default_factory=dict)
     resolved: Resolved = field(default_factory=dict)
     reachable: dict[tuple[rsc.Base, Holds], Cell | None] = field(default_factory=dict)
-    facts: dict[tuple[Callable[..., Any], rsc.Base], Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -53,7 +50,8 @@ def remembering() -> Iterator[None]:
     """Within the `with` block no model changes, so that what is found out of one holds until the end."""
     token = _MEMORY.set(_Memory())
     try:
-        yield
+        with keeping_facts():
+            yield
     finally:
         _MEMORY.reset(token)
 
@@ -101,15 +99,6 @@ def meanings(base: rsc.Base) -> Iterator[Meaning]:
     for instance in instances(base):
         if instance.arguments:
             yield Meaning([instance.definition], instance)
-
-
-def fact(find: Callable[[_Base], _Fact], base: _Base) -> _Fact:
-    """What a function finds of a robot or library, asked once in a check."""
-    facts = _memory().facts
-    if (find, base) not in facts:
-        facts[find, base] = find(base)
-    found: _Fact = facts[find, base]
-    return found
 
 
 def imports(base: rsc.Base) -> list[tuple[rsc.Component, rsc.Library]]:

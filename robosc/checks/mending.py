@@ -6,6 +6,7 @@ import re
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 from robosc.checks.definitions import unit_of
+from robosc.checks.facts import fact
 from robosc.diagnostics import Edit, Span
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
@@ -161,9 +162,8 @@ class Renaming(NamedTuple):
         word = rf"(\^?{re.escape(self.element.name)})\b"
         declared = _rewritten(self.element, rf"\b(?:{_DECLARING})\s+{word}", self.name)
         found = list(declared) or list(_rewritten(self.element, rf"\A{word}", self.name))
-        for _, part in tree(unit_of(self.element)) if found else ():
-            pattern = _naming(part, self.element)
-            found += [] if pattern is None else _rewritten(part, pattern.replace("NAME", word), self.name)
+        for part in fact(_named, unit_of(self.element)).get(self.element, ()) if found else ():
+            found += _rewritten(part, _naming(part, self.element).replace("NAME", word), self.name)
         return tuple(dict.fromkeys(found))
 
 
@@ -232,13 +232,25 @@ _NAMING: tuple[tuple[type, str, str], ...] = (
 )
 
 
-def _naming(part: Any, element: Any) -> str | None:
-    """The pattern of the name of an element, `NAME`, in the text of what names it; None for what does not."""
+def _named(base: rsc.Base) -> dict[Any, list[Any]]:
+    """By what is named in a robot or library what names it, in the order of the text."""
+    found: dict[Any, list[Any]] = {}
+    for _, part in tree(base):
+        features = [feature for kind, feature, _ in _NAMING if isinstance(part, kind)]
+        features += ["item"] if isinstance(part, rsc.Access) else []
+        for element in dict.fromkeys(getattr(part, feature) for feature in features):
+            if element is not None:
+                found.setdefault(element, []).append(part)
+    return found
+
+
+def _naming(part: Any, element: Any) -> str:
+    """The pattern of the name of an element, `NAME`, in the text of what names it."""
     if isinstance(part, rsc.Access) and part.item is element:
         own = part.component is not None and not _is_qualified(part, part.component)
         return r"\ANAME" if own else r"\A(?:\^?\w+\s*\.\s*)?NAME"
     rows = (row for row in _NAMING if isinstance(part, row[0]))
-    return next((pattern for _, feature, pattern in rows if getattr(part, feature) is element), None)
+    return next(pattern for _, feature, pattern in rows if getattr(part, feature) is element)
 
 
 def _is_qualified(access: rsc.Access, component: rsc.Component) -> bool:

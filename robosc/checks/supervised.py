@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 from robosc.checks.definitions import unit_of
-from robosc.checks.libraries import fact, instances, reachable
+from robosc.checks.facts import fact
+from robosc.checks.libraries import instances, reachable
 from robosc.checks.rule import Finding
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc

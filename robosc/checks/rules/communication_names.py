@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.checks.definitions import of_kind
-from robosc.checks.libraries import fact, instances, reachable
+from robosc.checks.facts import fact
+from robosc.checks.libraries import instances, reachable
 from robosc.checks.mending import Choice, Removal, Renaming, Rewriting, Together
 from robosc.checks.rule import Finding, rule
 from robosc.diagnostics import Severity

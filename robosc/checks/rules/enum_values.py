@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robosc.checks.definitions import of_kind, unit_of
-from robosc.checks.libraries import fact, imports, instances, reachable
+from robosc.checks.facts import fact
+from robosc.checks.libraries import imports, instances, reachable
 from robosc.checks.mending import Insertion, Removal, Renaming, Rewriting
 from robosc.checks.rule import Finding, rule
 from robosc.metamodel import robosc as rsc
