@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from contextlib import suppress
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -25,6 +26,7 @@ class _Compiled(FileSystemBytecodeCache):
                 super().dump_bytecode(bucket)
 
 
+@cache
 def environment(package: str, overrides: Path | None = None) -> Environment:
     """Where the templates of a target live: in the folder `templates` of its package, such as `robosc.m2t.cif`.
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import textwrap
+from functools import cache
 from typing import TYPE_CHECKING
 from xml.sax.saxutils import escape, quoteattr
 
@@ -21,6 +22,7 @@ _TOKEN = re.compile(r"""\"(?:\\.|[^"\\])*"|'(?:\\.|[^'\\])*'|[][(){}]| (?!\()|(?
 _OPENING, _CLOSING = "([{", ")]}"
 
 
+@cache
 def node_environment(middleware: str) -> Environment:
     """The templates of one ROS (`robosc.m2t.ros.ros1`), on top of those of this package."""
     templates = environment(middleware)
