@@ -4,9 +4,12 @@ The tests of a file run in one process, unless `pytest_collection_modifyitems` o
 """
 
 import json
+import pickle
 import signal
+from base64 import b64decode, b64encode
 from collections.abc import Callable
 from functools import cache
+from importlib import import_module
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -15,6 +18,7 @@ import pytest
 from click.testing import CliRunner
 from hypothesis import settings
 
+from robosc.analysis.verify import verify
 from robosc.cli import main
 from tests.sharing import made_once
 
@@ -66,11 +70,30 @@ def shared_folder(pytestconfig: pytest.Config) -> Path:
 
 
 @pytest.fixture(scope="session")
-def verified(shared_folder: Path) -> Callable[[Path], Any]:
+def verified_once(shared_folder: Path) -> Callable[[Path], Callable[..., Any]]:
+    """What takes the place of `verify` for a model: it verifies it once in this run of the tests."""
+
+    def once(path: Path) -> Callable[..., Any]:
+        def asked(*arguments: Any) -> Any:
+            def made() -> str:
+                return b64encode(pickle.dumps(verify(*arguments))).decode("ascii")
+
+            known = made_once(shared_folder, f"verdicts-{path.parent.name}-{path.stem}", made)
+            return pickle.loads(b64decode(known))  # noqa: S301 - our own
+
+        return asked
+
+    return once
+
+
+@pytest.fixture(scope="session")
+def verified(shared_folder: Path, verified_once: Callable[[Path], Callable[..., Any]]) -> Callable[[Path], Any]:
     """What `verify --json` says of a model in which nothing is refuted, asked once in this run of the tests."""
 
     def asked(path: Path) -> str:
-        done = CliRunner().invoke(main, ["verify", "--json", str(path)])
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(import_module("robosc.cli.verify"), "verify", verified_once(path))
+            done = CliRunner().invoke(main, ["verify", "--json", str(path)])
         assert done.exit_code == 0, done.output
         return done.stdout
 

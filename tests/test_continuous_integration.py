@@ -124,6 +124,7 @@ def test_the_layout(job: Job) -> None:
     assert job.run("Look at the layout").returncode == 0
 
 
+@pytest.mark.slow
 def test_each_robot_is_verified(job: Job) -> None:
     job.add("stuck.rscd", DOOR.replace("initial marked", "initial").replace("needs Leaf.closed", "needs Leaf.opened"))
     job.run("Find models", robots="door.rscd\nstuck.rscd\ndoor.rscd")
@@ -155,6 +156,7 @@ def test_the_page_speaks_of_all_inputs_and_hooks() -> None:
     assert [hook["id"] for hook in HOOKS] == re.findall(r"- id: (robosc-\w+)", page)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("hook", HOOKS, ids=lambda hook: hook["id"])
 def test_a_hook_runs_and_can_fail(job: Job, hook: dict[str, Any]) -> None:
     """As pre-commit calls it: the entry, then `args`, then those staged files that it is for."""

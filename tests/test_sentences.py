@@ -126,6 +126,7 @@ def test_a_time_is_1_ms_to_24_days_in_each_unit(tmp_path: Path, unit: str) -> No
         assert (finding.rule, finding.message) == ("duration", f"this time is {fault}, expected 1 ms to 24 days")
 
 
+@pytest.mark.slow
 def test_24_days_are_waited_for(tmp_path: Path) -> None:
     path = written(tmp_path, LAMP.format("24 * 24 * 60 min"))
     almost, then = simulated(path, f"wait {DAYS['s'] - 0.001}", "wait 0.001", loop=True)

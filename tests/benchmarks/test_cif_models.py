@@ -2,6 +2,8 @@
 
 from pathlib import Path
 
+import pytest
+
 from benchmarks.cif_models import models, robosc_measured
 
 
@@ -12,6 +14,7 @@ def test_models_are_those_that_the_scripts_name(tmp_path: Path) -> None:
     assert models(tmp_path) == {"lamp": tmp_path / "lamps" / "one" / "lamp.cif"}
 
 
+@pytest.mark.slow
 def test_each_is_counted_by_a_process_of_its_own(tmp_path: Path) -> None:
     path = tmp_path / "lamp.cif"
     path.write_text("controllable c; plant P: location a: initial; marked; edge c goto b; location b: marked; end")

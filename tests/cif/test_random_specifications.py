@@ -16,7 +16,7 @@ from tests.cif.comparing import agrees, reading_of
 from tests.cif.random_specifications import Specification
 
 
-@pytest.mark.parametrize("start", range(0, 120, 20))
+@pytest.mark.parametrize("start", [0, *(pytest.param(start, marks=pytest.mark.slow) for start in range(20, 120, 20))])
 def test_as_many_states_as_by_the_definition(start: int) -> None:
     counts = [agrees(Specification(seed, narrow=seed % 2 == 1)) for seed in range(start, start + 20)]
     assert counts.count(None) < 10
@@ -35,6 +35,7 @@ def supervised(seed: int) -> sct.SupervisoryControlModel | None:
     return model
 
 
+@pytest.mark.slow
 def test_what_verify_says_of_them_and_where_they_start() -> None:
     models = [model for seed in range(60) if (model := supervised(seed)) is not None]
     assert len(models) >= 20

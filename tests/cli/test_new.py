@@ -79,6 +79,7 @@ def test_its_own_test_passes_and_can_fail(run: Run, tmp_path: Path) -> None:
     assert "FAILED (failures=1)" in done.stderr
 
 
+@pytest.mark.slow
 def test_it_is_verified(run: Run) -> None:
     run("new", "Porter", "--service", "home", "--twist", "--sensor", "clear", "--sensor", "docked")
     answer = run("verify", "porter/porter.rscd", "--json")

@@ -84,6 +84,7 @@ def ask_everything(made: Project, text: str, offset: int) -> None:
                 job(snapshot, analysis, parameters(method, analysis.text, where))
 
 
+@pytest.mark.slow
 def test_a_small_text_cut_off_anywhere() -> None:
     made = project(TINY)
     for end in range(len(TINY) + 1):

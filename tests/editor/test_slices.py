@@ -49,6 +49,7 @@ def changes(draw: st.DrawFn) -> tuple[str, str]:
     return text, text[:start] + draw(st.sampled_from(pieces)) + text[start + draw(st.integers(0, 4)) :]
 
 
+@pytest.mark.slow
 @settings(max_examples=40)
 @given(changes())
 def test_what_is_found_quickly_is_what_is_found(change: tuple[str, str]) -> None:

@@ -4,6 +4,7 @@ from collections import Counter
 from itertools import combinations
 from random import Random
 
+import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -98,6 +99,7 @@ _some = settings(
 )
 
 
+@pytest.mark.slow
 @_some
 @given(_observed)
 def test_rounds(seen: Observed) -> None:
@@ -135,6 +137,7 @@ def test_reactions(seen: Observed) -> None:
         assert reactions.total() <= (len(seen.roles.sources) + 1) * allowed
 
 
+@pytest.mark.slow
 @_some
 @given(_observed)
 def test_what_a_batch_makes_possible_waits_for_no_other_topic(seen: Observed) -> None:
@@ -176,6 +179,7 @@ def test_settling(seen: Observed) -> None:
             assert event != "livelock" or row == bound
 
 
+@pytest.mark.slow
 @_some
 @given(_observed)
 def test_data_rests_at_the_first_statement_whose_condition_holds(seen: Observed) -> None:
@@ -186,6 +190,7 @@ def test_data_rests_at_the_first_statement_whose_condition_holds(seen: Observed)
         assert engine.state[plant.name] == wanted.name.removeprefix("c_")
 
 
+@pytest.mark.slow
 @_some
 @given(_observed)
 def test_no_enabled_event_waits_while_another_runs_in_two_ticks(seen: Observed) -> None:

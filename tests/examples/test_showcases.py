@@ -120,6 +120,7 @@ def test_the_sprayer_drives_a_route_to_its_end() -> None:
     assert "halt" in sent[-1]
 
 
+@pytest.mark.slow
 def test_the_sprayer_gives_up_its_way_where_it_may_not_go_on() -> None:
     for trouble in (heard("stop"), at(100.5), at(0.0, -40.5), heard("automatic", False), "wait 1"):
         assert wheels(play("sprayer", *AUTOMATIC, route(3), trouble))[-1] == ["cancel drive", "halt"]
@@ -142,6 +143,7 @@ def test_a_stick_that_was_held_before_it_counted_has_to_be_let_go(
     assert sent[-1] == ["obey"]
 
 
+@pytest.mark.slow
 def test_a_section_sprays_where_it_is_due_in_the_field() -> None:
     ready = [*AUTOMATIC, heard("level", 0.8), heard("Left_sprayed", False), route(1)]
     sent = play("sprayer", *ready)

@@ -18,9 +18,10 @@ LISTINGS = ROOT.parent / "shared" / "thesis" / "models"
 LISTED = [path for path in sorted(LISTINGS.glob("*.rscd")) if path.stem != "language-concepts"]
 
 
-#: The showcases take more of the processor than all others together.
+#: The control loops of the others take seconds of the processor each.
+QUICK = ("supervised_line_follower", "simple_navigation")
 CASES = [
-    pytest.param(path, id=path.stem, marks=[pytest.mark.slow] if path.stem in SHOWCASES else [])
+    pytest.param(path, id=path.stem, marks=[] if path.stem in QUICK else [pytest.mark.slow])
     for path in (*MODELS.values(), *LISTED)
 ]
 
@@ -34,6 +35,7 @@ def test_all_is_proved(path: Path, verified: Callable[[Path], Any]) -> None:
     assert sampled <= {"loop-translation", *(["c-translation", "model-translation"] if path.stem in SHOWCASES else [])}
 
 
+@pytest.mark.slow
 def test_the_page_shows_the_table() -> None:
     """All of it but the seconds."""
     page = (ROOT / "docs" / "verify.md").read_text()

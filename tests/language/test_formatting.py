@@ -423,6 +423,7 @@ def test_a_text_with_syntax_errors_has_no_layout(text: str) -> None:
     assert {finding.rule for finding in findings} == {"syntax"}
 
 
+@pytest.mark.slow
 def test_deep_and_long_expressions() -> None:
     deep = "(" * 45 + "a" + ")" * 45
     text = formatted(body(f"requirement b needs {deep}\nrequirement b needs {' or '.join(['a and c'] * 1000)}"))

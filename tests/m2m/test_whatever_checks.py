@@ -91,6 +91,7 @@ def test_no_words_break_reading_and_checking(path: Path, soup: str) -> None:
     examined(path)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("operator", "operand", "count"),
     [("or", "C.b", 3000), ("=>", "C.b", 1000), ("=", "C.b", 1000), ("-", "C.n", 1000)],

@@ -76,6 +76,7 @@ def test_every_file(courier: robosc.Models, target: str, golden: Callable[[Path,
     assert "typed" not in plain["src/courier_controller_node.cpp"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("target", ["ros1", "ros2"])
 def test_the_image_of_a_package_with_tests_builds_both(courier: robosc.Models, target: str) -> None:
     typed, plain = (

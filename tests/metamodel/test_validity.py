@@ -42,6 +42,7 @@ def test_a_valid_model_has_no_faults(folder: Any) -> None:
     assert messages(load(folder / "Warehouse.rosgraph.xmi")) == []
 
 
+@pytest.mark.slow
 @settings(max_examples=50, deadline=None)
 @given(given=sct_models())
 def test_random_valid_models_have_none(given: sct.SupervisoryControlModel) -> None:

@@ -108,7 +108,13 @@ def case(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.Mon
     return Case(getattr(request, "param", "line_follower"), tmp_path)
 
 
-every_model = pytest.mark.parametrize("case", MODELS, indirect=True)
+#: Whose tours are long.
+LONG = ("sprayer", "warehouse_robot", "scout", "keeper", "maze_solver")
+every_model = pytest.mark.parametrize(
+    "case",
+    [pytest.param(name, marks=[pytest.mark.slow] if name in LONG else []) for name in MODELS],
+    indirect=True,
+)
 
 
 @every_model

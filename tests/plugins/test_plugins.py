@@ -56,6 +56,7 @@ def tool(installed: Path, *arguments: object, status: int = 0) -> str:
     return done.stdout if status == 0 else done.stdout + done.stderr
 
 
+@pytest.mark.slow
 def test_a_target_of_another_package_is_listed_and_generates(installed: Path, tmp_path: Path) -> None:
     assert "structured-text the supervisor as a function block" in tool(installed, "transform", "--help")
     out = tmp_path / "out"
@@ -247,6 +248,7 @@ def test_the_function_block_does_what_the_engine_does(make, monkeypatch: pytest.
     follow(make(), monkeypatch)
 
 
+@pytest.mark.slow
 def test_the_function_block_of_an_example(monkeypatch: pytest.MonkeyPatch) -> None:
     follow(models_of("maze_solver").sct, monkeypatch)
 

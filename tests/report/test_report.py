@@ -7,13 +7,13 @@ import subprocess
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 import pytest
 from click.testing import CliRunner
 from jsonschema import Draft202012Validator
 
-from robosc.cli import main
+from robosc.cli import main, safety_report
 from robosc.configuration import Configuration, find, read
 from robosc.engine import Engine
 from robosc.m2t import supervisor
@@ -26,6 +26,7 @@ from robosc.simulation.script import read_script
 from tests.chromium import chromium  # noqa: F401  # a fixture
 from tests.examples.conftest import MODELS, PAGES, models_of
 
+Told: TypeAlias = Callable[[str], dict[str, Any]]
 ROOT = Path(__file__).parents[2]
 QUICK = "supervised_line_follower"
 #: With other robots, in a run of all tests; those of one robot look at the same report.
@@ -39,22 +40,46 @@ EACH = [
 ]
 
 
-@cache
-def told(name: str) -> dict[str, Any]:
-    done = CliRunner().invoke(main, ["report", str(MODELS[name]), "--json"])
-    assert done.exit_code == 0, done.output
-    return json.loads(done.stdout)
+@pytest.fixture(scope="session")
+def told(verified_once: Callable[[Path], Callable[..., Any]]) -> Told:
+    """The report of a robot. What `verify` says of it, it says to others, too: only of one it is asked anew."""
+
+    @cache
+    def report(name: str) -> dict[str, Any]:
+        with pytest.MonkeyPatch.context() as patch:
+            if name != QUICK:
+                patch.setattr(safety_report, "verify", verified_once(MODELS[name]))
+            done = CliRunner().invoke(main, ["report", str(MODELS[name]), "--json"])
+        assert done.exit_code == 0, done.output
+        return json.loads(done.stdout)
+
+    return report
+
+
+@pytest.fixture(scope="session")
+def written(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
+    """The folder with all that is generated of a robot."""
+
+    @cache
+    def folder(name: str) -> Path:
+        made = tmp_path_factory.mktemp(name)
+        call = ["transform", str(MODELS[name]), "--to", "supervisor,cif,ros1,ros2", "--with-tests", "-o", str(made)]
+        done = CliRunner().invoke(main, call)
+        assert done.exit_code == 0, done.output
+        return made
+
+    return folder
 
 
 @pytest.mark.parametrize("name", EACH)
-def test_the_json_keeps_its_schema(name: str) -> None:
+def test_the_json_keeps_its_schema(name: str, told: Told) -> None:
     schema = json.loads((ROOT / "robosc/schemas/report.schema.json").read_text())
     Draft202012Validator.check_schema(schema)
     Draft202012Validator(schema).validate(told(name))
 
 
 @pytest.mark.parametrize("name", EACH)
-def test_its_verdicts_are_those_of_verify(name: str, verified: Callable[[Path], Any]) -> None:
+def test_its_verdicts_are_those_of_verify(name: str, verified: Callable[[Path], Any], told: Told) -> None:
     keys = ("property", "outcome", "evidence")
     ours = [[one[key] for key in keys] for one in told(name)["verdicts"]]
     assert ours == [[one[key] for key in keys] for one in verified(MODELS[name])["properties"]]
@@ -63,10 +88,7 @@ def test_its_verdicts_are_those_of_verify(name: str, verified: Callable[[Path], 
 
 
 @pytest.mark.parametrize("name", EACH)
-def test_the_lines_speak_of_the_requirement(name: str, tmp_path: Path) -> None:
-    targets = "supervisor,ros1,ros2"
-    done = CliRunner().invoke(main, ["transform", str(MODELS[name]), "--to", targets, "-o", str(tmp_path)])
-    assert done.exit_code == 0, done.output
+def test_the_lines_speak_of_the_requirement(name: str, written: Callable[[str], Path], told: Told) -> None:
     robot = models_of(name).sct
     for one in told(name)["requirements"]:
         files = [Path(place["path"]) for place in one["generated"]]
@@ -75,7 +97,7 @@ def test_the_lines_speak_of_the_requirement(name: str, tmp_path: Path) -> None:
         )
         assert files or not one["events"]
         for place in one["generated"]:
-            lines = (tmp_path / place["path"]).read_text().splitlines()
+            lines = (written(name) / place["path"]).read_text().splitlines()
             for number in place["lines"]:
                 around = " ".join(line.strip(" /*") for line in lines[number - 1 : number + 12])
                 around = re.sub(r"\\([0-7]{3})", lambda octal: chr(int(octal[1], 8)), around)
@@ -84,12 +106,9 @@ def test_the_lines_speak_of_the_requirement(name: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", EACH)
-def test_the_digests_are_those_of_what_is_written(name: str, tmp_path: Path) -> None:
-    targets = "supervisor,cif,ros1,ros2"
-    call = ["transform", str(MODELS[name]), "--to", targets, "--with-tests", "-o", str(tmp_path)]
-    assert CliRunner().invoke(main, call).exit_code == 0
+def test_the_digests_are_those_of_what_is_written(name: str, written: Callable[[str], Path], told: Told) -> None:
     for file in told(name)["digests"]["outputs"]:
-        assert digests.digest((tmp_path / file["path"]).read_bytes()) == file["sha256"], file
+        assert digests.digest((written(name) / file["path"]).read_bytes()) == file["sha256"], file
     read = {file["path"]: file["sha256"] for file in told(name)["digests"]["model"]}
     assert read[MODELS[name].name] == digests.digest(MODELS[name].read_bytes())
 
@@ -131,7 +150,7 @@ int main(void)
 
 @pytest.mark.build
 @pytest.mark.parametrize("name", EACH)
-def test_gcov_counts_as_often_that_a_guard_is_true(name: str, tmp_path: Path) -> None:
+def test_gcov_counts_as_often_that_a_guard_is_true(name: str, tmp_path: Path, told: Told) -> None:
     """The C engine, compiled to count its lines, performs the trace; each guard is asked in each of the states."""
     if shutil.which("gcc") is None or shutil.which("gcov") is None:
         pytest.skip("there is no gcc with gcov")
@@ -184,7 +203,7 @@ def test_gcov_counts_as_often_that_a_guard_is_true(name: str, tmp_path: Path) ->
 
 
 @pytest.mark.parametrize("name", EACH)
-def test_the_page_opens_and_shows_the_numbers(name: str, chromium: Any, tmp_path: Path) -> None:  # noqa: F811
+def test_the_page_opens_and_shows_the_numbers(name: str, chromium: Any, tmp_path: Path, told: Told) -> None:  # noqa: F811
     found, page = told(name), tmp_path / "report.html"
     page.write_text(as_html(found), encoding="utf-8")
     opened = chromium.new_page()
@@ -205,12 +224,12 @@ def test_the_page_opens_and_shows_the_numbers(name: str, chromium: Any, tmp_path
     assert faults == []
 
 
-def test_the_same_on_every_run() -> None:
+def test_the_same_on_every_run(told: Told) -> None:
     again = CliRunner().invoke(main, ["report", str(MODELS[QUICK]), "--json"])
     assert json.loads(again.stdout) == told(QUICK)
 
 
-def test_what_a_model_says_is_escaped() -> None:
+def test_what_a_model_says_is_escaped(told: Told) -> None:
     found = json.loads(json.dumps(told(QUICK)))
     hostile = "</style><script>alert(1)</script>\u202e"
     found["robot"] = found["requirements"][0]["name"] = found["requirements"][0]["texts"][0] = hostile
@@ -221,7 +240,7 @@ def test_what_a_model_says_is_escaped() -> None:
     assert "default-src 'none'" in page
 
 
-def test_the_needs_are_linked() -> None:
+def test_the_needs_are_linked(told: Told) -> None:
     found = told(QUICK)
     needs = json.loads(as_needs(found))
     [version] = needs["versions"].values()
@@ -234,7 +253,7 @@ def test_the_needs_are_linked() -> None:
     assert linked == {one["id"] for one in requirements}
 
 
-def test_the_texts_of_needs_are_no_markup() -> None:
+def test_the_texts_of_needs_are_no_markup(told: Told) -> None:
     """As a program that reads reStructuredText finds them again."""
     found = told(QUICK)
     text = "requirement move needs 2 *level_ < |a_b| and `Gauge.on`"
@@ -255,7 +274,7 @@ def test_a_refuted_property_is_an_error(tmp_path: Path) -> None:
     assert [one["outcome"] for one in json.loads(done.stdout)["verdicts"]].count("refuted") == 1
 
 
-def test_files_are_written(tmp_path: Path) -> None:
+def test_files_are_written(tmp_path: Path, told: Told) -> None:
     page, needs = tmp_path / "report.html", tmp_path / "needs.json"
     done = CliRunner().invoke(main, ["report", str(MODELS[QUICK]), "-o", str(page), "--needs", str(needs)])
     assert done.exit_code == 0, done.output

@@ -99,6 +99,7 @@ _STEPS = st.lists(
 )
 
 
+@pytest.mark.slow
 @given(_STEPS)
 def test_every_call_comes_to_one_end_unless_another_takes_its_place(steps: list[tuple[str, int]]) -> None:
     bench = Bench(ServiceClient)

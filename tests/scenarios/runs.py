@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
-from typing import Any
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any
 
-from examples.simulator.engine import play
+from examples.simulator.engine import connected, play
 from examples.simulator.playing import over
 from examples.simulator.scenarios import SCENARIOS
 from examples.simulator.simulation import Simulation
+from tests.scenarios.rules.books import BOOKS
+
+if TYPE_CHECKING:
+    from robosc.m2t.models import Models
 
 Entry = Mapping[str, Any]
 
@@ -33,6 +40,25 @@ def played(name: str, seed: int = 0, **changes: Any) -> Run:
     simulation = Simulation(SCENARIOS[name], seed)
     log = play(simulation, over(simulation), quiet=True, **changes)
     return Run(simulation, log)
+
+
+def violations_of(name: str, models: Models) -> list[str]:
+    """What the rule book of a scenario finds in a run of its world with these models, until it finds anything."""
+    simulation, book, found = Simulation(SCENARIOS[name]), BOOKS[name](), list[str]()
+    is_over, judged = over(simulation), 0.0
+    with TemporaryDirectory() as folder:
+        log = Path(folder) / "events.jsonl"
+        node = connected(simulation, models, log)
+        with log.open(encoding="utf-8") as lines:
+            while not found and not is_over():
+                for message in simulation.advance():
+                    node.take(message)
+                node.work()
+                if simulation.time >= judged + 5.0 or is_over():
+                    judged = simulation.time
+                    node.flush()
+                    found = book.violations(map(json.loads, lines))
+    return found
 
 
 @cache

@@ -21,6 +21,10 @@ if TYPE_CHECKING:
     from robosc.metamodel import rosgraph
 
 
+#: With all who look at the same runs.
+pytestmark = pytest.mark.xdist_group("scenarios")
+
+
 class HalfSeeing(Controller):
     """A controller in which each event of a message is a batch of its own: what a node must not be."""
 
@@ -39,6 +43,7 @@ def test_nothing_is_sent_between_the_events_of_a_scan() -> None:
     assert on_half(run_of("maze_solver").log) == []
 
 
+@pytest.mark.slow
 def test_a_controller_that_breaks_scans_up_is_noticed() -> None:
     assert on_half(played("maze_solver", kind=HalfSeeing).log) != []
 

@@ -14,6 +14,8 @@ from examples.simulator.scenarios import SCENARIOS
 from tests.scenarios.rules.books import BOOKS
 from tests.scenarios.runs import moved_while_stopped, played, poses, run_of, times_of
 
+#: With all who look at the same runs.
+pytestmark = pytest.mark.xdist_group("scenarios")
 EACH = pytest.mark.parametrize("name", SCENARIOS)
 
 

@@ -12,6 +12,8 @@ from examples.simulator.scenarios import SCENARIOS
 from tests.scenarios.runs import run_of
 
 ROOT = Path(__file__).parents[2]
+#: With all who look at the same runs.
+pytestmark = pytest.mark.xdist_group("scenarios")
 EACH = pytest.mark.parametrize("name", SCENARIOS)
 
 

@@ -8,8 +8,7 @@ import pytest
 
 from examples.simulator.engine import EXAMPLES, load
 from examples.simulator.scenarios import SCENARIOS
-from tests.scenarios.rules.books import BOOKS
-from tests.scenarios.runs import played
+from tests.scenarios.runs import violations_of
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -67,8 +66,7 @@ def test_a_demand_less_is_noticed(name: str, demand: str, instead: str, tmp_path
     assert text.count(demand) == 1
     model = tmp_path / f"{name}.rscd"
     model.write_text(text.replace(demand, instead))
-    log = played(name, models=load(model)).log
-    assert BOOKS[name]().violations(log) != []
+    assert violations_of(name, load(model)) != []
 
 
 def test_every_second_opinion_is_tried() -> None:

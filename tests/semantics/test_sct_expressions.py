@@ -42,6 +42,7 @@ def test_what_no_sct_model_holds_has_no_text():
         SctPrinter()(condition("1.5 > P.n"))
 
 
+@pytest.mark.slow
 @given(sct_models())
 def test_a_copy_reads_the_same_and_shares_nothing(made):
     text = SctPrinter()

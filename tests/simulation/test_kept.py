@@ -93,6 +93,7 @@ def message(value: Any) -> Any:
     return SimpleNamespace(**value) if isinstance(value, dict) else SimpleNamespace(data=value)
 
 
+@pytest.mark.slow
 @settings(max_examples=150)
 @given(STEPS)
 def test_it_is_what_the_node_makes_of_the_messages(steps: list[tuple[str, Any]]) -> None:

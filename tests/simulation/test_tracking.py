@@ -49,6 +49,7 @@ def reported(engine: Engine, events: list[str], time: float = 0.0) -> dict[str, 
     return {"robot": engine.model.name, "time": time, "components": components, "transitions": events}
 
 
+@pytest.mark.slow
 @settings(max_examples=60, deadline=None)
 @given(st.sampled_from(MODELS), st.integers(0, 2**32), st.lists(st.integers(1, 6), min_size=1, max_size=12))
 def test_it_is_where_the_engine_is(path: Path, seed: int, sizes: list[int]) -> None:
@@ -124,6 +125,7 @@ def test_a_report_that_is_none_of_the_model_is_named(change: dict[str, Any], sai
         Tracker(Engine(loaded(MODELS[0])[0])).report({**GATE, **change})
 
 
+@pytest.mark.slow
 @given(st.dictionaries(st.sampled_from([*GATE, "other"]), JSON), JSON)
 def test_whatever_is_told_changes_nothing_or_is_a_state(change: dict[str, Any], whole: Any) -> None:
     tracker = Tracker(Engine(loaded(MODELS[0])[0]))

@@ -3,6 +3,7 @@
 import random
 from itertools import pairwise
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -18,6 +19,7 @@ def hypergraphs():
     )
 
 
+@pytest.mark.slow
 @given(hypergraphs())
 def test_it_is_an_order_and_never_much_longer_than_the_given_one(hypergraph):
     size, edges = hypergraph

@@ -2,6 +2,7 @@
 
 from unittest.mock import patch
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -14,6 +15,7 @@ from robosc.synthesis.relation import event_relations
 from tests.random_sct import sct_models
 
 
+@pytest.mark.slow
 @given(sct_models(), st.data(), st.sampled_from([1, 64]))
 @settings(max_examples=50, deadline=None)
 def test_it_says_of_the_elements_what_the_states_do(model, data, widest):

@@ -32,6 +32,7 @@ for made in philosophers(6), counters:
 """
 
 
+@pytest.mark.slow
 def test_every_run_gives_the_same():
     outputs = {
         subprocess.run(

@@ -6,6 +6,7 @@ import asyncio
 import json
 from typing import Any
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -57,6 +58,7 @@ STEPS = st.lists(
 )
 
 
+@pytest.mark.slow
 @settings(max_examples=80)
 @given(STEPS, st.integers(2, 12))
 def test_the_last_moment_is_what_the_engine_says(steps: list[tuple[str, Any]], kept: int) -> None:
@@ -128,6 +130,7 @@ def test_a_node_of_another_model_is_named() -> None:
     assert (shown.status, len(shown.moments)) == ("", 1)
 
 
+@pytest.mark.slow
 @given(st.text() | st.sampled_from(["null", "[", '{"time": 1e999}', "[" * 10_000, '{"robot": "\\ud800"}']))
 def test_what_is_no_report_changes_nothing(text: str) -> None:
     shown = live()

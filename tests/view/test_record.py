@@ -50,6 +50,7 @@ def assert_true(shown: Record, simulation: Simulation) -> None:
         }
 
 
+@pytest.mark.slow
 @settings(max_examples=60)
 @given(st.lists(ACTIONS, max_size=25))
 def test_moments_say_what_the_engine_says(actions: list[dict[str, Any]]) -> None:

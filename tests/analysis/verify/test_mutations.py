@@ -91,6 +91,7 @@ def saved(models: Models, folder: Path) -> Path:
     return folder / f"{models.sct.name}.sct.xmi"
 
 
+@pytest.mark.slow
 def test_the_supervisor_of_a_saved_model_is_taken_as_it_is(tmp_path: Path) -> None:
     models = models_of("line_follower")
     weaken_a_requirement(models.sct)

@@ -383,6 +383,7 @@ def test_long_expressions_need_no_deep_calls(nested: bool) -> None:
     assert sys.getrecursionlimit() <= 3000
 
 
+@pytest.mark.slow
 def test_the_transformation_is_linear() -> None:
     """Counted, not timed: how many elements come of an expression."""
     steps = (500, 2000)

@@ -3,6 +3,7 @@
 import tempfile
 from pathlib import Path
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -55,6 +56,7 @@ def _model(values: list[tuple[str, str]]) -> sct.SupervisoryControlModel:
     return made
 
 
+@pytest.mark.slow
 @settings(max_examples=3, deadline=None, derandomize=True)
 @given(st.lists(st.tuples(st.sampled_from(list(_RANGES)), _numbers), min_size=60, max_size=60), st.integers(0, 99))
 def test_arithmetic(values: list[tuple[str, str]], seed: int) -> None:
