@@ -12,6 +12,7 @@ from __future__ import annotations
 import argparse
 import sys
 import time
+import traceback
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from pathlib import Path
 
@@ -29,9 +30,10 @@ def cut_off(every: int, path: Path) -> tuple[int, float]:
     for end in ends:
         try:
             ask_everything(made, text[:end], end)
-        except Exception as error:
-            error.add_note(f"{path.relative_to(ROOT)}, cut off behind {end} characters")
-            raise
+        except Exception:
+            # As text: what an exception keeps may not be sent from one process to another.
+            told = f"{path.relative_to(ROOT)}, cut off behind {end} characters:\n{traceback.format_exc()}"
+            raise RuntimeError(told) from None
     return len(ends), time.process_time() - began
 
 
@@ -43,7 +45,8 @@ def main() -> None:
     options = parser.parse_args()
     # Copies of an example are one text.
     texts = {path.read_bytes(): path.resolve() for path in options.examples or EXAMPLES}
-    examples = sorted(texts.values(), key=lambda path: path.stat().st_size)
+    # The longest first, which the others are tried beside.
+    examples = sorted(texts.values(), key=lambda path: -path.stat().st_size)
     total, spent = 0, 0.0
     with ProcessPoolExecutor(options.processes) as processes:
         waiting = {processes.submit(cut_off, options.every, path): path for path in examples}

@@ -77,9 +77,10 @@ def outgoing_calls(
 
 
 def _state(analysis: Analysis, item: types.CallHierarchyItem) -> Any:
-    """The state of the text that an item stands for; None where the text has changed."""
+    """The state declared in the text that an item stands for; None where the text has changed."""
     name = analysis.file.name_at(to_offset(analysis.text, item.selection_range.start))
-    return name.target if name is not None and isinstance(name.target, rsc.State) else None
+    state = name.target if name is not None else None
+    return state if isinstance(state, rsc.State) and state in analysis.file.declared_names else None
 
 
 def _component(element: Any) -> Any:

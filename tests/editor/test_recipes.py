@@ -95,7 +95,7 @@ def test_emacs(folder: Path) -> None:
 
 
 def test_helix() -> None:
-    """There is no Helix to try it in: what it reads is what the server is called with."""
+    """There is no Helix among the packages of the tests: what it reads is what the server is called with."""
     told = tomllib.loads(recipe("toml"))
     server = told["language-server"]["robosc"]
     assert [server["command"], *server["args"]] == ["robosc", "lsp"]

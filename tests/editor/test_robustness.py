@@ -31,7 +31,8 @@ SMALL = """robot R { // 🤖
 TINY = """robot R { component C { outgoing message m with type: double behaviour {
   initial state s { on response from m if value > 1.0 goto s } } } requirement go needs C.s }
 """
-WHEELS = """library Wheels { component Motors { incoming message drive with type: double } }"""
+WHEELS = """library Wheels { component Motors { incoming message drive with type: double
+  behaviour { initial marked state idle { on request to drive goto idle } } } }"""
 EXAMPLES = sorted((ROOT / "examples").rglob("*.rscd"))
 
 
@@ -172,6 +173,20 @@ def test_an_analysis_is_kept_until_what_it_read_changes() -> None:
     made.change(URI, 2, [((0, 6, 0, 7), "Robot")])
     assert made.snapshot().analysis(path) is not kept
     assert [found.message for found in first.findings] == [found.message for found in kept.findings]
+
+
+@pytest.mark.parametrize("method", [types.CALL_HIERARCHY_INCOMING_CALLS, types.CALL_HIERARCHY_OUTGOING_CALLS])
+def test_who_calls_a_state_is_asked_where_it_is_declared(method: str) -> None:
+    """In a text that only names it, of its library, no item can have stood there: the text has changed."""
+    robot = "robot R { component C from Wheels import Motors requirement drive needs C.idle }"
+    made = project(robot)
+    for uri, text, calls in [(URI, robot, 0), (LIBRARY_URI, WHEELS, 1)]:
+        snapshot = made.snapshot()
+        analysis = snapshot.analysis(made.path(uri))
+        at = text.index("C.idle") + 2 if uri == URI else text.index("idle {")
+        assert analysis.file.name_at(at).target.name == "idle"
+        incoming = method == types.CALL_HIERARCHY_INCOMING_CALLS
+        assert len(ANSWERS[method](snapshot, analysis, parameters(method, analysis.text, at, uri))) == calls * incoming
 
 
 def test_selections_lie_within_each_other() -> None:
