@@ -114,8 +114,9 @@ def test_a_node_that_does_not_start(run_ros1: Runner, tmp_path: Path, command: s
     assert (status, told in said) == (2, True), said
 
 
-def test_a_compiled_node_plays_scenarios(ros1_workspace: Workspace, run_ros1: Runner, tmp_path: Path) -> None:
-    package = "line_follower_controller"
-    node = ros1_workspace.folder / "devel" / "lib" / package / package
-    status, said = played(ros1_workspace, run_ros1.robosc, tmp_path, STOPS, "--node", str(node))
+def test_a_compiled_node_plays_scenarios(workspace: Workspace, request: pytest.FixtureRequest, tmp_path: Path) -> None:
+    package, version = "line_follower_controller", workspace.ros.version
+    runs: Runner = request.getfixturevalue(f"run_ros{version}")
+    nodes = {1: workspace.folder / f"devel/lib/{package}/{package}", 2: workspace.node(package)[0]}
+    status, said = played(workspace, runs.robosc, tmp_path, STOPS, "--node", str(nodes[version]))
     assert (status, "1 scenario, 0 failed" in said) == (0, True), said
