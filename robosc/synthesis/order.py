@@ -28,7 +28,7 @@ _LONGER = 1.25
 
 def total_span(order: Sequence[int], edges: Sequence[Sequence[int]]) -> int:
     """The sum over all edges of the distance between their first and their last vertex in the order."""
-    return _span(_places(order), [itemgetter(*edge) for edge in edges if len(edge) > 1])
+    return _Hypergraph(len(order), edges).span(_places(order))
 
 
 def variable_order(size: int, edges: Sequence[Sequence[int]]) -> list[int]:
@@ -37,23 +37,50 @@ def variable_order(size: int, edges: Sequence[Sequence[int]]) -> list[int]:
     What begins with the order by breadth is taken where it is not much longer: it costs least in practice. Of equally
     long ones, the one whose edges lie farther up.
     """
-    edges = [edge for edge in edges if len(edge) > 1]
-    given, broad = _improved(list(range(size)), edges), _improved(_by_breadth(size, edges), edges)
-    span, other = total_span(given, edges), total_span(broad, edges)
+    graph = _Hypergraph(size, edges)
+    given, broad = _improved(list(range(size)), graph), _improved(_by_breadth(graph), graph)
+    span, other = graph.span(_places(given)), graph.span(_places(broad))
     if other > _LONGER * span:
         return given
-    return given if other == span and _weighted_span(broad, edges) >= _weighted_span(given, edges) else broad
+    return given if other == span and _weighted_span(broad, graph) >= _weighted_span(given, graph) else broad
 
 
-def _improved(start: list[int], edges: Sequence[Sequence[int]]) -> list[int]:
+class _Hypergraph:
+    """The edges that join at least two vertices, equal ones once, with how many of each there are."""
+
+    def __init__(self, size: int, edges: Iterable[Sequence[int]]) -> None:
+        """`edges_of` are the edges of each vertex, by their index."""
+        found = Counter(tuple(edge) for edge in edges if len(edge) > 1)
+        self.edges, self.weights = list(found), list(found.values())
+        self.edges_of: list[list[int]] = [[] for _ in range(size)]
+        for index, edge in enumerate(self.edges):
+            for vertex in edge:
+                self.edges_of[vertex].append(index)
+        self.places_of: list[_Places] = [itemgetter(*edge) for edge in self.edges]
+
+    def span(self, place: Sequence[int]) -> int:
+        """The total span."""
+        ends = (own(place) for own in self.places_of)
+        return sum(weight * (max(places) - min(places)) for weight, places in zip(self.weights, ends, strict=True))
+
+    def ends(self, edge: int, place: Sequence[int]) -> tuple[int, int]:
+        """The first and the last place of an edge."""
+        places = self.places_of[edge](place)
+        return min(places), max(places)
+
+
+def _improved(start: list[int], graph: _Hypergraph) -> list[int]:
     """The best that comes of an order."""
-    return _slide(min(start, _force(start, edges), key=lambda order: total_span(order, edges)), edges)
+    return _slide(min(start, _force(start, graph), key=lambda order: graph.span(_places(order))), graph)
 
 
-def _weighted_span(order: Sequence[int], edges: Sequence[Sequence[int]]) -> int:
+def _weighted_span(order: Sequence[int], graph: _Hypergraph) -> int:
     """The same sum as the total span, each distance times how far down its edge ends."""
     place = _places(order)
-    return sum((last - first + 1) * (last + 1) for first, last in (_ends(edge, place) for edge in edges))
+    ends = (graph.ends(edge, place) for edge in range(len(graph.edges)))
+    return sum(
+        weight * (last - first + 1) * (last + 1) for weight, (first, last) in zip(graph.weights, ends, strict=True)
+    )
 
 
 def _places(order: Sequence[int]) -> list[int]:
@@ -63,73 +90,53 @@ def _places(order: Sequence[int]) -> list[int]:
     return place
 
 
-def _span(place: Sequence[int], places_of: Sequence[_Places]) -> int:
-    """The total span, with what takes the places of each edge."""
-    return sum(max(places) - min(places) for places in (own(place) for own in places_of))
-
-
-def _ends(edge: Sequence[int], place: Sequence[int]) -> tuple[int, int]:
-    """The first and the last place of an edge."""
-    places = [place[vertex] for vertex in edge]
-    return min(places), max(places)
-
-
-def _incidence(size: int, edges: Sequence[Sequence[int]]) -> list[list[int]]:
-    edges_of: list[list[int]] = [[] for _ in range(size)]
-    for index, edge in enumerate(edges):
-        for vertex in edge:
-            edges_of[vertex].append(index)
-    return edges_of
-
-
-def _by_breadth(size: int, edges: Sequence[Sequence[int]]) -> list[int]:
+def _by_breadth(graph: _Hypergraph) -> list[int]:
     """Layer by layer from one end of each connected part to the other."""
-    edges_of = _incidence(size, edges)
-    degree = [sum(len(edges[edge]) for edge in incident) for incident in edges_of]
+    degree = [sum(graph.weights[edge] * len(graph.edges[edge]) for edge in incident) for incident in graph.edges_of]
     order: list[int] = []
-    placed = [False] * size
-    for vertex in sorted(range(size), key=degree.__getitem__):
+    placed = [False] * len(degree)
+    for vertex in sorted(range(len(degree)), key=degree.__getitem__):
         if not placed[vertex]:
-            far_end = _layers(vertex, edges, edges_of, degree)[-1]
-            part = _layers(far_end, edges, edges_of, degree)
+            far_end = _layers(vertex, graph, degree)[-1]
+            part = _layers(far_end, graph, degree)
             order += part
             for member in part:
                 placed[member] = True
     return order
 
 
-def _layers(
-    start: int, edges: Sequence[Sequence[int]], edges_of: Sequence[Sequence[int]], degree: Sequence[int]
-) -> list[int]:
+def _layers(start: int, graph: _Hypergraph, degree: Sequence[int]) -> list[int]:
     """All vertices connected with one, the near ones first, of equally near ones those with few neighbours."""
     order, seen_edges = [start], set[int]()
     seen = {start}
     for vertex in order:
-        fresh = [edge for edge in edges_of[vertex] if edge not in seen_edges]
+        fresh = [edge for edge in graph.edges_of[vertex] if edge not in seen_edges]
         seen_edges.update(fresh)
-        neighbours = dict.fromkeys(neighbour for edge in fresh for neighbour in edges[edge] if neighbour not in seen)
+        neighbours = dict.fromkeys(
+            neighbour for edge in fresh for neighbour in graph.edges[edge] if neighbour not in seen
+        )
         seen.update(neighbours)
         order += sorted(neighbours, key=degree.__getitem__)
     return order
 
 
-def _force(order: list[int], edges: Sequence[Sequence[int]]) -> list[int]:
+def _force(order: list[int], graph: _Hypergraph) -> list[int]:
     """Moves every vertex to the mean of the centres of its edges, again and again, as long as orders are new."""
-    edges_of = _incidence(len(order), edges)
-    places_of: list[_Places] = [itemgetter(*edge) for edge in edges]
+    # An edge pulls as often as it is there.
+    pulling = [[edge for edge in own for _ in range(graph.weights[edge])] for own in graph.edges_of]
     place = _places(order)
-    best, least = order, _span(place, places_of)
+    best, least = order, graph.span(place)
     seen = {tuple(order)}
     for _ in range(10 * max(1, len(order).bit_length())):
-        centre = [sum(places) / len(places) for places in (own(place) for own in places_of)]
+        centre = [sum(places) / len(places) for places in (own(place) for own in graph.places_of)]
         pull = [
             sum(map(centre.__getitem__, own)) / len(own) if own else float(place[vertex])
-            for vertex, own in enumerate(edges_of)
+            for vertex, own in enumerate(pulling)
         ]
         # Of vertices that are pulled alike, the order stays.
         order = sorted(order, key=pull.__getitem__)
         place = _places(order)
-        span = _span(place, places_of)
+        span = graph.span(place)
         if span < least:
             best, least = order, span
         # From here on it goes round in a circle.
@@ -170,15 +177,14 @@ def _shortest(size: int, edges: Iterable[tuple[_Kind, int]]) -> tuple[int, ...]:
     return orders[total.index(min(total))]
 
 
-def _slide(order: list[int], edges: Sequence[Sequence[int]]) -> list[int]:
+def _slide(order: list[int], graph: _Hypergraph) -> list[int]:
     """Puts the vertices of each window in their best order, window by window, until none changes.
 
     A window stays as it is, and is not looked at, as long as nothing in those changes that overlap with it.
     """
     order = list(order)
-    edges_of = _incidence(len(order), edges)
     place = _places(order)
-    ends = [_ends(edge, place) for edge in edges]
+    ends = [graph.ends(edge, place) for edge in range(len(graph.edges))]
     known: dict[tuple[int, frozenset[tuple[_Kind, int]]], tuple[int, ...]] = {}
     pending = [True] * (len(order) - 1)
     while True in pending:
@@ -187,10 +193,14 @@ def _slide(order: list[int], edges: Sequence[Sequence[int]]) -> list[int]:
                 continue
             pending[start] = False
             window = order[start : start + _WINDOW]
-            members = _members(window, edges_of)
+            members = _members(window, graph.edges_of)
             # What matters of an edge: its members in the window, and whether it goes on above and below.
             end = start + len(window)
-            alike = Counter((inside, ends[edge][0] < start, ends[edge][1] >= end) for edge, inside in members.items())
+            alike: dict[_Kind, int] = {}
+            for edge, inside in members.items():
+                first, last = ends[edge]
+                kind = inside, first < start, last >= end
+                alike[kind] = alike.get(kind, 0) + graph.weights[edge]
             key = len(window), frozenset(alike.items())
             if key not in known:
                 known[key] = _shortest(*key)
@@ -200,7 +210,7 @@ def _slide(order: list[int], edges: Sequence[Sequence[int]]) -> list[int]:
                 for index, vertex in enumerate(moved, start):
                     place[vertex] = index
                 for edge in members:
-                    ends[edge] = _ends(edges[edge], place)
+                    ends[edge] = graph.ends(edge, place)
                 first, last = max(0, start + 1 - _WINDOW), min(len(pending), end)
                 pending[first:last] = [other != start for other in range(first, last)]
     return order
