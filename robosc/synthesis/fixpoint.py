@@ -17,13 +17,14 @@ from itertools import groupby
 from typing import TYPE_CHECKING
 
 from robosc.synthesis.acceleration import Acceleration
+from robosc.synthesis.relation import Step
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from robosc.synthesis.bdd import Diagram, Diagrams
     from robosc.synthesis.encoding import Element, Encoding
-    from robosc.synthesis.relation import Move, Step
+    from robosc.synthesis.relation import Move
 
     #: States, the bound that they stay within, and the number of the first group of steps that they are closed under.
     Part = tuple[Diagram, Diagram, int]
@@ -50,27 +51,6 @@ class SupervisedStates:
     controlled: Diagram
 
 
-class _Halves:
-    """The closing of some states half by half: where the variable of a level is true, then where it is false."""
-
-    __slots__ = ("above", "below", "high", "level", "part")
-
-    def __init__(self, part: Part, own: int, bound: int) -> None:
-        """`above` is the first half, `high` the same, once it is closed; `below` is the second one.
-
-        The states begin at the level `own`, and what they stay within at `bound`.
-        """
-        states, within, group = part
-        level = min(own, bound)
-        high, low = (own == level and states.cofactors()) or (states, states)
-        high_within, low_within = (bound == level and within.cofactors()) or (within, within)
-        self.part = part
-        self.level = level
-        self.above: Part = high, high_within, group
-        self.below: Part = low, low_within, group
-        self.high: Diagram | None = None
-
-
 class _Firing:
     """The closing of some states under a group of steps: all that lies below is closed before each turn of these."""
 
@@ -88,57 +68,60 @@ class _Saturation:
 
     def __init__(self, diagrams: Diagrams, steps: Sequence[Step], *, forwards: bool) -> None:
         self._diagrams = diagrams
-        self._forwards = forwards
         self._acceleration = Acceleration(steps, forwards=forwards)
         by_level = sorted(_merged(steps), key=lambda step: step.level)
         groups = [(level, list(group)) for level, group in groupby(by_level, key=lambda step: step.level)]
         self._levels = [level for level, _ in groups]
         self._groups = [group for _, group in groups]
+        self._follow = Step.image if forwards else Step.preimage
 
     def closure(self, states: Diagram, within: Diagram) -> Diagram:
-        """The least set that holds `states` and whatever the steps add within the bound.
+        """The least set that holds `states` and whatever the steps add within the bound, which holds them, too.
 
         The search is a loop with a stack of its own: this is where synthesis spends its time, and diagrams are deep.
         """
         levels, last, node = self._levels, len(self._levels), self._diagrams.node
         known: dict[Part, Diagram] = {}
-        waiting: list[_Halves | _Firing] = []
-        part = states, within, 0
+        #: What fires; and halves: at which level, the one above once it is closed, and the one below.
+        waiting: list[_Firing | tuple[Part, int, Diagram | None, Part]] = []
+        part: Part = states, within, 0
         while True:
             # Down to what is closed already, or at a glance.
             while True:
                 states, within, group = part
-                level = _level(states)
-                is_closed = level == _TERMINAL or group == last or states == within
+                level = states.node_level()
+                is_closed = level is None or group == last or states == within
                 closed = states if is_closed else known.get(part)
                 if closed is not None:
                     break
-                bound = _level(within)
-                if min(level, bound) >= levels[group]:
+                bound = within.node_level()
+                level, bound = _TERMINAL if level is None else level, _TERMINAL if bound is None else bound
+                if level >= levels[group] <= bound:
                     waiting.append(_Firing(part))
                     part = states, within, group + 1
                 else:
-                    opened = _Halves(part, level, bound)
-                    waiting.append(opened)
-                    part = opened.above
+                    above, below = _halves(part, level, bound)
+                    waiting.append((part, min(level, bound), None, below))
+                    part = above
             # Up to what has more to be closed.
             while waiting:
-                upper = waiting[-1]
-                if type(upper) is _Halves:
-                    if upper.high is None:
-                        upper.high, part = closed, upper.below
+                upper = waiting.pop()
+                if isinstance(upper, tuple):
+                    own, level, high, below = upper
+                    if high is None:
+                        waiting.append((own, level, closed, below))
+                        part = below
                         break
-                    closed = node(upper.level, upper.high, closed)
-                elif type(upper) is _Firing:
-                    _, within, group = upper.part
+                    closed = node(level, high, closed)
+                else:
+                    own = upper.part
                     if not self._is_closed_after_turn(upper, closed):
-                        part = upper.states, within, group + 1
+                        waiting.append(upper)
+                        part = upper.states, own[1], own[2] + 1
                         break
                     closed = upper.states
-                waiting.pop()
-                _, within, group = upper.part
                 # What is closed stays as it is: it comes again as a part of what has grown elsewhere.
-                known[upper.part] = known[closed, within, group] = closed
+                known[own] = known[closed, own[1], own[2]] = closed
             else:
                 return closed
 
@@ -147,17 +130,24 @@ class _Saturation:
         _, within, group = firing.part
         here = self._groups[group]
         turns = len(here) + 1
+        follow, bounded = self._follow, not within.valid()
         states = closed
         idle = firing.idle + 1 if closed == firing.states else 1
+        operations = 0
         for step in here:
             if idle >= turns:
                 break
-            further = states | self._fire(step, states) & within
+            operations += 1
+            followed = follow(step, states)
+            further = states | (followed & within if bounded else followed) if followed.satisfiable() else states
             if further == states:
                 idle += 1
+            elif further == within:
+                states, idle = further, turns
             else:
-                states = further
-                idle = 1 if step.apart else 0
+                states, idle = further, 1 if step.apart else 0
+        self._diagrams.statistics.operations += operations
+        self._diagrams.tidy()
         firing.states = states
         if idle >= turns:
             return True
@@ -165,17 +155,25 @@ class _Saturation:
         if self._acceleration.due(firing.turn):
             below = [step for steps in self._groups[group + 1 :] for step in steps]
             for accelerated in self._acceleration.over(here, below, firing.turn, within):
-                further = states | self._fire(accelerated, states)
+                self._diagrams.statistics.operations += 1
+                self._diagrams.tidy()
+                further = states | follow(accelerated, states)
                 if further != states:
                     states, idle = further, 0
             firing.states = states
         firing.idle = idle
         return False
 
-    def _fire(self, step: Step, states: Diagram) -> Diagram:
-        self._diagrams.statistics.operations += 1
-        self._diagrams.tidy()
-        return step.image(states) if self._forwards else step.preimage(states)
+
+def _halves(part: Part, own: int, bound: int) -> tuple[Part, Part]:
+    """Some states where the variable of their first level is true, and where it is false.
+
+    The states begin at the level `own`, and what they stay within at `bound`.
+    """
+    states, within, group = part
+    high, low = (own <= bound and states.cofactors()) or (states, states)
+    high_within, low_within = (bound <= own and within.cofactors()) or (within, within)
+    return (high, high_within, group), (low, low_within, group)
 
 
 def _merged(steps: Sequence[Step]) -> list[Step]:
@@ -216,12 +214,14 @@ def supervise(encoding: Encoding, moves: Sequence[Move], violating: Diagram) -> 
     diagrams, initial, marked = encoding.diagrams, encoding.initial, encoding.all_marked
     statistics = diagrams.statistics
     good = reachable(diagrams, steps, initial, diagrams.true)
-    rounds, alive = [good], []
+    rounds = [good]
+    alive: list[Diagram] = []
     while True:
         statistics.rounds += 1
         statistics.states = encoding.count(good)
         kept = good & ~violating
-        alive.append(coreachable(diagrams, steps, marked & kept, kept))
+        # All that is left of what was alive is alive: it needs no state that is given up to reach a marked one.
+        alive.append(good if alive and good == alive[-1] else coreachable(diagrams, steps, marked & kept, kept))
         blocked = good & ~alive[-1]
         if not blocked.satisfiable():
             break
@@ -237,26 +237,26 @@ def supervise(encoding: Encoding, moves: Sequence[Move], violating: Diagram) -> 
 def supervise_only(encoding: Encoding, moves: Sequence[Move], violating: Diagram) -> SupervisedStates:
     """The same controlled states with less work, without the rounds that explanations go back through.
 
-    What violates an invariant is given up before anybody asks what reaches a marked state, and so is, each time, what
-    can't be reached any more: what is left is smaller, and most often final.
+    What violates an invariant is given up before anybody asks what reaches a marked state: what is left is most often
+    final.
     """
     steps = [step for _, step in moves]
     uncontrollable = [step for relation, step in moves if not relation.event.controllable]
     diagrams, initial = encoding.diagrams, encoding.initial
     statistics = diagrams.statistics
-    good = reachable(diagrams, steps, initial, diagrams.true)
-    bad = good & violating
+    reached = good = reachable(diagrams, steps, initial, diagrams.true)
+    bad, alive = good & violating, diagrams.false
     while True:
         statistics.rounds += 1
         statistics.states = encoding.count(good)
         if bad.satisfiable():
             good &= ~coreachable(diagrams, uncontrollable, bad, good)
-            good = reachable(diagrams, steps, initial & good, good)
-        bad = good & ~coreachable(diagrams, steps, encoding.all_marked & good, good)
+        # What was alive still is: it needs no state that is given up to reach a marked one.
+        if good == alive:
+            break
+        alive = coreachable(diagrams, steps, encoding.all_marked & good, good)
+        bad = good & ~alive
         if not bad.satisfiable():
-            return SupervisedStates([], [], good)
-
-
-def _level(diagram: Diagram) -> int:
-    level = diagram.node_level()
-    return _TERMINAL if level is None else level
+            break
+    # What can still be reached is as good as before: whatever follows of it can be reached, too.
+    return SupervisedStates([], [], good if good == reached else reachable(diagrams, steps, initial & good, good))

@@ -41,17 +41,20 @@ class Step:
 
     def image(self, states: Diagram) -> Diagram:
         """The states after the event in one of `states`."""
-        if self.apart is None:
-            return and_exists(and_exists(states, self.relation, self.present), self.same, self.following)
-        source, target = self.apart
-        return and_exists(states, source, self.present) & target
+        apart = self.apart
+        moved = and_exists(states, self.relation if apart is None else apart[0], self.present)
+        # Most often there are none.
+        if not moved.satisfiable():
+            return moved
+        return and_exists(moved, self.same, self.following) if apart is None else moved & apart[1]
 
     def preimage(self, states: Diagram) -> Diagram:
         """The states in which the event can lead to one of `states`."""
-        if self.apart is None:
-            return and_exists(and_exists(states, self.same, self.present), self.relation, self.following)
-        source, target = self.apart
-        return and_exists(states, target, self.present) & source
+        apart = self.apart
+        moved = and_exists(states, self.same if apart is None else apart[1], self.present)
+        if not moved.satisfiable():
+            return moved
+        return and_exists(moved, self.relation, self.following) if apart is None else moved & apart[0]
 
     @cached_property
     def apart(self) -> tuple[Diagram, Diagram] | None:
