@@ -262,7 +262,7 @@ class Observer:
 
     def _silent_restricted(self) -> Iterator[SilentRestricted]:
         for event, permission in self._permissions.items():
-            if event.kind in _FOLLOWS_THE_ROBOT and permission.guard.synthesis is not None:
+            if event.kind in _FOLLOWS_THE_ROBOT and (permission.guard.synthesis is not None or permission.unwritten):
                 yield SilentRestricted(event, self._counterexample(permission))
 
     def _self_cancelling(self) -> Iterator[SelfCancelling]:

@@ -64,10 +64,11 @@ def diagnose(
     memory: int = MEMORY,
     statistics: Statistics | None = None,
     weigh: bool = False,
+    effort: int | None = None,
 ) -> Diagnosis:
     """Synthesizes the supervisor of a model, which stays as it is, and observes it; `weigh` asks for the weights.
 
-    `memory`, `statistics` and errors are those of `robosc.synthesis.synthesize`.
+    `memory`, `statistics` and errors are those of `robosc.synthesis.synthesize`, `effort` is that of `solve`.
     """
 
     def look(solution: Solution) -> Diagnosis:
@@ -82,7 +83,7 @@ def diagnose(
             weights = tuple(observer.weights()) if weigh else ()
             return Diagnosis(**found, observations=observer.observations(), weights=weights)
 
-    return solve(model, look, memory=memory, statistics=statistics)
+    return solve(model, look, memory=memory, statistics=statistics, effort=effort)
 
 
 def supervise(
@@ -91,15 +92,16 @@ def supervise(
     memory: int = MEMORY,
     statistics: Statistics | None = None,
     weigh: bool = False,
+    effort: int | None = None,
 ) -> Supervision:
-    """Synthesizes the supervisor of a model, and makes it the model's own unless the findings have an error.
+    """Synthesizes the supervisor of a model, and makes it the model's own if it is whole, and no finding is an error.
 
     Its guards say why synthesis added something, where that is told at reasonable cost.
 
-    `memory` and `statistics` are those of `robosc.synthesis.synthesize`, `weigh` is that of `diagnose`. Raises
-    EmptySupervisorError where there is no supervisor, ModelError and MemoryError as `synthesize` does.
+    `memory` and `statistics` are those of `robosc.synthesis.synthesize`, `weigh` and `effort` are those of `diagnose`.
+    Raises EmptySupervisorError where there is no supervisor, ModelError and MemoryError as `synthesize` does.
     """
-    synthesis = diagnose(model, memory=memory, statistics=statistics, weigh=weigh)
+    synthesis = diagnose(model, memory=memory, statistics=statistics, weigh=weigh, effort=effort)
     if synthesis.observations is None:
         raise EmptySupervisorError(model, synthesis)
     found = findings_of(model, synthesis.observations)
@@ -108,6 +110,6 @@ def supervise(
         counterexample = synthesis.observations.counterexamples.get(guard.event)
         if counterexample is not None:
             guard.explanation = counterexample_in_words(counterexample, model)
-    if not has_errors(found):
+    if not has_errors(found) and not synthesis.unwritten:
         model.supervisor = synthesis.supervisor
     return Supervision(synthesis, found)

@@ -30,6 +30,9 @@ if TYPE_CHECKING:
     from robosc.analysis.observations import Weight
     from robosc.synthesis import Counts, Statistics, Synthesis
 
+#: What may be spent on a guard, in nodes looked at: some tenths of a second, and far more than a person reads.
+_EFFORT = 500_000
+
 
 @click.command("synthesize")
 @model
@@ -48,8 +51,9 @@ def command(model: str, as_json: bool, counts: bool, count_inputs: bool, megabyt
     the supervisor allows an event, beyond what the robot itself forbids; what no requirement asks for and synthesis had
     to add is shown apart. Of each requirement it is said in how many states it matters: where it forbids what the robot
     could do; of `never` and `always`, how many states they forbid. --json lists all events, those for the data to send
-    and those from the robot, too, and tells what synthesis cost. --counts writes no guards out, which for some models
-    takes longer than all else. --count-inputs counts each state once for each value of what the robot sends, as CIF's
+    and those from the robot, too, and tells what synthesis cost. A guard that would be far too long to read is not
+    written out: its `guard` is null, and `guard_nodes` tells how large its decision diagram is. --counts writes no
+    guards out at all. --count-inputs counts each state once for each value of what the robot sends, as CIF's
     tools do; in a .cif file that is how states are counted at any rate.
 
     \b
@@ -74,7 +78,9 @@ def command(model: str, as_json: bool, counts: bool, count_inputs: bool, megabyt
             return
         try:
             with synthesizing() as statistics:
-                supervision = supervise(plants, memory=megabytes << 20, statistics=statistics, weigh=True)
+                supervision = supervise(
+                    plants, memory=megabytes << 20, statistics=statistics, weigh=True, effort=_EFFORT
+                )
         except EmptySupervisorError as error:
             if as_json:
                 _show_json(plants, error.synthesis, times)
@@ -165,12 +171,14 @@ def _event(event: sct.Event, guard: sct.EventGuard | None, synthesis: Synthesis)
     shown = RobotPrinter() if event.kind in (sct.EventKind.plain, sct.EventKind.input) else SctPrinter()
     parts = [part for part in (guard.requirement, guard.synthesis) if part] if guard else []
     whole = conjunction(map(copied, parts))
+    unwritten = synthesis.unwritten.get(event)
     return {
         "name": event_name(event),
         "controllable": event.controllable,
-        "guard": shown(whole) if whole else "true",
+        "guard": None if unwritten else shown(whole) if whole else "true",
         "added_by_synthesis": shown(guard.synthesis) if guard and guard.synthesis else None,
         "ever_enabled": guard.everEnabled if guard else event in synthesis.possible,
+        **({"guard_nodes": unwritten} if unwritten else {}),
     }
 
 
@@ -192,7 +200,9 @@ def _show(model: sct.SupervisoryControlModel, synthesis: Diagnosis, times: int) 
         heading = change(guard.event) if guard.event.kind in SILENT else event["name"]
         say(f"\n{heading}{'' if event['ever_enabled'] else ' (never enabled)'}")
         if event["ever_enabled"] or event["guard"] != "true":
-            say(f"    guard: {event['guard']}")
+            nodes = event.get("guard_nodes")
+            too_long = f"too long to write out: a decision diagram of {nodes} nodes"
+            say(f"    guard: {too_long if nodes else event['guard']}")
         if event["added_by_synthesis"]:
             say(f"    added by synthesis: {event['added_by_synthesis']}")
     for weight in synthesis.weights:

@@ -15,7 +15,7 @@ bounds internal events.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, TypeVar
 
 from robosc.diagnostics import Diagnostic, ModelError, Severity
@@ -33,7 +33,7 @@ from robosc.synthesis.run_to_completion import completion, internal_events
 from robosc.synthesis.statistics import Phase, Statistics
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from robosc.synthesis.bdd import Diagram
     from robosc.synthesis.relation import Move
@@ -78,6 +78,9 @@ class Synthesis:
     statistics: Statistics
     #: The events that can happen under the supervisor, in the order of the plants.
     possible: tuple[sct.Event, ...] = ()
+    #: The events of which the supervisor does not say what synthesis added, since that takes more than the effort
+    #: allowed, each with the nodes of the diagram that says so.
+    unwritten: Mapping[sct.Event, int] = field(default_factory=dict)
 
     @property
     def seconds(self) -> float:
@@ -155,13 +158,15 @@ def solve(
     *,
     memory: int = MEMORY,
     statistics: Statistics | None = None,
+    effort: int | None = None,
 ) -> T:
     """What `look` makes of the synthesis of a model; all else is as `synthesize` says.
 
-    `look` may run several times, with room for more nodes each time.
+    `look` may run several times, with room for more nodes each time. `effort` bounds the work for each guard, in nodes
+    looked at: beyond it the supervisor is not whole, and `unwritten` names what is missing.
     """
     statistics = statistics or Statistics()
-    return _with_states(model, lambda found: look(_solved(found, statistics)), memory, statistics, supervise)
+    return _with_states(model, lambda found: look(_solved(found, statistics, effort)), memory, statistics, supervise)
 
 
 def encoded(model: sct.SupervisoryControlModel, look: Callable[[Encoding], T], memory: int = MEMORY) -> T:
@@ -249,7 +254,7 @@ def _uncontrolled_states(found: _Found) -> int | None:
     return None if found.uncontrolled is None else found.encoding.count_plants(found.uncontrolled)
 
 
-def _solved(all_found: _Found, statistics: Statistics) -> Solution:
+def _solved(all_found: _Found, statistics: Statistics, effort: int | None) -> Solution:
     encoding, relations, found = all_found.encoding, all_found.relations, all_found.states
     uncontrolled, all_states = all_found.uncontrolled, _uncontrolled_states(all_found)
     diagrams, nodes = encoding.diagrams, found.controlled.node_count()
@@ -259,7 +264,7 @@ def _solved(all_found: _Found, statistics: Statistics) -> Solution:
     with statistics.during(Phase.GUARDS):
         controlled = Projection(found.controlled, encoding)
         permissions = [
-            permission(relation, controlled, encoding, restricts=len(found.rounds) > 1)
+            permission(relation, controlled, encoding, restricts=len(found.rounds) > 1, effort=effort)
             for relation in relations
             if relation.event.controllable
         ]
@@ -275,8 +280,10 @@ def _solved(all_found: _Found, statistics: Statistics) -> Solution:
             supervisor.initial = separating_expression(encoding, started, left_out, encoding.layout.state)
         # Within the controlled states a step leads where its guard lets it, and nowhere else.
         supervised = [(relation, relation.enabled & relation.requirement, relation.step) for relation in relations]
-        internal = internal_events(supervised, supervisor.guards)
-        supervisor.settlingBound = completion(diagrams, internal, found.controlled, COMPLETION_EFFORT).bound
+        unwritten = {one.relation.event: one.where.node_count() for one in permissions if one.unwritten}
+        if not unwritten:
+            internal = internal_events(supervised, supervisor.guards)
+            supervisor.settlingBound = completion(diagrams, internal, found.controlled, COMPLETION_EFFORT).bound
         permitted = {permission.relation.event: permission.where for permission in permissions}
         possible = [
             relation.event
@@ -288,6 +295,6 @@ def _solved(all_found: _Found, statistics: Statistics) -> Solution:
             ).satisfiable()
         ]
     synthesis = Synthesis(
-        supervisor, all_states, supervisor.controlledStates, supervisor.bddNodes, statistics, tuple(possible)
+        supervisor, all_states, supervisor.controlledStates, supervisor.bddNodes, statistics, tuple(possible), unwritten
     )
     return Solution(synthesis, encoding, relations, permissions, found, uncontrolled)

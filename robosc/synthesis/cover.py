@@ -25,20 +25,28 @@ if TYPE_CHECKING:
 Product: TypeAlias = "dict[Domain, Ranges]"
 #: An element with one value, and where it has it.
 _Literal: TypeAlias = "tuple[Domain, Diagram]"
+#: What finding a product costs beside the nodes of the states.
+_OVERHEAD = 2000
 
 
 def separating_expression(
-    encoding: Encoding, inside: Diagram, outside: Diagram, domains: Sequence[Domain]
-) -> ex.Expression:
+    encoding: Encoding, inside: Diagram, outside: Diagram, domains: Sequence[Domain], effort: int | None = None
+) -> ex.Expression | None:
     """An expression that is true in all states of `inside` and false in all of `outside`; both have states.
 
-    They depend on the given domains only.
+    They depend on the given domains only. `effort` bounds the work, in nodes looked at: None is returned beyond it.
 
     Either the products of `inside`, or those of `outside` negated, whichever is shorter.
     """
-    positive, negative = _shorter_covers(
-        _Cover(encoding, inside, outside, domains), _Cover(encoding, outside, inside, domains)
+    product = _OVERHEAD + inside.node_count() + outside.node_count()
+    covers = _shorter_covers(
+        _Cover(encoding, inside, outside, domains),
+        _Cover(encoding, outside, inside, domains),
+        None if effort is None else effort // product,
     )
+    if covers is None:
+        return None
+    positive, negative = covers
     if positive is not None and (negative is None or _length(positive) <= _length(negative)):
         result = disjunction(_product(product) for product in positive)
     else:
@@ -163,12 +171,19 @@ def _readable(domain: Domain, needed: Ranges, free: Ranges) -> Ranges:
     )
 
 
-def _shorter_covers(positive: _Cover, negative: _Cover) -> tuple[list[Product] | None, list[Product] | None]:
-    """Both covers, found in turns: None for one that has more products than the other altogether."""
+def _shorter_covers(
+    positive: _Cover, negative: _Cover, most: int | None
+) -> tuple[list[Product] | None, list[Product] | None] | None:
+    """Both covers, found in turns: None for one that has more products than the other altogether.
+
+    None where both have more than `most`.
+    """
     found: tuple[list[Product], list[Product]] = ([], [])
     sources = positive.products(), negative.products()
     done = [False, False]
     while not any(done):
+        if most is not None and len(found[1]) > most:
+            return None
         for index, source in enumerate(sources):
             product = next(source, None)
             if product is None:

@@ -25,13 +25,15 @@ class Permission:
     """In which of the controlled states a controllable event may happen, and how the supervisor says so.
 
     Of the controlled states it may in those of `where`, which may lie outside of them. There are some if `where` has
-    any, or any with a condition on what the event touches.
+    any, or any with a condition on what the event touches. `unwritten`: the guard would have taken too much effort,
+    and does not say what synthesis added.
     """
 
     relation: EventRelation
     guard: sct.EventGuard
     controlled: Diagram
     where: Diagram
+    unwritten: bool = False
 
     @cached_property
     def allowed(self) -> Diagram:
@@ -39,10 +41,13 @@ class Permission:
         return self.controlled & self.where
 
 
-def permission(relation: EventRelation, controlled: Projection, encoding: Encoding, *, restricts: bool) -> Permission:
+def permission(
+    relation: EventRelation, controlled: Projection, encoding: Encoding, *, restricts: bool, effort: int | None = None
+) -> Permission:
     """The guard of a controllable event, over the states that are reachable under the supervisor.
 
-    `restricts` says whether synthesis gave up any state at all: if not, it added nothing to any event.
+    `restricts` says whether synthesis gave up any state at all: if not, it added nothing to any event. `effort` bounds
+    the work for what it added.
 
     In each of these states: the plants enable the event and both parts of the guard hold exactly where the event leads
     to such a state again and its requirements hold.
@@ -64,12 +69,14 @@ def permission(relation: EventRelation, controlled: Projection, encoding: Encodi
         )
     if allowed != required:
         guard.synthesis = (
-            separating_expression(encoding, allowed, required & ~allowed, domains)
+            separating_expression(encoding, allowed, required & ~allowed, domains, effort)
             if guard.everEnabled
             else ex.BooleanLiteral(value=False)
         )
     encoding.diagrams.tidy()
-    return Permission(relation, guard, controlled.states, allowed)
+    return Permission(
+        relation, guard, controlled.states, allowed, unwritten=allowed != required and guard.synthesis is None
+    )
 
 
 def _condition(requirement: sct.Requirement) -> ex.Expression:

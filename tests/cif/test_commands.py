@@ -1,5 +1,6 @@
 """Commands that take a `.cif` file, and those that can't."""
 
+import importlib
 import json
 import re
 import subprocess
@@ -25,6 +26,18 @@ plant Motor:
     edge c_off when n > 0 do n := n - 1 goto Off;
 end
 requirement c_on needs Motor.n != 2;
+"""
+#: Where `c_go` with n at 2 leads to a trap.
+_TRAP = """
+plant P:
+  controllable c_go, c_more;
+  disc int[0..3] n;
+  location A: initial; marked;
+    edge c_more when n < 3 do n := n + 1;
+    edge c_go goto B;
+  location B:
+    edge c_go when n != 2 do n := 0 goto A;
+end
 """
 
 
@@ -55,6 +68,21 @@ def test_synthesize_counts_as_cif_does(specification: str) -> None:
     assert (answer["robot"], answer["controlled_states"], answer["empty"]) == ("motor", 14, False)
     assert [event["name"] for event in answer["events"]] == ["c_on", "c_off", "u_fail", "pressed"]
     assert answer["events"][0]["guard"] == "Motor.n != 2"
+
+
+def test_a_guard_too_long_to_read_is_not_written_out(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "trap.cif"
+    path.write_text(_TRAP)
+    whole = json.loads(CliRunner().invoke(main, ["synthesize", str(path), "--json"]).stdout)
+    assert (whole["events"][0]["guard"], whole["events"][0].get("guard_nodes")) == ("P.n != 2", None)
+    monkeypatch.setattr(importlib.import_module("robosc.cli.synthesize"), "_EFFORT", 0)
+    answer = json.loads(CliRunner().invoke(main, ["synthesize", str(path), "--json"]).stdout)
+    assert answer["controlled_states"] == whole["controlled_states"]
+    guard = answer["events"][0]
+    assert (guard["guard"], guard["added_by_synthesis"], guard["ever_enabled"]) == (None, None, True)
+    assert guard["guard_nodes"] > 1
+    said = CliRunner().invoke(main, ["synthesize", str(path)]).stdout
+    assert f"guard: too long to write out: a decision diagram of {guard['guard_nodes']} nodes" in said
 
 
 def test_inputs_of_cif_are_counted_at_any_rate(specification: str) -> None:

@@ -10,7 +10,7 @@ import pytest
 from robosc.diagnostics import ModelError
 from robosc.metamodel.places import Place
 from robosc.semantics.printing import SctPrinter
-from robosc.synthesis import bdd, synthesize
+from robosc.synthesis import bdd, count, solve, synthesize
 from tests.sct_models import edge, model, needs, plant
 from tests.synthesis.classics import philosophers
 
@@ -66,6 +66,23 @@ def test_diagrams_grow_until_they_suffice(monkeypatch):
     )
     assert described(synthesize(philosophers(5))) == expected
     assert len(runs) > 1
+
+
+def test_guards_that_take_too_much_effort_are_left_out():
+    def look(solution):
+        return solution.synthesis, [permission.where.node_count() for permission in solution.permissions]
+
+    (whole, nodes), (short, same) = solve(philosophers(5), look), solve(philosophers(5), look, effort=0)
+    assert whole.unwritten == {}
+    added = [guard.synthesis is not None for guard in whole.supervisor.guards]
+    assert True in added
+    assert same == nodes
+    assert list(short.unwritten.values()) == [size for size, has in zip(nodes, added, strict=True) if has]
+    assert [guard.synthesis for guard in short.supervisor.guards] == [None] * len(added)
+    assert [guard.everEnabled for guard in short.supervisor.guards] == [
+        guard.everEnabled for guard in whole.supervisor.guards
+    ]
+    assert short.controlled_states == whole.controlled_states == count(philosophers(5)).controlled_states
 
 
 def test_memory_is_bounded():
