@@ -1,4 +1,8 @@
-"""Reads generated CIF by CIF's language reference: its grammar, then names, types, and what synthesis asks for."""
+"""Reads generated CIF by CIF's language reference: its grammar, then names, types, and what synthesis asks for.
+
+The grammar is not the importer's: it refuses by itself whatever is never generated, has the texts of annotations, and
+takes no recursion for parentheses.
+"""
 
 from __future__ import annotations
 
