@@ -107,6 +107,8 @@ def drive(ros: int, sanitizer: str, packages: list[str], folder: Path, more: lis
     workspace = folder / f"ros{ros}-{sanitizer}"
     environment = {
         **os.environ,
+        # Its are the sanitizers that are loaded before Python.
+        "CXX": "g++",
         "CFLAGS": flags,
         "CXXFLAGS": flags,
         # Libraries of ROS may lack what only Python has; such that a program does not use, it shall not load.

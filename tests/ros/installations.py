@@ -9,6 +9,8 @@ import subprocess
 from dataclasses import dataclass, field
 from pathlib import Path
 
+HERE = Path(__file__).parent
+
 
 @dataclass(frozen=True)
 class Ros:
@@ -82,6 +84,12 @@ def find_ros1() -> Found:
     if not found.missing:
         # Without the number of jobs it takes one alone while the machine is busy.
         build = ["catkin_make", f"-j{os.cpu_count() or 1}", f"-DPYTHON_EXECUTABLE={python}"]
+        if "CXX" not in os.environ and _has("clang++", environment):
+            # It takes a third of the time that g++ takes: see `test_build.py` for what that one has to say.
+            build += ["-DCMAKE_C_COMPILER=clang", "-DCMAKE_CXX_COMPILER=clang++"]
+            build.append(f"-DCMAKE_PROJECT_INCLUDE={HERE / 'precompiled.cmake'}")
+        # Nobody here speaks Lisp to the nodes.
+        environment["ROS_LANG_DISABLE"] = "genlisp"
         found.ros = Ros(1, environment, python, build)
     return found
 

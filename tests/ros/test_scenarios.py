@@ -27,8 +27,6 @@ if TYPE_CHECKING:
 SPEED = 4
 #: Seconds of the world for a command on its way, and for the robot to come to rest.
 ALLOWANCE = 1.0
-#: The scenarios with services and times, which nodes of ROS 1 play that are run from their models, too.
-SHOWCASES = ("warehouse_robot", "sprayer")
 #: The scenario with a supervisory layer: its package, that of the controller behind it, and that one's model.
 LAYERS = {
     "supervised_line_follower": (
@@ -54,7 +52,6 @@ class LiveRun:
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     if "run" in metafunc.fixturenames:
         runs = [(kind, name) for kind in ("ros1", "ros2") for name in SCENARIOS]
-        runs += [("run-ros1", name) for name in SHOWCASES]
         ids = [f"{kind}-{name}" for kind, name in runs]
         metafunc.parametrize(("kind", "name"), runs, indirect=["kind"], ids=ids, scope="session")
 
@@ -62,10 +59,8 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
 @pytest.fixture(scope="session")
 def kind(request: pytest.FixtureRequest) -> Workspace | Runner:
     """Nodes of each ROS: compiled; in ROS 2 run straight from their models where there is no rclcpp to build with."""
-    compiled = request.param == "ros1" or (request.param == "ros2" and find_ros2().ros is not None)
-    run = f"run_{request.param.removeprefix('run-')}"
-    made: Workspace | Runner
-    made = request.getfixturevalue(f"{request.param}_workspace" if compiled else run)
+    compiled = request.param == "ros1" or find_ros2().ros is not None
+    made: Workspace | Runner = request.getfixturevalue(f"{request.param}_workspace" if compiled else "run_ros2")
     return made
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import subprocess
 import sys
@@ -192,18 +193,15 @@ def build(ros: Ros, folder: Path, packages: Sequence[Package], others: Sequence[
     """Generates packages into a workspace, puts others beside them, and builds all; what the build said."""
     source = folder / "src"
     source.mkdir(parents=True, exist_ok=True)
-    for package in packages:
-        if CHOSEN and package.name not in CHOSEN:
-            continue
-        out = folder / "generated" / package.name
-        command: list[str | Path] = [sys.executable, "-m", "robosc", "transform", package.model, "-o", out]
-        settings = ["--config", package.configuration] if package.configuration else []
-        settings += ["--with-tests"] if package.with_tests else []
-        settings += ["--typed-state"] if package.typed else []
-        done = subprocess.run(
-            [*command, "--to", package.target, *settings], capture_output=True, text=True, check=False
-        )
-        assert done.returncode == 0, done.stdout + done.stderr
+    chosen = [package for package in packages if not CHOSEN or package.name in CHOSEN]
+    generated = {package: folder / "generated" / package.name for package in chosen}
+    calls = [_transform(package, out) for package, out in generated.items()]
+    done = subprocess.run(
+        [sys.executable, "-m", "tests.ros.transform"],
+        cwd=EXAMPLES.parent, input=json.dumps(calls), capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stdout + done.stderr
+    for package, out in generated.items():
         made = out / package.target.removesuffix("-layer") / package.name
         if package.fault:
             _spoil(made, *package.fault)
@@ -212,6 +210,14 @@ def build(ros: Ros, folder: Path, packages: Sequence[Package], others: Sequence[
     for other in others:
         _link(source / other.name, other)
     return ros.built(folder)
+
+
+def _transform(package: Package, out: Path) -> list[str]:
+    """The arguments of `robosc` that generate a package into a folder."""
+    settings = ["--config", str(package.configuration)] if package.configuration else []
+    settings += ["--with-tests"] if package.with_tests else []
+    settings += ["--typed-state"] if package.typed else []
+    return ["transform", str(package.model), "-o", str(out), "--to", package.target, *settings]
 
 
 @contextmanager

@@ -68,12 +68,29 @@ def middleware(header: str) -> list[str] | None:
     return []
 
 
+@pytest.fixture(scope="module")
+def node_handle(tmp_path_factory: pytest.TempPathFactory) -> list[str]:
+    """How a compiler is called that has read `<ros/node_handle.h>` already."""
+    compiler = ["clang++", "-std=c++17", *WARNINGS]
+    if shutil.which(compiler[0]) is None:
+        return ["g++", *compiler[1:]]
+    precompiled = tmp_path_factory.mktemp("precompiled") / "node_handle.pch"
+    command = [*compiler, "-x", "c++-header", "/usr/include/ros/node_handle.h", "-o", precompiled]
+    subprocess.run(command, check=True)
+    return [*compiler, "-include-pch", str(precompiled)]
+
+
 @pytest.mark.parametrize("header", HEADERS)
-def test_compiles_alone(header: str) -> None:
+def test_compiles_alone(header: str, request: pytest.FixtureRequest) -> None:
     found = middleware(header)
     if found is None or shutil.which("g++") is None:
         pytest.skip(f"no g++, or no {header.partition('/')[0].removeprefix('robosc_')}")
-    command = ["g++", "-std=c++17", "-fsyntax-only", *WARNINGS, f"-I{INCLUDE}", *found, "-x", "c++", "-"]
+    compiler = ["g++", "-std=c++17", *WARNINGS]
+    includes = re.findall(r"^#include <(.*)>", (INCLUDE / header).read_text(encoding="utf-8"), re.MULTILINE)
+    if {"ros/node_handle.h", "ros/ros.h"} & {*includes}:
+        # What it includes itself is read once for all such headers: it takes longer than all of theirs.
+        compiler = request.getfixturevalue("node_handle")
+    command = [*compiler, "-fsyntax-only", f"-I{INCLUDE}", *found, "-x", "c++", "-"]
     text = f'#include "{header}"\n'
     done = subprocess.run(command, input=text, capture_output=True, text=True, check=False, timeout=900)
     assert (done.returncode, done.stderr) == (0, "")

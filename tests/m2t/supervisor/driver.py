@@ -12,7 +12,7 @@ from robosc.m2t.c.names import CNames
 from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 
-FLAGS = ("-O1", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
+FLAGS = ("-O0", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 #: What a user of the engine is promised to draw no warning.
 STRICT = ("-std=c99", "-Wall", "-Wextra", "-Wconversion", "-Wpedantic", "-Werror")
 
