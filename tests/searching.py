@@ -1,13 +1,30 @@
-"""How many random models a test tries. `benchmarks/search.py` has the same tests search longer."""
+"""How much a test looks at: how many random models, and what of it in a quick run."""
 
 from __future__ import annotations
 
 import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
-#: How many times as long the random searches are.
+import pytest
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+#: How many times as long the random searches are: `benchmarks/search.py` has the same tests search longer.
 TIMES = int(os.environ.get("ROBOSC_SEARCH", "1"))
 
 
 def examples(number: int) -> int:
     """The number of random models, where a run of all tests tries so many."""
     return number * TIMES
+
+
+def slow_but(quick: Iterable[str], values: Iterable[Any]) -> list[Any]:
+    """Values for the parameter of a test: names, or paths, all of them marked slow but those with the `quick` names."""
+    names = set(quick)
+
+    def is_quick(value: Any) -> bool:
+        return (value.stem if isinstance(value, Path) else str(value)) in names
+
+    return [value if is_quick(value) else pytest.param(value, marks=pytest.mark.slow) for value in values]

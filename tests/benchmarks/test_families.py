@@ -33,6 +33,7 @@ def test_states_are_what_the_formula_says(sct, name, number):
     assert synthesize(sct(name, number)).controlled_states == FAMILIES[name].states(number)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "number"), SMALLEST)
 def test_states_are_what_the_definition_says(sct, name, number):
     made = sct(name, number)

@@ -58,6 +58,7 @@ def test_an_ignored_interrupt_stays_ignored(door: Path) -> None:
     assert (door.parent / "build" / "Door" / "Door.cif").exists()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
 def test_a_command_is_interrupted_at_any_change(tmp_path: Path, sent: signal.Signals) -> None:
     """`format`, as the quickest of those that write: the model is the old one or the new one."""
@@ -92,6 +93,7 @@ wait
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_verify_leaves_neither_files_nor_processes(door: Path, tmp_path: Path, sent: signal.Signals) -> None:
     number, tools, temporary = tmp_path / "number", tmp_path / "tools", tmp_path / "temporary"

@@ -164,6 +164,7 @@ def test_an_output_that_can_not_be_written(door: Path) -> None:
     assert "No space left on device" in done.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="there is no sh")
 @pytest.mark.parametrize("closed", ["<&-", ">&-", "2>&-", "<&- >&- 2>&-"])
 @pytest.mark.parametrize("command", ["check", "synthesize", "simulate", "simulate --script -"])

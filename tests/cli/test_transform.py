@@ -44,6 +44,7 @@ def test_all_targets_have_their_place(run: Run, door: Path) -> None:
     }
 
 
+@pytest.mark.slow
 def test_the_same_from_any_folder(door: Path, tmp_path: Path) -> None:
     (tmp_path / "far" / "away").mkdir(parents=True)
     calls = [

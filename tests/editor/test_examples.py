@@ -14,6 +14,8 @@ from tests.editor.test_robustness import EXAMPLES, parameters
 pytestmark = pytest.mark.asyncio(loop_scope="module")
 #: Copies of an example are one text.
 TEXTS = {path.read_text(): path for path in EXAMPLES}
+#: For this robot there is most to answer.
+LARGE = "warehouse_robot"
 OTHERS = (types.TEXT_DOCUMENT_DEFINITION, types.TEXT_DOCUMENT_HOVER, types.TEXT_DOCUMENT_CODE_LENS)
 
 
@@ -24,7 +26,13 @@ async def client(lsp_client: Editor):
     await lsp_client.shutdown_session()
 
 
-@pytest.mark.parametrize(("text", "path"), TEXTS.items(), ids=[path.stem for path in TEXTS.values()])
+@pytest.mark.parametrize(
+    ("text", "path"),
+    [
+        pytest.param(text, path, id=path.stem, marks=[pytest.mark.slow] if path.stem == LARGE else [])
+        for text, path in TEXTS.items()
+    ],
+)
 async def test_everything_is_answered(client: Editor, text: str, path: Path) -> None:
     uri = open_text(client, path, text)
     assert [found for found in await findings(client, uri, 1) if found.severity is types.DiagnosticSeverity.Error] == []

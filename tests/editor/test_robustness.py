@@ -112,6 +112,7 @@ def edits(draw: st.DrawFn) -> tuple[int, int, str]:
     return start, length, draw(st.sampled_from(pieces))
 
 
+@pytest.mark.slow
 @settings(max_examples=15)
 @given(st.lists(edits(), min_size=1, max_size=6))
 def test_edits_one_by_one_are_the_text_as_a_whole(changes: list[tuple[int, int, str]]) -> None:

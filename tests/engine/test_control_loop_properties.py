@@ -167,6 +167,7 @@ def test_what_a_batch_makes_possible_waits_for_no_other_topic(seen: Observed) ->
                 assert all(event in shared and shared[event] in topics for event in waiting)
 
 
+@pytest.mark.slow
 @_some
 @given(_observed)
 def test_settling(seen: Observed) -> None:

@@ -11,6 +11,7 @@ from robosc.cli import main
 from robosc.diagrams import behaviour_graph, diagram, ros_graph
 from robosc.language import read
 from robosc.metamodel import robosc as rsc
+from tests.searching import slow_but
 
 from .conftest import EXAMPLES, MODELS, PAGES, SCENARIOS, SHOWCASES, models_of
 
@@ -19,7 +20,7 @@ GUARDS = Path(__file__).with_name("guards")
 ALL, MESSAGES = "cif,supervisor,xmi", "cif,supervisor,xmi,ros1,ros2"
 #: Packages of detectors and of Nav2 are not known everywhere.
 EXPECTED = {"interface-unknown"}
-EACH = pytest.mark.parametrize("name", MODELS)
+EACH = pytest.mark.parametrize("name", slow_but((name for name in MODELS if name not in SHOWCASES), MODELS))
 #: What synthesis forbids beyond the requirements.
 ADDED = {"warehouse_robot": ["service_raise.c_trigger"]}
 

@@ -64,12 +64,14 @@ def test_the_warehouse_robot_serves_an_order() -> None:
     assert sent[17:] == [[], []]
 
 
+@pytest.mark.slow
 def test_the_warehouse_robot_stops_for_what_it_touches_or_no_longer_sees() -> None:
     under_way = [*shelved(), *scans()]
     for trouble in (heard("Left_pressed", True), heard("stop"), "wait 0.6"):
         assert work(play("warehouse_robot", *under_way, trouble))[-1] == ["cancel navigate"]
 
 
+@pytest.mark.slow
 def test_the_warehouse_robot_turns_back_where_its_power_is_low() -> None:
     low = heard("charge", {"percentage": 0.1})
     lines = [*shelved(), *scans(), low, "action_navigate.u_response"]
@@ -126,6 +128,7 @@ def test_the_sprayer_gives_up_its_way_where_it_may_not_go_on() -> None:
         assert wheels(play("sprayer", *AUTOMATIC, route(3), trouble))[-1] == ["cancel drive", "halt"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("before", "release", "sent_then"),
     [

@@ -65,6 +65,7 @@ def test_a_random_robot_is_transformed(path: Path) -> None:
     assert clean > 0.9 * seed
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("text", ["".join(source) for source in SOURCES], ids=range(len(SOURCES)))
 def test_every_model_of_the_repository_that_has_no_error_is_transformed(path: Path, text: str) -> None:
     path.write_text(text, encoding="utf-8")

@@ -28,6 +28,7 @@ from robosc.ros_types import RosTypes
 from robosc.runtime.core.node_data import NodeData
 from robosc.semantics.edges import edges_from
 from robosc.semantics.roles import event_name
+from tests.searching import slow_but
 
 from .in_process_node import InProcessNode
 
@@ -111,9 +112,7 @@ def case(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.Mon
 #: Whose tours are long.
 LONG = ("sprayer", "warehouse_robot", "scout", "keeper", "maze_solver")
 every_model = pytest.mark.parametrize(
-    "case",
-    [pytest.param(name, marks=[pytest.mark.slow] if name in LONG else []) for name in MODELS],
-    indirect=True,
+    "case", slow_but((name for name in MODELS if name not in LONG), MODELS), indirect=True
 )
 
 
@@ -151,7 +150,12 @@ def test_the_same_call_gives_the_same_test(case: Case) -> None:
 
 
 @pytest.mark.parametrize(
-    "case", ["line_follower", "maze_solver", "porter", "courier", "scout", "kept", "keeper"], indirect=True
+    "case",
+    slow_but(
+        ["line_follower", "courier", "kept"],
+        ["line_follower", "maze_solver", "porter", "courier", "scout", "kept", "keeper"],
+    ),
+    indirect=True,
 )
 def test_a_log_without_messages_is_played(case: Case) -> None:
     """What the node read is enough to make messages that it reads like that, also of what it keeps to hand it on."""

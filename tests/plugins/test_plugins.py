@@ -243,7 +243,16 @@ def test_every_command_that_synthesizes_takes_another_synthesizer() -> None:
     assert [sentence in (ROOT / "docs" / page).read_text() for page in ("cli.md", "extending.md")] == [True, True]
 
 
-@pytest.mark.parametrize("make", [corners.swap, corners.names, corners.data, corners.cancel_and_trigger, dock])
+@pytest.mark.parametrize(
+    "make",
+    [
+        corners.swap,
+        pytest.param(corners.names, marks=pytest.mark.slow),
+        corners.data,
+        corners.cancel_and_trigger,
+        pytest.param(dock, marks=pytest.mark.slow),
+    ],
+)
 def test_the_function_block_does_what_the_engine_does(make, monkeypatch: pytest.MonkeyPatch) -> None:
     follow(make(), monkeypatch)
 

@@ -39,6 +39,7 @@ def on_half(log: list[dict[str, Any]]) -> list[str]:
     return [violation for violation in BOOKS["maze_solver"]().violations(log) if "half of a scan" in violation]
 
 
+@pytest.mark.slow
 def test_nothing_is_sent_between_the_events_of_a_scan() -> None:
     assert on_half(run_of("maze_solver").log) == []
 

@@ -13,10 +13,11 @@ from examples.simulator.picture import picture
 from examples.simulator.scenarios import SCENARIOS
 from tests.scenarios.rules.books import BOOKS
 from tests.scenarios.runs import moved_while_stopped, played, poses, run_of, times_of
+from tests.searching import slow_but
 
 #: With all who look at the same runs.
 pytestmark = pytest.mark.xdist_group("scenarios")
-EACH = pytest.mark.parametrize("name", SCENARIOS)
+EACH = pytest.mark.parametrize("name", slow_but(["line_follower", "push_ball", "supervised_line_follower"], SCENARIOS))
 
 
 def test_there_is_a_scenario_for_each_example() -> None:
@@ -78,6 +79,7 @@ def test_the_line_follower_halts_before_the_obstacle() -> None:
     assert 0.15 < min(pose["gap"] for pose in poses(run_of("line_follower").record)) < 0.4
 
 
+@pytest.mark.slow
 def test_the_navigators_get_around_what_is_on_no_map() -> None:
     run = run_of("obstacle_navigation")
     # Nearer than Nav2 keeps only to what was moved before the robot.
@@ -86,18 +88,21 @@ def test_the_navigators_get_around_what_is_on_no_map() -> None:
     assert {value["number_of_recoveries"] if isinstance(value, dict) else value for value in feedback} == {0, 1}
 
 
+@pytest.mark.slow
 def test_a_click_before_the_robot_is_located_starts_nothing() -> None:
     run = run_of("simple_navigation")
     clicks, goals = times_of(run.record, "/clicked_point"), times_of(run.record, "/navigate_to_pose")
     assert clicks[0] < times_of(run.record, "/initialpose")[0] < goals[0]
 
 
+@pytest.mark.slow
 def test_the_object_finder_sees_other_things_before_the_sign() -> None:
     events = [entry for entry in run_of("object_finder").log if entry["event"] == "message_objects.u_response"]
     assert next(event["data"]["value"] for event in events) == "something_else"
     assert [event["data"]["value"] for event in events][-1] == "stop_sign"
 
 
+@pytest.mark.slow
 def test_the_maze_has_turns_to_both_sides_and_a_dead_end() -> None:
     events = [entry["event"].removesuffix(".c_trigger") for entry in run_of("maze_solver").log]
     turns = [event.rpartition("_")[2] for event in events if event in ("message_rotate_left", "message_rotate_right")]
@@ -112,6 +117,7 @@ def test_the_ball_slips_aside_and_is_caught_again() -> None:
     assert ways[-1][0] - ways[0][0] > 2.0
 
 
+@pytest.mark.slow
 def test_the_person_is_followed_at_a_distance() -> None:
     run = run_of("person_follower")
     away = [pose["person"] for pose in poses(run.record)]
@@ -131,6 +137,7 @@ def test_the_layer_blocks_steps_of_a_controller_that_knows_no_danger() -> None:
     assert sum(8.0 < time < 11.0 for time in blocked) > 20
 
 
+@pytest.mark.slow
 def test_the_dock_is_asked_again_after_ever_longer_pauses() -> None:
     run = run_of("warehouse_robot")
     asked = [entry["time"] for entry in run.log if entry["event"] == "service_dock.c_trigger"]
@@ -138,12 +145,14 @@ def test_the_dock_is_asked_again_after_ever_longer_pauses() -> None:
     assert (second - first, third - second) == pytest.approx((5.0, 30.0), abs=0.2)
 
 
+@pytest.mark.slow
 def test_the_warehouse_robot_is_slow_where_it_comes_near_to_something() -> None:
     run = run_of("warehouse_robot")
     limits = [entry["data"]["data"] for entry in run.record if entry["topic"] == "/speed_limit"]
     assert limits[:4] == [0.3, 1.0, 0.3, 1.0]
 
 
+@pytest.mark.slow
 def test_the_sprayer_leaves_out_what_has_been_sprayed() -> None:
     boom = run_of("sprayer").simulation.device(Boom)
     assert len(boom.sprayed) > 60
@@ -151,6 +160,7 @@ def test_the_sprayer_leaves_out_what_has_been_sprayed() -> None:
     assert boom.twice < 0.1 * len(boom.sprayed)
 
 
+@pytest.mark.slow
 def test_the_sprayer_sprays_nothing_beyond_the_field() -> None:
     boom = run_of("sprayer").simulation.device(Boom)
     assert max(column for column, _ in boom.sprayed) < 100

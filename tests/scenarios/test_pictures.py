@@ -10,11 +10,12 @@ import pytest
 from examples.simulator.picture import picture
 from examples.simulator.scenarios import SCENARIOS
 from tests.scenarios.runs import run_of
+from tests.searching import slow_but
 
 ROOT = Path(__file__).parents[2]
 #: With all who look at the same runs.
 pytestmark = pytest.mark.xdist_group("scenarios")
-EACH = pytest.mark.parametrize("name", SCENARIOS)
+EACH = pytest.mark.parametrize("name", slow_but(["line_follower", "push_ball", "supervised_line_follower"], SCENARIOS))
 
 
 @EACH

@@ -6,6 +6,7 @@ from robosc.semantics.printing import SctPrinter
 from robosc.semantics.roles import event_name
 from robosc.synthesis import synthesize
 from tests.sct_models import disables, edge, model, needs, plant
+from tests.searching import slow_but
 from tests.synthesis.classics import counting_buffer, machine_buffer_machine, philosophers
 from tests.synthesis.test_against_oracle import check
 
@@ -34,7 +35,7 @@ def test_a_requirement_stays_as_it_was_written():
     assert guards(synthesis) == {"M2.start2": ("B.n > 0", None)}
 
 
-@pytest.mark.parametrize("number", [3, 4, 5])
+@pytest.mark.parametrize("number", slow_but(["3"], [3, 4, 5]))
 def test_philosophers_may_do_anything_but_all_take_the_same_fork(number):
     philosophers_ = philosophers(number)
     synthesis = synthesize(philosophers_)
@@ -47,6 +48,7 @@ def test_the_guard_of_a_philosopher_is_one_forbidden_situation():
     assert guards(synthesis)["P0.left0"] == (None, "!(P1.has_left and P2.has_left and F3.taken)")
 
 
+@pytest.mark.slow
 def test_many_philosophers():
     synthesis = synthesize(philosophers(40))
     assert (synthesis.uncontrolled_states, synthesis.controlled_states) == (3**40, 3**40 - 2)

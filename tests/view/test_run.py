@@ -12,6 +12,8 @@ from typing import Any
 
 import pytest
 
+from tests.searching import slow_but
+
 from .robots import record, wholes
 
 ROOT = Path(__file__).parents[2]
@@ -36,7 +38,7 @@ console.log(JSON.stringify(told));
 """
 
 
-@pytest.mark.parametrize("most", [3, 10, 70, 200, None])
+@pytest.mark.parametrize("most", slow_but(["10", "None"], [3, 10, 70, 200, None]))
 def test_it_is_at_each_moment_what_was_told(most: int | None) -> None:
     node = shutil.which("node", path=Path(sys.executable).parent) or shutil.which("node")
     if node is None:
