@@ -33,6 +33,7 @@ def test_a_pipe_or_device_is_not_read(run: Run, door: Path, call: tuple[str, ...
     assert (done.exit_code, "only regular files are read" in said) == (1 if call[1] == "pipe.xmi" else 2, True), said
 
 
+@pytest.mark.slow
 def test_a_standard_input_without_end_is_not_read_to_it(door: Path) -> None:
     for call in (["format", "-"], ["simulate", "door.rscd", "--script", "-"]):
         with Path("/dev/zero").open("rb") as zeros:

@@ -113,6 +113,7 @@ def test_no_memory_at_all_is_a_wrong_call(run: Run, door: Path) -> None:
     assert run("synthesize", door, "--memory", "0").exit_code == 2
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="there are no pseudo-terminals")
 def test_an_interrupt_ends_a_long_synthesis(long: Path) -> None:
     """On a terminal, where it says how far it is: it leaves the cursor visible, and no output."""

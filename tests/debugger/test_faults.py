@@ -285,6 +285,7 @@ FITTING = {
 }
 
 
+@pytest.mark.slow
 @settings(max_examples=60)
 @given(
     st.lists(

@@ -210,6 +210,7 @@ def test_a_signal_at_any_change_leaves_all_or_nothing(tmp_path: Path, sent: sign
     assert seen.count("1") > 10
 
 
+@pytest.mark.slow
 def test_what_kill_leaves_the_next_run_undoes(tmp_path: Path) -> None:
     def run(number: int) -> int:
         write(below(tmp_path / str(number), OLD))

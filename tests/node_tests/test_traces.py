@@ -215,6 +215,7 @@ def test_half_a_message_is_refused(case: Case) -> None:
         case.play()
 
 
+@pytest.mark.slow
 def test_the_log_of_a_drive_is_played(case: Case, tmp_path: Path) -> None:
     """In it messages come before the first tick, and at the very time of others."""
     log = tmp_path / "drive.jsonl"

@@ -41,6 +41,7 @@ def test_the_plant_goes_before_the_requirement() -> None:
     assert play("message_drain.c_trigger", "message_refill.c_trigger")[1]["by"] == "plant"
 
 
+@pytest.mark.slow
 def test_the_state_has_every_plant_and_variable() -> None:
     (answer,) = play("message_drain.c_trigger")
     assert answer["state"] == {

@@ -497,6 +497,7 @@ def test_it_is_told_with_a_shortest_trace(models: tuple[rsc.Base, sct.Supervisor
     )
 
 
+@pytest.mark.slow
 def test_where_there_is_too_much_it_looks_at_random(models: tuple[rsc.Base, sct.SupervisoryControlModel]) -> None:
     few = Effort(states=50, values=0, random=60_000)
     found = validate_model(*models, few)
@@ -517,6 +518,7 @@ def test_where_there_are_too_many_states_each_event_may_be_tried_in_all(
     assert validate_model(*models, Effort(states=50)).outcome is Outcome.REFUTED
 
 
+@pytest.mark.slow
 def test_of_too_many_values_it_tries_some(models: tuple[rsc.Base, sct.SupervisoryControlModel]) -> None:
     found = validate_model(*models, Effort(states=10_000, inputs=2, values=0, random=3000))
     assert (found.outcome, found.explanation) == (Outcome.SAMPLED, "")

@@ -312,6 +312,7 @@ def _drawn(kind: ex.Type, random) -> tuple[object, object]:
     return value, value
 
 
+@pytest.mark.slow
 @settings(max_examples=25, deadline=None, suppress_health_check=list(HealthCheck))
 @given(sct_models())
 def test_engine_models_can_be_saved_and_are_the_same_each_time(made: sct.SupervisoryControlModel) -> None:

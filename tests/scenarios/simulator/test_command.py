@@ -17,6 +17,7 @@ def simulator(folder: Path, *options: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
 
 
+@pytest.mark.slow
 def test_plays_a_scenario_and_writes_what_was_asked_for(tmp_path: Path) -> None:
     files = ["--record", "record.jsonl", "--log", "log.jsonl", "--picture", "run.svg"]
     done = simulator(tmp_path, "--scenario", "simple_navigation", *files)
@@ -28,6 +29,7 @@ def test_plays_a_scenario_and_writes_what_was_asked_for(tmp_path: Path) -> None:
     assert (tmp_path / "run.svg").read_text().startswith("<svg")
 
 
+@pytest.mark.slow
 def test_says_that_the_goal_was_not_reached(tmp_path: Path) -> None:
     done = simulator(tmp_path, "--scenario", "simple_navigation", "--until", "2.5")
     assert (done.returncode, done.stdout.splitlines()[-1]) == (1, "the goal was not reached")
