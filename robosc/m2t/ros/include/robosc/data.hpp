@@ -217,7 +217,7 @@ class ArrayReader {
     bool any = false;
     for (const auto& element : array) {
       const auto number = static_cast<Number>(element);
-      if (number == number && (!any || before(number, found))) {
+      if (!std::isnan(number) && (!any || before(number, found))) {
         found = number;
         any = true;
       }

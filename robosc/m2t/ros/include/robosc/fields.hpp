@@ -16,9 +16,9 @@ namespace robosc {
 inline namespace v1 {
 
 template <typename Data, typename = void>
-constexpr bool is_array_v = false;
+inline constexpr bool is_array_v = false;
 template <typename Data>
-constexpr bool is_array_v<Data, std::void_t<typename Data::const_iterator>> = true;
+inline constexpr bool is_array_v<Data, std::void_t<typename Data::const_iterator>> = true;
 
 /// Tells the message types of ROS, of which `robosc_ros1/finite.hpp` or `robosc_ros2/finite.hpp` says what is finite.
 struct OfRos {};

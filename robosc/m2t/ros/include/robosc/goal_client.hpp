@@ -29,6 +29,7 @@ class GoalClient {
 
   GoalClient(const GoalClient&) = delete;
   GoalClient& operator=(const GoalClient&) = delete;
+  virtual ~GoalClient() = default;
 
   /// Whether a goal has not ended, be it one that was given up; until then no other may start.
   bool busy() const { return phase_ != Phase::idle; }
@@ -67,7 +68,6 @@ class GoalClient {
         deadline_(place..., timeout, [this] { expire(); }),
         poll_(place..., std::chrono::milliseconds(50), [this] { poll(); }),
         until_lost_(place..., std::chrono::seconds(30), [this] { fail("lost"); }) {}
-  virtual ~GoalClient() = default;
 
   // What the middleware does.
 

@@ -26,6 +26,7 @@ class GoalProxy {
 
   GoalProxy(const GoalProxy&) = delete;
   GoalProxy& operator=(const GoalProxy&) = delete;
+  virtual ~GoalProxy() = default;
 
   /// Cancels the goal at hand, if there is one; before the robot has accepted it, as soon as it does.
   void cancel() {
@@ -37,7 +38,6 @@ class GoalProxy {
  protected:
   /// `within`: the time for acceptance, as " within 5000 ms".
   GoalProxy(std::string within, Handlers handlers) : handlers_(std::move(handlers)), within_(std::move(within)) {}
-  virtual ~GoalProxy() = default;
 
   // What the middleware does.
 
