@@ -100,9 +100,10 @@ On the code of 2026-11-25 without sanitizers, compiled ROS 2 nodes played nine s
 pushed into the goal in a first run, in which more than thirty processes shared two cores. The four tests of launch
 files passed with `ros2 launch`.
 
-clang-tidy 14 has read `managed_porter`, and with it the shared headers that it includes, by `tests/ros/.clang-tidy`
-(2026-11-25). It found a comparison of a number with itself, a constant in a header that was not `inline`, and virtual
-destructors that were protected. All of that was mended; no behaviour was wrong.
+clang-tidy 14 has read `managed_porter` in ROS 2 and `usher_layer` in ROS 1, and with them the shared headers that they
+include, by `tests/ros/.clang-tidy` (2026-11-25). It found a comparison of a number with itself, a constant in a header
+that was not `inline`, virtual destructors that were protected, and two copies too many. All of that was mended; no
+behaviour was wrong.
 
 | | last run | packages | tests passed | failed | reports on generated code | on libraries alone |
 |---|---|---|---|---|---|---|"""

@@ -130,7 +130,7 @@ class ServiceClient {
     std::unique_lock<std::mutex> lock(mutex_);
     while (current_ == number) {
       lock.unlock();
-      const auto link = ros::ServiceManager::instance()->createServiceServerLink(name_, false, type, type, {});
+      auto link = ros::ServiceManager::instance()->createServiceServerLink(name_, false, type, type, {});
       lock.lock();
       if (link && current_ == number) {
         found_ = true;

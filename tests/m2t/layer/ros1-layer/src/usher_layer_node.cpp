@@ -105,7 +105,7 @@ class Layer {
     usher_init(&supervisor_, nullptr, &hooks);
     usher_settle(&supervisor_);
 
-    const std::string self = ros::this_node::getName();
+    const std::string& self = ros::this_node::getName();
     stop_relay_ = std::make_unique<MessageRelay<std_msgs::Empty>>(
         "/stop", self + "/controller/stop",
         [this](const auto& message) { return on_stop(message); });
