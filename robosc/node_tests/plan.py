@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import random
-from collections import Counter
+from collections import Counter, defaultdict
 from dataclasses import dataclass, field
 from functools import cached_property, reduce
 from operator import or_
@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 _ALL = 30_000
 #: So often a tour is planned, each time with other choices between what is as near; the shortest is taken.
 _PLANS = 60
+#: So many ways of the same length a beam search goes on with.
+_WAYS = 5_000
 #: So long may the way be that takes the place of a part of a tour.
 _DETOUR = 4
 #: So many ways that lead to where something can be seen may not show it.
@@ -195,7 +197,37 @@ class Plan:
         if not self.is_whole:
             return encoded(self.model, lambda encoding: self._guided(start, wanted, encoding))
         tours = [self._planned(start, wanted, random.Random(seed)) for seed in range(_PLANS)]  # noqa: S311
-        return max(tours, key=lambda tour: ((_together(tour) & wanted).bit_count(), -len(tour)))
+        best = max(tours, key=lambda tour: ((_together(tour) & wanted).bit_count(), -len(tour)))
+        return self._beam_search(start, _together(best) & wanted, len(best) - 1) or best
+
+    def _beam_search(self, start: Place, wanted: int, longest: int) -> list[Step] | None:
+        """A way of at most so many steps that shows all that is wanted; None where none is found.
+
+        Of all ways of a length it goes on with those that show the most. Of two to the same place that is only the one
+        that shows more, where the other shows nothing else.
+        """
+        # The last step of the way to each place that shows this much, and where it came from.
+        beams: list[dict[tuple[Place, int], tuple[tuple[Place, int], Step]]] = []
+        kept = [(start, 0)]
+        for _ in range(longest):
+            beam: dict[tuple[Place, int], tuple[tuple[Place, int], Step]] = {}
+            for here, shown in kept:
+                for step in self.steps(here):
+                    beam.setdefault((step.end, shown | step.shows & wanted), ((here, shown), step))
+            beams.append(beam)
+            end = next((end for end in beam if end[1] == wanted), None)
+            if end is not None:
+                way = []
+                for earlier in reversed(beams):
+                    end, step = earlier[end]
+                    way.append(step)
+                return way[::-1]
+            kept, ways = [], defaultdict[Place, list[int]](list)
+            for place, shown in sorted(beam, key=lambda end: -end[1].bit_count()):
+                if len(kept) < _WAYS and all(shown & ~other for other in ways[place]):
+                    ways[place].append(shown)
+                    kept.append((place, shown))
+        return None
 
     def _planned(self, start: Place, wanted: int, choice: random.Random) -> list[Step]:
         tour: list[Step] = []

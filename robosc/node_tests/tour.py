@@ -87,6 +87,8 @@ class Tour(Drive):
         )
         self._shown: set[Goal] = set()
         self._steps = 0
+        #: What is seen before the first step.
+        self.at_start: frozenset[Goal] = frozenset()
         self.traces: list[list[str]] = []
         self._run()
         while len(self.traces) < _TRACES and (left := self.plan.possible - self._shown):
@@ -105,6 +107,9 @@ class Tour(Drive):
         self._controller.start()
         try:
             self._pass_period()
+            self._controller.look()
+            if not self.traces:
+                self.at_start = frozenset(self._shown)
             while any(self._stepped(step) for step in self._tour()):
                 pass
         except MeetingTimesError:
