@@ -13,6 +13,9 @@ from robosc.view.page import PageError, page_files
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+#: Milliseconds for what a browser does in a moment, on a machine that is busy with twenty other programs.
+PATIENCE = 120_000
+
 
 @pytest.fixture(scope="module")
 def chromium() -> Iterator[Any]:
@@ -28,7 +31,7 @@ def chromium() -> Iterator[Any]:
 
     with sync_playwright() as playwright:
         # As root, as in containers, chromium has no sandbox.
-        browser = playwright.chromium.launch(executable_path=program, args=["--no-sandbox"])
+        browser = playwright.chromium.launch(executable_path=program, args=["--no-sandbox"], timeout=PATIENCE)
         yield browser
         browser.close()
 
@@ -37,6 +40,7 @@ def chromium() -> Iterator[Any]:
 def opened(chromium: Any, address: str, *, drawn: str = "[data-moment]", **options: Any) -> Iterator[Any]:
     """A page that has drawn its robot; it fails where anything in it does."""
     context = chromium.new_context(**{"viewport": {"width": 1400, "height": 900}, **options})
+    context.set_default_timeout(PATIENCE)
     page = context.new_page()
     faults: list[str] = []
     page.on("pageerror", lambda error: faults.append(str(error)))

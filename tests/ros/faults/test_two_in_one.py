@@ -66,7 +66,7 @@ def two_components(controller: Compiled, processes: Processes) -> None:
         pytest.skip("there is no component_container")
     process = processes.start("container", [container])
     loading = processes.start("loading", [ros.python, HERE / "load_two.py", PACKAGE])
-    processes.wait_until(lambda: loading.poll() is not None, "both are loaded", seconds=60)
+    processes.wait_until(lambda: loading.poll() is not None, "both are loaded")
     assert loading.returncode == 0, processes.logs()
     world = Peer(processes, ros.python, ros.version, "world")
     for prefix in ("", "/second"):
