@@ -13,6 +13,7 @@ from robosc.analysis.verify.verdict import Outcome, details
 from robosc.checks import check
 from robosc.diagnostics import has_errors
 from robosc.language import Documents, read
+from robosc.m2m import robosc_to_sct
 from robosc.metamodel import expression as ex
 from robosc.metamodel import robosc as rsc
 from robosc.metamodel import sct
@@ -129,8 +130,8 @@ def robot() -> rsc.Base:
 
 @pytest.fixture
 def models(robot: rsc.Base) -> tuple[rsc.Base, sct.SupervisoryControlModel]:
-    """The robot, and its plants, to be changed."""
-    return robot, robosc.to_sct(robot)
+    """The robot, and its plants, to be changed: made anew, which `robosc.to_sct` does once for each robot."""
+    return robot, robosc_to_sct.transform(robot)[0]
 
 
 def event(model: sct.SupervisoryControlModel, name: str) -> sct.Event:
