@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
 _Element = TypeVar("_Element")
 RULE = "unresolved-reference"
-#: So many names are listed where none of them is close to the one that is not there.
+#: So many names are listed where none of them is close to the one that is not there, or where each may be meant.
 _FEW = 6
 #: How to go on without a function that is not there.
 _FUNCTION = (
@@ -274,9 +274,9 @@ class Linker:
             if not self.scope.incomplete and not self._file.may_declare(name.text, Declared.COMMUNICATION):
                 self._missing(name, "there is no communication", self.scope.all_communications())
             return None
-        if len({communication for _, communication in found}) < len(found):
-            texts = tuple(f"{written(component.name)}.{written(name.text)}" for component, _ in found)
-            candidates = " or ".join(f"`{text}`" for text in texts)
+        # Components of one name are a finding of their own: writing it before would tell nothing more.
+        if len({communication for _, communication in found}) < len(dict.fromkeys(own.name for own, _ in found)):
+            candidates, texts = _first_few(f"{written(component.name)}.{written(name.text)}" for component, _ in found)
             hint = Repair(f"write {candidates}", choices=texts)
             self._report(name, f"`{name.text}` is ambiguous: it may be {candidates}", hint)
             return None
@@ -487,8 +487,10 @@ class Linker:
         ]
         if len(having) == 1:
             return Repair(f"write `{having[0]}`", having[0])
-        hint = " or ".join(f"`{text}`" for text in having)
-        return Repair(f"write {hint}", choices=tuple(having)) if having else None
+        if not having:
+            return None
+        hint, texts = _first_few(having)
+        return Repair(f"write {hint}", choices=texts)
 
     def _enum_value(self, access: rsc.Access, name: Name) -> bool:
         """Whether a name is that of an enum value, or of several, which is a finding."""
@@ -497,10 +499,9 @@ class Linker:
             access.item = values[0]
         elif values:
             enums = [value.eContainer().eContainer().name for value in values]
-            texts = tuple(f"{written(enum)}.{written(name.text)}" for enum in dict.fromkeys(enums))
-            said = f"write {enumeration(f'`{text}`' for text in texts)}"
+            said, texts = _first_few(f"{written(enum)}.{written(name.text)}" for enum in enums)
             message = f"`{name.text}` is a value of several enums"
-            hint = Repair(said, choices=texts) if len(texts) > 1 else "declare an enum in this file"
+            hint = Repair(f"write {said}", choices=texts) if len(texts) > 1 else "declare an enum in this file"
             self._report(name, message, hint, rule="unique-enum-value")
         return bool(values)
 
@@ -629,3 +630,11 @@ class Linker:
     def _report(self, name: Name, message: str, repair: Repair | str | None = None, rule: str = RULE) -> None:
         if not self._file.regions.is_uncertain(name.start):
             self.findings.append(self._file.text.error(rule, name.start, name.end, message, repair))
+
+
+def _first_few(texts: Iterable[str]) -> tuple[str, tuple[str, ...]]:
+    """What may be written in place of a name, in words and by itself: all of it where that is not much."""
+    texts = tuple(dict.fromkeys(texts))
+    shown = [f"`{text}`" for text in texts[:_FEW]]
+    others = len(texts) - len(shown)
+    return enumeration([*shown, *([f"that of {others} more"] if others else [])]), texts[:_FEW]

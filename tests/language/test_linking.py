@@ -281,6 +281,22 @@ def test_two_instances_share_names_that_need_qualification(tmp_path: Path) -> No
     ]
 
 
+def test_of_many_that_may_be_meant_a_few_are_listed(tmp_path: Path) -> None:
+    """As many for each of as many names would make the findings grow with the square of the text."""
+    made = "\n".join(f"component C{number} from Safety import Stop" for number in range(300))
+    found = reading(tmp_path, f"robot R {{ {made} requirement stop needs C0.running }}", safety=STOP)
+    (finding,) = found.findings
+    assert finding.message.endswith(
+        "it may be `C0.stop`, `C1.stop`, `C2.stop`, `C3.stop`, `C4.stop`, `C5.stop` or that of 294 more"
+    )
+    assert len(finding.alternatives) == 6
+
+
+def test_components_of_one_name_make_no_name_ambiguous(tmp_path: Path) -> None:
+    made = "component C from Safety import Stop\n" * 2
+    assert not reading(tmp_path, f"robot R {{ {made} requirement stop needs C.running }}", safety=STOP).findings
+
+
 def test_definitions_of_an_imported_library_are_usable_by_name(tmp_path: Path) -> None:
     found = reading(
         tmp_path,
