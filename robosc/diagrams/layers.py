@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING
 
 import networkx as nx
 
+from robosc.diagrams.picture import total
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
@@ -168,7 +170,7 @@ def _barycenter(item: _Item, positions: Mapping[_Item, int], *, forward: bool) -
     if not near:
         return positions[item]
     # The port decides between links of one box: a lower row of it belongs lower.
-    return sum(positions[neighbour] + port / (neighbour.height + 1) for neighbour, port, _ in near) / len(near)
+    return total(positions[neighbour] + port / (neighbour.height + 1) for neighbour, port, _ in near) / len(near)
 
 
 def _crossings(layers: Sequence[Sequence[_Item]]) -> int:
@@ -195,7 +197,7 @@ def _set_tops(layers: Sequence[Sequence[_Item]]) -> None:
             for item in layer:
                 near = (item.left if forward else item.right) or item.left or item.right
                 heights = [neighbour.top + port - own for neighbour, port, own in near]
-                wanted.append(sum(heights) / len(heights) if heights else item.top)
+                wanted.append(total(heights) / len(heights) if heights else item.top)
             _place(layer, wanted)
     highest = min((item.top for layer in layers for item in layer), default=0.0)
     for layer in layers:

@@ -9,9 +9,9 @@ DSM-based variable ordering heuristic for reduced computational effort of symbol
 from __future__ import annotations
 
 from collections import Counter
-from functools import cache
+from functools import cache, reduce
 from itertools import permutations
-from operator import itemgetter
+from operator import add, itemgetter
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -129,8 +129,9 @@ def _force(order: list[int], graph: _Hypergraph) -> list[int]:
     seen = {tuple(order)}
     for _ in range(10 * max(1, len(order).bit_length())):
         centre = [sum(places) / len(places) for places in (own(place) for own in graph.places_of)]
+        # Not `sum`, which rounds otherwise from Python 3.12 on: the order is to be the same.
         pull = [
-            sum(map(centre.__getitem__, own)) / len(own) if own else float(place[vertex])
+            reduce(add, map(centre.__getitem__, own)) / len(own) if own else float(place[vertex])
             for vertex, own in enumerate(pulling)
         ]
         # Of vertices that are pulled alike, the order stays.
