@@ -217,7 +217,7 @@ class ArrayReader {
     bool any = false;
     for (const auto& element : array) {
       const auto number = static_cast<Number>(element);
-      if (!std::isnan(number) && (!any || before(number, found))) {
+      if (!is_nan(number) && (!any || before(number, found))) {
         found = number;
         any = true;
       }
@@ -225,6 +225,9 @@ class ArrayReader {
     if (!any) fail("there is no number in an array of " + std::to_string(array.size()));
     return found;
   }
+
+  static bool is_nan(double number) { return std::isnan(number); }
+  static bool is_nan(const Integer& /*number*/) { return false; }
 
   Integer whole(double number) {
     if (std::isnan(number)) fail("NaN can't be rounded");
