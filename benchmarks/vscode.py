@@ -134,23 +134,24 @@ class Editor:
         for key in keys:
             self.page.keyboard.press(key)
 
-    def pick(self, key: str, text: str, shown: str | None = None) -> None:
-        """Opens a list by its key, types, and takes what is shown."""
+    def pick(self, key: str, text: str, shown: str | None = None, *, asks: bool = False) -> None:
+        """Opens a list by its key, types, and takes what is shown; `asks`: what is taken opens another one."""
         self.press(key)
         self.page.locator(".quick-input-widget input").first.wait_for()
         self.page.keyboard.type(text)
         self.page.locator(".quick-input-list .monaco-list-row.focused", has_text=shown or text).first.wait_for()
         self.press("Enter")
-        self.page.locator(".quick-input-widget").wait_for(state="hidden")
+        if not asks:
+            self.page.locator(".quick-input-widget").wait_for(state="hidden")
 
     def choose(self, text: str) -> None:
         """Takes the row of a list that is open which begins with a text."""
         begins = re.compile(rf"^\W*{re.escape(text)}")
         self.page.locator(".quick-input-list .monaco-list-row", has_text=begins).first.click(timeout=3 * _LONGEST)
 
-    def command(self, title: str) -> None:
+    def command(self, title: str, *, asks: bool = False) -> None:
         """A command by its title."""
-        self.pick("F1", title)
+        self.pick("F1", title, asks=asks)
 
     def file(self, name: str) -> None:
         """Opens a file of the folder."""
@@ -378,9 +379,8 @@ def diagram(editor: Editor) -> None:
 def explaining(editor: Editor) -> None:
     """The word at the cursor is asked for: why it can't happen, and what would help."""
     editor.go("drive needs", 2)
-    editor.command("RoboSC: Explain Why an Event Can't Happen")
-    box = editor.shows(".quick-input-widget input")
-    assert box.input_value() == "drive", box.input_value()
+    editor.command("RoboSC: Explain Why an Event Can't Happen", asks=True)
+    expect(editor.shows(".quick-input-widget input:visible")).to_have_value("drive", timeout=_LONGEST)
     editor.press("Enter")
     editor.shows(".output-view .view-line, .panel .view-line", "Passage")
     editor.command("View: Toggle Panel Visibility")
