@@ -109,11 +109,7 @@ def case(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.Mon
     return Case(getattr(request, "param", "line_follower"), tmp_path)
 
 
-#: Whose tours are long.
-LONG = ("sprayer", "warehouse_robot", "scout", "keeper", "maze_solver")
-every_model = pytest.mark.parametrize(
-    "case", slow_but((name for name in MODELS if name not in LONG), MODELS), indirect=True
-)
+every_model = pytest.mark.parametrize("case", slow_but(["line_follower", "porter", "kept"], MODELS), indirect=True)
 
 
 @every_model

@@ -83,6 +83,7 @@ def test_another_synthesizer_is_verified(installed: Path) -> None:
     assert outcomes["maximal permissiveness"] == "proved"
 
 
+@pytest.mark.slow
 def test_another_synthesizer_finds_as_many_states(installed: Path) -> None:
     pytest.importorskip("faudes")
     both = [
