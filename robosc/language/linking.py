@@ -274,8 +274,8 @@ class Linker:
             if not self.scope.incomplete and not self._file.may_declare(name.text, Declared.COMMUNICATION):
                 self._missing(name, "there is no communication", self.scope.all_communications())
             return None
-        # Components of one name are a finding of their own: writing it before would tell nothing more.
-        if len({communication for _, communication in found}) < len(dict.fromkeys(own.name for own, _ in found)):
+        # That components have the same name is a finding of its own, and to write this name would not help.
+        if len({communication for _, communication in found}) < len({component.name for component, _ in found}):
             candidates, texts = _first_few(f"{written(component.name)}.{written(name.text)}" for component, _ in found)
             hint = Repair(f"write {candidates}", choices=texts)
             self._report(name, f"`{name.text}` is ambiguous: it may be {candidates}", hint)
