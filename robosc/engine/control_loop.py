@@ -84,7 +84,7 @@ class ControlLoop:
             for choice in executed.choices
         ]
         self._bound = executed.settlingBound
-        self._data = {
+        self._chosen_in = {
             event.name: event.choice.variable
             for event in executed.events
             if event.choice is not None and event.choice.variable is not None
@@ -103,8 +103,6 @@ class ControlLoop:
         self._owed: set[str] = set()
         #: The groups of which an event has run.
         self._taken: set[engine.Group] = set()
-        self._enabled_before: set[str] = set()
-        self._data_before: dict[str, int] = {}
         self._state_before = self.engine.state
 
     @property
@@ -156,8 +154,6 @@ class ControlLoop:
         self._settle()
         self._source = 0
         self._state_before = self.engine.state
-        self._enabled_before = {event for event in self._queued() if self.engine.enabled(event)}
-        self._data_before = self._data_locations()
 
     def end(self) -> None:
         """Ends a batch: settles, then runs each cancel and trigger that it made possible, or whose data it changed.
@@ -203,13 +199,17 @@ class ControlLoop:
 
     def _candidates(self) -> list[str]:
         """What is enabled now and was not before the batch, or has other data."""
-        data = self._data_locations()
+        before, now = self._state_before, self.engine.state
         return [
             event
             for event in self._queued()
             if self.engine.enabled(event)
-            and (event not in self._enabled_before or data.get(event) != self._data_before.get(event))
+            and (not self.engine.enabled(event, before) or self._data(event, before) != self._data(event, now))
         ]
+
+    def _data(self, event: str, state: State) -> Value | None:
+        """Which data the event sends in a state."""
+        return state[self._chosen_in[event].name] if event in self._chosen_in else None
 
     def _serve(self, due: Collection[str], most: int) -> int:
         """Asks each due event at its turn, cancels first, and runs at most so many; returns what is left of these.
@@ -278,6 +278,3 @@ class ControlLoop:
 
     def _chosen(self, alternative: engine.Alternative) -> Callable[[], bool] | None:
         return None if alternative.chosen is None else self.engine.condition(alternative.chosen)
-
-    def _data_locations(self) -> dict[str, int]:
-        return {event: self.engine.cell(variable) for event, variable in self._data.items()}

@@ -55,7 +55,9 @@ class Engine:
             event.name: {declared.input.name: positions[declared] for declared in event.inputs}
             for event in self.executed.events
         }
-        self._guards = {event.name: self._all(event.guard) for event in self.executed.events}
+        self._guards = {
+            event.name: self._compile(*(term.condition for term in event.guard.terms)) for event in self.executed.events
+        }
         self._effects = {event.name: self._steps(event.effect.steps) for event in self.executed.events}
         self._reasons: dict[str, list[tuple[Blocked, Function]]] = {}
         self._required: dict[str, list[sct.Requirement]] = {}
@@ -137,10 +139,10 @@ class Engine:
             if bool(evaluate(requirement.condition, self.read)) == (requirement.kind == sct.RequirementKind.disables)
         ]
 
-    def enabled(self, event: str) -> bool:
-        """Whether the event can happen in this state."""
-        cells = self._cells
-        return all(holds(cells, ()) for holds in self._guards[event])
+    def enabled(self, event: str, state: State | None = None) -> bool:
+        """Whether the event can happen in this state, or in another one of this engine."""
+        cells = self._cells if state is None else state.cells
+        return bool(self._guards[event](cells, ()))
 
     def set_inputs(self, event: str, data: Mapping[str, Value]) -> None:
         """Sets inputs of the event (`i_response`) for this and later events; integers saturate at their range.
@@ -181,9 +183,6 @@ class Engine:
         """A function that says whether a condition of the engine model holds in the present state, with the inputs."""
         function = self._compile(condition)
         return lambda: bool(function(self._cells, self._inputs))
-
-    def _all(self, guard: engine.Guard) -> list[Function]:
-        return [self._compile(term.condition) for term in guard.terms]
 
     def _steps(self, steps: Sequence[engine.Step]) -> list[_Step]:
         return [self._assignment(step) if isinstance(step, engine.Assignment) else self._switch(step) for step in steps]

@@ -90,6 +90,8 @@ class Lockstep:
         self._said: list[str] = []
         self._noted: list[_Noted] = []
         self._happened: list[str] = []
+        #: What is told of each state that was seen.
+        self._codes: dict[tuple[int, ...], str] = {}
         self._withheld: set[str] = set()
         #: What happened since whoever reads this cleared it.
         self.seen: list[TraceStep] = []
@@ -217,10 +219,15 @@ class Lockstep:
 
     def _say(self, operation: str, result: bool) -> None:
         state = self.loop.state
-        codes = (value - domain.low for value, domain in zip(state.cells, state.layout.domains, strict=True))
-        timers = self.loop.timers
-        wait = [_NEVER if timers.wait is None else timers.wait] * timers.exist
-        self._said.append(" ".join(map(str, (operation, *self._happened, "=", int(result), *wait, *codes))))
+        codes = self._codes.get(state.cells)
+        if codes is None:
+            values = zip(state.cells, state.layout.domains, strict=True)
+            codes = self._codes[state.cells] = "".join(f" {value - domain.low}" for value, domain in values)
+        said = [operation, *self._happened, "= 1" if result else "= 0"]
+        if self.loop.timers.exist:
+            wait = self.loop.timers.wait
+            said.append(str(_NEVER if wait is None else wait))
+        self._said.append(" ".join(said) + codes)
         self._happened.clear()
 
     def _difference(self, ours: str, theirs: str) -> str:
