@@ -18,7 +18,7 @@ from robosc.semantics.domains import domain
 from robosc.semantics.roles import Roles
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
     from pathlib import Path
 
     from robosc.metamodel.sct import SupervisoryControlModel
@@ -141,13 +141,13 @@ class Costs:
     idle: int | None = None
 
 
-def measured(model: SupervisoryControlModel, folder: Path) -> Costs:
-    """Builds the engine of a model with its supervisor in a folder, and counts."""
+def measured(model: SupervisoryControlModel, folder: Path, targets: Mapping[str, Sequence[str]] = TARGETS) -> Costs:
+    """Builds the engine of a model with its supervisor in a folder, and counts; sizes for these targets."""
     names = CNames(model)
     for path, text in engine.generate(model, ControlLoop()).items():
         (folder / path).write_text(text)
     source = folder / f"{names.prefix}_supervisor.c"
-    sizes = {target: size(source, names, command) for target, command in TARGETS.items() if shutil.which(command[0])}
+    sizes = {target: size(source, names, command) for target, command in targets.items() if shutil.which(command[0])}
     program = _program(model, source)
     walked = [line.split() for line in _run(program, str(BATCHES), "steps").splitlines()]
     ticks = [int(steps) for kind, steps, _ in walked if kind == "tick"]

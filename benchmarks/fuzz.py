@@ -48,8 +48,8 @@ if TYPE_CHECKING:
 
 #: Seconds of the processor that a mutant may take, and bytes of memory beside what the program takes itself.
 LIMIT, MEMORY = 10, 10**9
-#: Seconds of the processor for a valid robot: synthesis of a few in which everything meets everything takes minutes.
-VALID_LIMIT = 600
+#: The same for a valid robot: synthesis of a few in which everything meets everything takes minutes, and much memory.
+VALID_LIMIT, VALID_MEMORY = 600, 4 * 10**9
 CHUNKS = {"mutants": 100, "valid": 25, "cif": 50, "cif-mutants": 50}
 CALLED_EACH, SAVED_EACH, SPECIAL_EACH, BROKEN_OFF_EACH = 100, 5, 50, 100
 #: What is tried of a number that stands for no text of a model.
@@ -65,7 +65,9 @@ class Result:
     largest: tuple[int, int] = (0, 0)
     failures: list[tuple[int, str]] = field(default_factory=list)
 
-    def try_one(self, seed: int, trial: Callable[..., Any], *arguments: object, limit: int = LIMIT) -> Any:
+    def try_one(
+        self, seed: int, trial: Callable[..., Any], *arguments: object, limit: int = LIMIT, memory: int = MEMORY
+    ) -> Any:
         """What a trial of these arguments returns; None where it fails."""
         began = process_time()
         _forget_peak()
@@ -84,7 +86,7 @@ class Result:
             faulthandler.cancel_dump_traceback_later()
             self.slowest = max(self.slowest, (process_time() - began, seed))
             self.largest = max(self.largest, (_peak(), seed))
-            if _peak() > MEMORY:
+            if _peak() > memory:
                 self.failures.append((seed, f"takes {_peak() / 1e6:.0f} MB"))
 
     def add(self, other: Result) -> None:
@@ -137,17 +139,18 @@ def mutants(seeds: range) -> Result:
 def valid(seeds: range) -> Result:
     """Tries the random robots of these numbers, their engines compiled together."""
     result = Result()
+    limits = {"limit": VALID_LIMIT, "memory": VALID_MEMORY}
     with tempfile.TemporaryDirectory() as name:
         folder, robots = Path(name), []
         for seed in seeds:
-            found = result.try_one(seed, checked, seed, folder / "robot.rscd", limit=VALID_LIMIT)
+            found = result.try_one(seed, checked, seed, folder / "robot.rscd", **limits)
             if found is not None:
                 outcome, robot = found
                 result.statuses[f"exit status {outcome.status}"] += 1
                 robots += [robot] if robot else []
-        built = result.try_one(seeds[0], compiled, robots, folder, ["-O0"], limit=VALID_LIMIT) if robots else None
+        built = result.try_one(seeds[0], compiled, robots, folder, ["-O0"], **limits) if robots else None
         for robot in robots if built else ():
-            result.try_one(robot.seed, compared, robot, built, limit=VALID_LIMIT)
+            result.try_one(robot.seed, compared, robot, built, **limits)
         result.statuses["compiled and compared"] += len(robots) if built else 0
     return result
 

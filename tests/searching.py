@@ -28,3 +28,9 @@ def slow_but(quick: Iterable[str], values: Iterable[Any]) -> list[Any]:
         return (value.stem if isinstance(value, Path) else str(value)) in names
 
     return [value if is_quick(value) else pytest.param(value, marks=pytest.mark.slow) for value in values]
+
+
+def long_but(short: Iterable[str], names: Iterable[str]) -> list[str]:
+    """Names for the parameter of a test: the `short` ones where a run of all tests is made, all in a longer search."""
+    chosen = set(short)
+    return [name for name in names if TIMES > 1 or name in chosen]

@@ -31,7 +31,7 @@ from tests.synthesis.test_against_oracle import RANDOM_MODELS
 
 pytestmark = pytest.mark.slow
 
-SOME_MODELS = settings(RANDOM_MODELS, max_examples=examples(6))
+SOME_MODELS = settings(RANDOM_MODELS, max_examples=examples(4))
 
 
 def supervised(model: sct.SupervisoryControlModel) -> Engine:

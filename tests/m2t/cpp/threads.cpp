@@ -161,9 +161,9 @@ void a_disk_that_hangs_delays_nobody(const std::string& path) {
   const int reader = open(path.c_str(), O_RDWR);
   std::thread drain;
   {
-    EventLog log(path);
-    const std::string event(1000, 'e');
-    for (int number = 0; number < 10'000; ++number) log.write(number, "in", event.c_str());
+    LineWriter log(path);
+    const std::string line(1000, 'e');
+    for (int number = 0; number < 10'000; ++number) log.write(line);
     const std::size_t lost = log.lost();
     CHECK(lost > 1'000 && lost < 10'000);
     drain = std::thread([reader] {

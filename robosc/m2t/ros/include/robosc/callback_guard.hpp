@@ -2,6 +2,7 @@
 #ifndef ROBOSC_CALLBACK_GUARD_HPP_
 #define ROBOSC_CALLBACK_GUARD_HPP_
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -33,20 +34,21 @@ class CallbackGuard {
   std::unique_lock<std::recursive_mutex> hold() const { return std::unique_lock<std::recursive_mutex>(state_->mutex); }
 
   void close() {
+    ++state_->closed;  // Before it waits: who comes now does not take the lock, else they could keep it from us.
     const auto lock = hold();
-    ++state_->closed;
   }
 
  private:
   struct State {
     std::recursive_mutex mutex;
-    std::uint64_t closed = 0;  ///< How often.
+    std::atomic<std::uint64_t> closed{0};  ///< How often.
   };
 
   template <typename... Arguments>
   std::function<void(Arguments...)> guarded(std::function<void(Arguments...)> function) const {
     const auto lock = hold();
-    return [state = state_, closed = state_->closed, function = std::move(function)](Arguments... arguments) {
+    return [state = state_, closed = state_->closed.load(), function = std::move(function)](Arguments... arguments) {
+      if (state->closed != closed) return;
       const std::lock_guard<std::recursive_mutex> running(state->mutex);
       if (state->closed == closed) function(std::forward<Arguments>(arguments)...);
     };
