@@ -13,11 +13,12 @@ from __future__ import annotations
 
 import sys
 from dataclasses import dataclass, replace
+from functools import reduce
 from itertools import groupby
 from typing import TYPE_CHECKING
 
 from robosc.synthesis.acceleration import Acceleration
-from robosc.synthesis.relation import Step
+from robosc.synthesis.relation import Step, joined
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -32,6 +33,8 @@ if TYPE_CHECKING:
 _PAIR = 2
 #: The nodes up to which a relation of present and next values costs no more than two steps without next values.
 _SMALL = 40
+#: How many times as large as several relations together may be the one of all of them.
+_LARGER = 8
 #: The level of what depends on no variable: no states, or all.
 _TERMINAL = sys.maxsize
 
@@ -177,7 +180,36 @@ def _halves(part: Part, own: int, bound: int) -> tuple[Part, Part]:
 
 
 def _merged(steps: Sequence[Step]) -> list[Step]:
-    """The steps, those of one level that change the same elements as one: most of what is fired leads nowhere new.
+    """The steps, some of one level as one: most of what is fired leads nowhere new.
+
+    They are those that change the element at that level: after one of them the others start from another place. Of
+    those that leave it alone, many can happen beside each other, and each is fired best where the one before has led.
+    """
+    found: list[Step] = []
+    by_level: dict[tuple[int, bool], list[Step]] = {}
+    for step in _merged_alike(steps):
+        by_level.setdefault((step.level, step.present.node_level() == step.level), []).append(step)
+    for (_, at_level), some in by_level.items():
+        # Wide integers are accelerated by single events.
+        found += _as_one(some) if at_level and not some[0].encoding.layout.wide else some
+    return found
+
+
+def _as_one(steps: Sequence[Step]) -> Sequence[Step]:
+    """Steps as a single one, or as they are where its relation gets large: it keeps what only others change."""
+    most = _LARGER * sum(step.relation.node_count() for step in steps)
+    parts = steps
+    # By halves, so that what is in between is small, too.
+    while len(parts) > 1:
+        parts = [reduce(joined, parts[start : start + _PAIR]) for start in range(0, len(parts), _PAIR)]
+        parts[0].encoding.diagrams.tidy()
+        if any(part.relation.node_count() > most for part in parts):
+            return steps
+    return parts
+
+
+def _merged_alike(steps: Sequence[Step]) -> list[Step]:
+    """The steps, those of one level that change the same elements as one.
 
     A pair is not, where that makes a large relation of next values of two that have none.
     """

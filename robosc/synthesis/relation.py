@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -66,6 +66,27 @@ class Step:
         if source & target != self.relation:
             return None
         return source, and_exists(target, self.same, self.following)
+
+
+def joined(one: Step, other: Step) -> Step:
+    """A step that does what one of the two does, at the level of the first; neither touches a wide integer."""
+
+    def framed(step: Step) -> Diagram:
+        # From the bottom: each conjunction makes the diagram above it anew.
+        kept = sorted(set(changed) - set(step.changed), key=lambda element: domains[element].levels, reverse=True)
+        return all_of(map(encoding.keeps, kept)) & step.relation
+
+    encoding = one.encoding
+    all_of, domains = encoding.diagrams.all_of, encoding.layout.domains
+    changed = tuple(dict.fromkeys((*one.changed, *other.changed)))
+    return replace(
+        one,
+        relation=framed(one) | framed(other),
+        present=one.present & other.present,
+        following=one.following & other.following,
+        same=one.same & other.same,
+        changed=changed,
+    )
 
 
 class EventRelation:
