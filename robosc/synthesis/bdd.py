@@ -29,8 +29,9 @@ _LIBRARY = (1 << 30) + (192 << 20)
 _FIRST_CAPACITY = 1 << 18
 #: Up to so many levels a diagram is small, and so is the room that is made first, since making it takes its time; from
 #: so many on it is large.
-_FEW_LEVELS, _SMALL_CAPACITY, _MANY_LEVELS = 64, 1 << 15, 512
-_GROWTH = 4
+_FEW_LEVELS, _SMALL_CAPACITY, _MANY_LEVELS, _LARGE_CAPACITY = 64, 1 << 15, 512, 1 << 20
+#: What comes again from the start takes longer than room that stays empty.
+_GROWTH = 8
 #: The share of the room at which the library would collect garbage, a little less, and the one that may be in use then.
 _FULL = 0.94
 _TOO_FULL = 0.75
@@ -140,7 +141,7 @@ def with_enough_memory(run: Callable[[int], T], memory: int, levels: int | None 
     if levels is not None and levels <= _FEW_LEVELS:
         capacity = min(capacity, _SMALL_CAPACITY)
     elif levels is not None and levels >= _MANY_LEVELS:
-        capacity *= _GROWTH
+        capacity = _LARGE_CAPACITY
     capacity = min(capacity, most)
     while True:
         try:

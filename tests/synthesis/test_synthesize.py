@@ -22,7 +22,7 @@ from robosc.synthesis import bdd
 from tests.sct_models import model, needs
 from tests.synthesis.classics import philosophers
 from tests.synthesis.test_acceleration import turning
-bdd._FIRST_CAPACITY = 3000
+bdd._FIRST_CAPACITY = 1000
 counters = model(turning(2), [needs("go0", "P0.n < P1.n + 3")])
 for made in philosophers(6), counters:
     synthesis = synthesize(made)
