@@ -49,6 +49,10 @@ class Share:
 
     def packages(self) -> list[str]:
         """The names of all packages that define types."""
+        return self._packages
+
+    @cached_property
+    def _packages(self) -> list[str]:
         if not self._folder.is_dir():
             return []
         return [
