@@ -163,9 +163,9 @@ void a_disk_that_hangs_delays_nobody(const std::string& path) {
   {
     LineWriter log(path);
     const std::string line(1000, 'e');
-    for (int number = 0; number < 10'000; ++number) log.write(line);
+    for (int number = 0; number < 20'000; ++number) log.write(line);
     const std::size_t lost = log.lost();
-    CHECK(lost > 1'000 && lost < 10'000);
+    CHECK(lost > 1'000 && lost < 20'000);  // 8 MB are kept, as much is under way
     drain = std::thread([reader] {
       std::vector<char> bytes(1 << 20);
       while (read(reader, bytes.data(), bytes.size()) > 0 && bytes[0] != '!') {
