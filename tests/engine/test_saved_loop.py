@@ -10,6 +10,7 @@ import pytest
 import robosc
 from robosc.engine import ControlLoop, Settings
 from robosc.metamodel.engine import Role
+from tests.searching import slow_but
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -30,7 +31,7 @@ def played(loop: ControlLoop, seed: int) -> list[object]:
     return seen
 
 
-@pytest.mark.parametrize("name", ["line_follower", "push_ball", "sprayer"])
+@pytest.mark.parametrize("name", slow_but(["line_follower"], ["line_follower", "push_ball", "sprayer"]))
 def test_what_was_saved_goes_on_alike(name: str) -> None:
     model = robosc.to_sct(robosc.load(EXAMPLES / name / f"{name}.rscd"))
     robosc.synthesize(model)

@@ -161,6 +161,7 @@ def nested(depth: int) -> sct.SupervisoryControlModel:
     return saved
 
 
+@pytest.mark.slow
 def test_depth_is_bounded(tmp_path: Any) -> None:
     text = to_texts({"x.xmi": nested(DEEPEST - 3)})["x.xmi"]
     (tmp_path / "x.xmi").write_text(text)

@@ -247,7 +247,7 @@ def test_every_command_that_synthesizes_takes_another_synthesizer() -> None:
 @pytest.mark.parametrize(
     "make",
     [
-        corners.swap,
+        pytest.param(corners.swap, marks=pytest.mark.slow),
         pytest.param(corners.names, marks=pytest.mark.slow),
         corners.data,
         corners.cancel_and_trigger,
