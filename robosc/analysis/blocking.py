@@ -73,7 +73,9 @@ def _uncontrollable(system: SynthesizedSystem) -> Reason:
 
 def _blocked_from_the_start(system: SynthesizedSystem) -> Reason:
     encoding = system.encoding
-    path = shortest_path(encoding, system.plant_moves, encoding.initial, encoding.all_marked, system.diagrams.true)
+    marked, path = encoding.all_marked & system.uncontrolled, None
+    if marked.satisfiable():  # else all states would be looked at, layer by layer
+        path = shortest_path(encoding, system.plant_moves, encoding.initial, marked, system.diagrams.true)
     start = encoding.initial_codes if path is None else path.states[0]
     unmarked = system.never_marked(start)
     violated = system.violated(start)
