@@ -26,6 +26,7 @@ from robosc.semantics.typing import (
     BOOLEAN,
     DOUBLE,
     INTEGER,
+    STRING,
     UNKNOWN,
     EnumType,
     Types,
@@ -140,7 +141,7 @@ class _Limit(NamedTuple):
 
 
 _COMPARISON = _Limit(
-    "this comparison of doubles", LARGEST_TABLE, "compare integers, or give the integers smaller ranges"
+    "this comparison of doubles or strings", LARGEST_TABLE, "compare integers, or give the integers smaller ranges"
 )
 #: What synthesis does within seconds: the decision diagram of a product has a node for many a combination.
 _PRODUCT = _Limit(
@@ -175,7 +176,7 @@ def _computed(instances: Instances, result: ConeOfInfluence) -> Iterator[tuple[e
 
 
 def function_faults(instances: Instances, result: ConeOfInfluence) -> Iterator[Fault]:
-    """Each function that the supervisor would have to compute of doubles, or in too many cases.
+    """Each function that the supervisor would have to compute of doubles or strings, or in too many cases.
 
     What reads a double, a string or an array has a finding of its own.
     """
@@ -190,8 +191,10 @@ def function_faults(instances: Instances, result: ConeOfInfluence) -> Iterator[F
             kinds = {types(access) for access in accesses(part)}
             if not kinds <= {BOOLEAN, INTEGER} and not any(isinstance(kind, EnumType) for kind in kinds):
                 continue
-            if DOUBLE in {types(part), *map(types, part.arguments)}:
-                message = f"`{part.function}` of doubles is nothing that the supervisor computes, expected integers"
+            given = {types(part), *map(types, part.arguments)}
+            foreign = "doubles" if DOUBLE in given else "strings" if STRING in given else ""
+            if foreign:
+                message = f"`{part.function}` of {foreign} is nothing that the supervisor computes, expected integers"
                 yield Fault(part, reason, message, "compute it of `value` in an enum's rule, and compare the enum")
             elif cases[part] > _LARGEST_CHOICE >= max(cases[argument] for argument in part.arguments):
                 message = f"this has more than {_LARGEST_CHOICE} cases when `abs`, `min` and `max` are written out"
@@ -233,7 +236,7 @@ def _in_expression(instances: Instances, expression: ex.Expression | None, where
         part = pending.pop()
         if part is not None and isinstance(where.inputs.get(part), Computed):
             continue
-        if isinstance(part, COMPARISONS) and DOUBLE in {types(part.left), types(part.right)}:
+        if isinstance(part, COMPARISONS) and {DOUBLE, STRING} & {types(part.left), types(part.right)}:
             yield from _too_many(instances, part, _COMPARISON, where)
         elif isinstance(part, ex.Multiplication) and reads[part.left] and reads[part.right]:
             yield from _too_many(instances, part, _PRODUCT, where)

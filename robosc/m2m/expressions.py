@@ -13,7 +13,7 @@ from robosc.semantics.cone_of_influence import accesses, read_data
 from robosc.semantics.evaluation import Value, evaluate, literal
 from robosc.semantics.naming import Names
 from robosc.semantics.operators import COMPARISONS, FUNCTIONS, Rule, operator_of
-from robosc.semantics.typing import DOUBLE, ArrayType, ObjectType, Types, declared_type
+from robosc.semantics.typing import DOUBLE, STRING, ArrayType, ObjectType, Types, declared_type
 from robosc.semantics.walks import copied, fold, operands, with_operands
 
 if TYPE_CHECKING:
@@ -105,12 +105,8 @@ class SctExpressions(_Expressions):
         def translated(original: ex.Expression, operands: list[ex.Expression]) -> ex.Expression:
             if original in inputs:
                 return sct.InputReference(input=inputs[original])
-            match original:
-                case robosc.Access():
-                    return self._reference(original, within)
-                case ex.Equation() | ex.Inequation() if isinstance(original.left, ex.StringLiteral):
-                    # The supervisor needs no string, so that both sides are constants.
-                    return ex.BooleanLiteral(value=bool(evaluate(original, lambda reference: reference)))
+            if isinstance(original, robosc.Access):
+                return self._reference(original, within)
             if isinstance(original, ex.Conditional):
                 return with_operands(original, operands)
             row = operator_of(original)
@@ -120,7 +116,10 @@ class SctExpressions(_Expressions):
                 constant = next(accesses(original), None) is None
                 return literal(evaluate(original, _no_name)) if constant else _by_cases(original.function, operands)
             made = with_operands(original, operands)
-            return _table(made, original) if isinstance(made, COMPARISONS) and self._some_double(operands) else made
+            # An sct model has no doubles and no strings.
+            kinds = [self._types(operand) for operand in operands]
+            is_table = isinstance(made, COMPARISONS) and (DOUBLE in kinds or STRING in kinds)
+            return _table(made, original) if is_table else made
 
         return fold(translated, written, lambda part: () if part in inputs else operands(part))
 
@@ -253,7 +252,7 @@ def _table(comparison: ex.Expression, original: ex.Expression) -> ex.Expression:
             *place(original),
             severity=Severity.ERROR,
             rule="integer-range",
-            message=f"this comparison of doubles depends on {error}, too many to tabulate",
+            message=f"this comparison of doubles or strings depends on {error}, too many to tabulate",
             hint="compare integers, or give the integers smaller ranges",
         )
         raise ModelError([finding]) from error

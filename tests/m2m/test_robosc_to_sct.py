@@ -312,15 +312,24 @@ def test_of_two_assignments_to_one_variable_the_last_counts(to_sct):
     assert show(update.value) == "2"
 
 
-def test_a_comparison_of_strings_is_a_constant(to_sct):
+def test_a_comparison_of_strings_is_a_constant_or_a_choice(to_sct):
     model, _ = to_sct(
         """robot R {
           component C {
             incoming message m with type: none
-            behaviour { initial marked state s { } }
+            behaviour { variable x: boolean variable y: boolean initial marked state s { } }
           }
           requirement m needs C.s and "a" = "a"
           requirement "a" != "a" disables m
+          requirement m needs (if false then "b" else "a") = "a"
+          requirement m needs (if C.x then "a" else "b") = "a"
+          requirement m needs (if C.x then "a" else "b") != (if C.y then "a" else "b")
         }"""
     )
-    assert [show(requirement.condition) for requirement in model.requirements] == ["component_C.s and true", "false"]
+    assert [show(requirement.condition) for requirement in model.requirements] == [
+        "component_C.s and true",
+        "false",
+        "!false",
+        "component_C.x",
+        "(!component_C.x and component_C.y) or (component_C.x and !component_C.y)",
+    ]
