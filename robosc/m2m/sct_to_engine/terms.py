@@ -252,7 +252,9 @@ class Terms:
         for cell, group in groups.items():
             # No `len`: that of a range ends at 2^63.
             size = cell.maximum - cell.minimum + 1
-            if len(group) > 1 and size <= _TRIED:
+            # Of one alone only what is more than a comparison with a value: that was decided when it was made.
+            is_open = len(group) > 1 or any(operand.operands for operand in group[0].operands)
+            if is_open and size <= _TRIED:
                 everywhere = (1 << size) - 1
                 table = everywhere if kind is engine.And else 0
                 for part in group:
