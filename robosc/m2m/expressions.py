@@ -78,8 +78,8 @@ class _Expressions:
             return sct.VariableReference(variable=self._trace.variables[owned])
         return rosgraph.NodeVariableReference(variable=self._variables[owned])
 
-    def _some_double(self, expressions: Sequence[ex.Expression]) -> bool:
-        return DOUBLE in [self._types(expression) for expression in expressions]
+    def _some(self, expressions: Sequence[ex.Expression], *kinds: object) -> bool:
+        return any(self._types(expression) in kinds for expression in expressions)
 
 
 class SctExpressions(_Expressions):
@@ -116,9 +116,7 @@ class SctExpressions(_Expressions):
                 constant = next(accesses(original), None) is None
                 return literal(evaluate(original, _no_name)) if constant else _by_cases(original.function, operands)
             made = with_operands(original, operands)
-            # An sct model has no doubles and no strings.
-            kinds = [self._types(operand) for operand in operands]
-            is_table = isinstance(made, COMPARISONS) and (DOUBLE in kinds or STRING in kinds)
+            is_table = isinstance(made, COMPARISONS) and self._some(operands, DOUBLE, STRING)
             return _table(made, original) if is_table else made
 
         return fold(translated, written, lambda part: () if part in inputs else operands(part))
@@ -207,7 +205,7 @@ class NodeExpressions(_Expressions):
         if row is None:
             return type(original)(value=original.value)  # type: ignore[attr-defined,call-arg]
         mixed = {Rule.ORDERING, Rule.EQUALITY, Rule.ARITHMETIC}
-        if row.rule is Rule.DOUBLE or (row.rule in mixed and self._some_double(operands)):
+        if row.rule is Rule.DOUBLE or (row.rule in mixed and self._some(operands, DOUBLE)):
             operands = [self.as_double(operand) for operand in operands]
         if row is FUNCTIONS["double"]:
             return operands[0]

@@ -1,4 +1,4 @@
-"""Comparisons of doubles, which no sct model has, as conditions on the ranged integers that they are computed from."""
+"""Comparisons of doubles and strings, which no sct model has, as conditions on what they are computed from."""
 
 from __future__ import annotations
 

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <fstream>
 #include <functional>
+#include <future>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -100,6 +101,16 @@ void what_is_made_after_closing_runs() {
   late();
   late();
   CHECK(calls == 10);
+}
+
+void who_comes_after_closing_does_not_wait() {
+  CallbackGuard guard;
+  const auto late = guard([] {});
+  auto running = guard.hold();  // as of a callback that closes and goes on
+  guard.close();
+  const auto done = std::async(std::launch::async, late);
+  CHECK(done.wait_for(std::chrono::seconds(60)) == std::future_status::ready);
+  running.unlock();
 }
 
 struct Group {
@@ -231,6 +242,7 @@ int main(int, char** arguments) {
   nothing_is_called_back_that_is_gone();
   closing_waits_for_the_callback_that_runs();
   what_is_made_after_closing_runs();
+  who_comes_after_closing_does_not_wait();
   a_group_is_taken_when_nothing_of_it_runs();
   a_log_is_whole_and_in_order(folder + "/whole");
   a_log_tells_of_an_event_at_once(folder + "/at_once");
