@@ -166,7 +166,7 @@ class Terms:
         if condition.constant is not None or then is otherwise:
             return otherwise if condition.constant == 0 else then
         operands = (condition, then, otherwise)
-        return self._make(ex.Conditional, operands, None, then.sort, then.values.union(otherwise.values))
+        return self._decided(self._make(ex.Conditional, operands, None, then.sort, then.values.union(otherwise.values)))
 
     def _comparison(self, kind: type[ex.Expression], left: Term, right: Term) -> Term:
         if left is right:
@@ -196,7 +196,21 @@ class Terms:
                 and BOOLEAN.holds(side.values)
             ):
                 return self._comparison(ex.Equation, other, self.constant(other.sort, 1 - side.values.low))
-        return self._make(kind, (left, right), None, None, _interval(kind, left, right))
+        return self._decided(self._make(kind, (left, right), None, None, _interval(kind, left, right)))
+
+    def _decided(self, condition: Term) -> Term:
+        """A condition, or the truth value that it has whatever the value of the only variable that it depends on.
+
+        A comparison of it with a value is left out: its interval decides it.
+        """
+        if condition.sort is None and len(condition.cells) == 1:
+            [cell] = condition.cells
+            is_open = condition.operator is ex.Conditional or any(operand.operands for operand in condition.operands)
+            if is_open and _size(cell) <= _TRIED:
+                table = self._table(condition, cell)
+                if table in (0, (1 << _size(cell)) - 1):
+                    return self.true if table else self.false
+        return condition
 
     def negation(self, condition: Term) -> Term:
         """The opposite of a condition that is no junction and no choice: of a comparison the complementary one."""
@@ -250,12 +264,9 @@ class Terms:
             if len(part.cells) == 1:
                 groups.setdefault(next(iter(part.cells)), []).append(part)
         for cell, group in groups.items():
-            # No `len`: that of a range ends at 2^63.
-            size = cell.maximum - cell.minimum + 1
-            # Of one alone only what is more than a comparison with a value: that was decided when it was made.
-            is_open = len(group) > 1 or any(operand.operands for operand in group[0].operands)
-            if is_open and size <= _TRIED:
-                everywhere = (1 << size) - 1
+            # One alone was decided when it was made.
+            if len(group) > 1 and _size(cell) <= _TRIED:
+                everywhere = (1 << _size(cell)) - 1
                 table = everywhere if kind is engine.And else 0
                 for part in group:
                     table = table & self._table(part, cell) if kind is engine.And else table | self._table(part, cell)
@@ -300,6 +311,11 @@ class Terms:
         if key not in self._made:
             self._made[key] = Term(kind, operands, leaf, sort, values)
         return self._made[key]
+
+
+def _size(cell: engine.Declaration) -> int:
+    """How many values a variable may have; no `len`: that of a range ends at 2^63."""
+    return int(cell.maximum - cell.minimum + 1)
 
 
 def _interval(kind: type[ex.Expression], *operands: Term) -> Interval:

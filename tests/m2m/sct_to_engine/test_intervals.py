@@ -103,7 +103,7 @@ def test_a_choice_of_two_literals_is_never_a_third() -> None:
     terms = Terms()
     owner = ex.Enumeration(name="e", literals=[ex.EnumerationLiteral(name=name) for name in ("e0", "e1", "e2")])
     first, second, third = (terms.constant(owner, position) for position in range(3))
-    condition = terms.reference(engine.StateVariable(name="b", type=ex.BooleanType()))
+    condition = terms.reference(engine.StateVariable(name="b", type=ex.BooleanType(), maximum=1))
     choice = terms.operation(ex.Conditional, condition, first, second)
     assert terms.operation(ex.Inequation, choice, third) is terms.true
     assert terms.operation(ex.Inequation, choice, second).constant is None

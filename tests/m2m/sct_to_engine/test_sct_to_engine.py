@@ -402,6 +402,8 @@ def test_the_transformation_is_linear() -> None:
         ("(if a then b else times >= 3) and value", "times != 0 and (if value then a else b)"),
         ("(times > 0 => (if b then a else !value)) and value", "a = b and value"),
         ("a or !(if value then false else value)", "value"),
+        ("value and !value and a", "if value then value else true"),
+        ("!(if value then value else true)", "if value then value else true"),
     ],
 )
 def test_transitions_that_are_tried_in_order_leave_nothing_open(guards: tuple[str, str]) -> None:
