@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from robosc.metamodel import engine, sct
+from robosc.metamodel import expression as ex
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -64,14 +65,17 @@ def _possible(plant: sct.Plant, edges: Edges, lower: Lowering) -> Term:
 
 
 def _one_of(edges: Sequence[sct.Edge], lower: Lowering) -> Term:
-    """That a guard of these holds: of each what those before it leave open, so that none remains where all is covered.
+    """That a guard of these holds, of each what those before it leave open.
 
     Raises ValueError where it depends on the data of the event: that comes when the event is happening already.
     """
     terms = lower.terms
+    guards = [lower(edge.guard) for edge in edges]
+    if _all_covered(edges, lower):
+        return terms.true
     alternatives: dict[Term, None] = {}
     denied: set[Term] = set()
-    for guard in (lower(edge.guard) for edge in edges):
+    for guard in guards:
         parts = guard.operands if guard.operator is engine.And else (guard,)
         left = terms.junction(engine.And, [part for part in parts if part not in denied])
         found = left.operands if left.operator is engine.Or else (left,)
@@ -83,3 +87,29 @@ def _one_of(edges: Sequence[sct.Edge], lower: Lowering) -> Term:
             f"for some data of '{edges[0].event.name}' there is no edge in '{edges[0].target.eContainer().name}'"
         )
     return whole
+
+
+def _all_covered(edges: Sequence[sct.Edge], lower: Lowering) -> bool:
+    """Whether the last of these takes all that those before it leave, as `robosc_to_sct` makes them.
+
+    Each has the negations of the conditions before it, then its own condition; the last has only the negations. That
+    needs nothing to be known of the conditions, which may be on several variables and data.
+    """
+    denied = {lower.terms.true}
+    for edge in edges:
+        if denied.issuperset(map(lower, _conjuncts(edge.guard))):
+            return True
+        own = edge.guard
+        if isinstance(own, ex.Conjunction) and denied.issuperset(map(lower, _conjuncts(own.left))):
+            own = own.right
+        denied.add(lower(own, positive=False))
+    return False
+
+
+def _conjuncts(condition: ex.Expression | None) -> list[ex.Expression | None]:
+    """The parts of a conjunction of conjunctions, the last first; those on the right of one are whole."""
+    found = []
+    while isinstance(condition, ex.Conjunction):
+        found.append(condition.right)
+        condition = condition.left
+    return [*found, condition]

@@ -33,14 +33,14 @@ class Lowering:
         self._inputs = inputs
         self._done: dict[_Wanted, Term] = {}
 
-    def __call__(self, expression: ex.Expression | None) -> Term:
-        """The term of an expression; of None, which means that there is no condition, `true`.
+    def __call__(self, expression: ex.Expression | None, *, positive: bool = True) -> Term:
+        """The term of an expression, or of its negation; of None, which means that there is no condition, `true`.
 
         Raises ValueError for what no sct model holds: doubles, strings, division.
         """
         if expression is None:
             return self.terms.true
-        pending: list[tuple[_Wanted, list[_Wanted] | None]] = [((expression, True), None)]
+        pending: list[tuple[_Wanted, list[_Wanted] | None]] = [((expression, positive), None)]
         while pending:
             wanted, parts = pending.pop()
             if parts is not None:
@@ -49,7 +49,7 @@ class Lowering:
                 parts = _parts(wanted)
                 pending.append((wanted, parts))
                 pending += [(part, None) for part in reversed(parts)]
-        return self._done[expression, True]
+        return self._done[expression, positive]
 
     def within(
         self,

@@ -2,6 +2,7 @@
 
 import sys
 import threading
+from collections.abc import Sequence
 
 import pytest
 from hypothesis import HealthCheck, given, settings
@@ -404,24 +405,51 @@ def test_the_transformation_is_linear() -> None:
         ("a or !(if value then false else value)", "value"),
         ("value and !value and a", "if value then value else true"),
         ("!(if value then value else true)", "if value then value else true"),
+        ("a", "!a and (if b then value else !value)"),
+        ("a", "!a and (a or value = b)"),
+        ("a and value = b", "a or value = b"),
+        ("a and value = b", "a and value != b"),
+        ("(a or value = b) and value", "(a or value != b) and value"),
+        ("times < 3 and (a or value)", "times < 2 and (b or value) or times < 1 and value = a"),
     ],
 )
-def test_transitions_that_are_tried_in_order_leave_nothing_open(guards: tuple[str, str]) -> None:
+def test_transitions_that_are_tried_in_order_leave_nothing_open(guards: Sequence[str]) -> None:
     """Of an answer whose conditions read its data, and the bounds of a variable: it is never blocked."""
-    first, second = guards
     for most in (3, 3000):
-        text = f"""robot R {{ component G {{
-            outgoing message gripped with type: boolean
-            behaviour {{
-                variable times: integer(0..{most}) variable a: boolean variable b: boolean
-                initial marked state on {{
-                    on response from gripped if {first} do times := 0
-                    on response from gripped if {second} do times := times + 1
-                    on response from gripped do a := b, b := value
-                }}
+        assert always_possible([guard.replace("= 3", f"= {most}") for guard in guards], most)
+
+
+_CONDITIONS = st.recursive(
+    st.sampled_from(["a", "b", "value", "value = a", "times = 0", "times < 2", "times > 1", "times >= 3", "false"]),
+    lambda inner: st.one_of(
+        inner.map("!({})".format),
+        st.builds("({}) {} ({})".format, inner, st.sampled_from(["and", "or", "=>", "="]), inner),
+        st.builds("(if {} then {} else {})".format, inner, inner, inner),
+    ),
+    max_leaves=5,
+)
+
+
+@given(guards=st.lists(_CONDITIONS, min_size=1, max_size=4))
+@settings(max_examples=examples(40), suppress_health_check=[HealthCheck.too_slow])
+def test_an_answer_is_never_blocked_by_its_data(guards: list[str]) -> None:
+    assert always_possible(guards, 3)
+
+
+def always_possible(guards: Sequence[str], most: int) -> bool:
+    """Whether an answer to which transitions with these guards and one without react can come at any time."""
+    transitions = "\n".join(f"on response from gripped if {guard} do times := times + 1" for guard in guards)
+    text = f"""robot R {{ component G {{
+        outgoing message gripped with type: boolean
+        behaviour {{
+            variable times: integer(0..{most}) variable a: boolean variable b: boolean
+            initial marked state on {{
+                {transitions}
+                on response from gripped do a := b, b := value
             }}
-        }} }}"""
-        model = robosc.to_sct(robosc.load(text=text.replace("= 3", f"= {most}")))
-        robosc.synthesize(model)
-        (event,) = [event for event in transform(model).events if event.event.name == "u_response"]
-        assert list(event.guard.terms) == []
+        }}
+    }} }}"""
+    model = robosc.to_sct(robosc.load(text=text))
+    robosc.synthesize(model)
+    (event,) = [event for event in transform(model).events if event.event.name == "u_response"]
+    return not event.guard.terms
