@@ -36,6 +36,9 @@ def interruptions(run: Callable[[int], int]) -> Iterator[tuple[int, int]]:
 def _run(action: Callable[[], object], number: int, sent: signal.Signals, *, again: bool) -> NoReturn:
     status = 1
     try:
+        # Also where the tests were started with signals ignored, as shells do behind `&` and `nohup` does.
+        for heeded in (signal.SIGHUP, signal.SIGQUIT, signal.SIGTERM):
+            signal.signal(heeded, signal.SIG_DFL)
         signal.signal(signal.SIGINT, signal.default_int_handler)
         _count(number, sent, again=again)
         action()
