@@ -3,17 +3,18 @@
     python benchmarks/tours.py [EXAMPLE...]
 
 The bound is the least number of steps of a flow through the places of the control loop that shows all that the tours
-show, in as many runs: no runs have fewer, since they are such a flow, in whole steps. Where a tour is planned without
-a look at all places, parts of steps are allowed, too: a minute or two for the sprayer. There is none for the warehouse
-robot, which has too many places. Where a tour does not show all, a line below the table says how much of what is
-missing is seen on any step. Needs scipy (`pip install 'robosc[benchmarks]'`).
+show, in as many runs: no runs have fewer, since they are such a flow, in whole steps. A time that nobody waits for may
+be up at any place where it runs, as often as there are steps for it to run in or waits for another one. Where a tour is
+planned without a look at all places, parts of steps are allowed, too: minutes for the sprayer. There is none for the
+warehouse robot, which has too many places. Where a tour does not show all, a line below the table says how much of what
+is missing is seen on any step. Needs scipy (`pip install 'robosc[benchmarks]'`).
 """
 
 from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from scipy.optimize import LinearConstraint, milp
@@ -21,17 +22,18 @@ from scipy.sparse import lil_matrix
 
 import robosc
 from robosc import configuration as config
+from robosc.node_tests.plan import WAIT
 from robosc.node_tests.tour import Tour
 from robosc.ros_types import RosTypes
 
 if TYPE_CHECKING:
-    from robosc.node_tests.plan import Plan
+    from robosc.node_tests.plan import Place, Plan, Step
 
 EXAMPLES = Path(__file__).parent.parent / "examples"
 #: Seconds for each bound: of one in whole steps what is proved until then counts.
 PATIENCE = 600
 #: There is no bound for more places.
-MOST = 10_000
+MOST = 20_000
 
 
 def bound(plan: Plan, runs: int, wanted: list[int]) -> int | None:
@@ -41,31 +43,57 @@ def bound(plan: Plan, runs: int, wanted: list[int]) -> int | None:
     """
     if look_at_all(plan) is None:
         return None
-    arcs = [(place, step) for place in plan.places for step in plan.steps(place)]
+    arcs = [arc for place in plan.places for arc in all_arcs(plan, place)]
     number = {place: row for row, place in enumerate(plan.places)}
     # A flow of each arc, then what ends in each place. The first place is where runs begin.
-    balance = lil_matrix((len(number), len(arcs) + len(number)))
-    for column, (place, step) in enumerate(arcs):
-        balance[number[place], column] -= 1
-        balance[number[step.end], column] += 1
+    columns = len(arcs) + len(number)
+    balance, starts = lil_matrix((len(number), columns)), np.zeros(len(number))
+    for column, arc in enumerate(arcs):
+        balance[number[arc.start], column] -= 1
+        balance[number[arc.step.end], column] += 1
     for row in range(len(number)):
         balance[row, len(arcs) + row] = -1
-    starts = np.zeros(len(number))
     starts[0] = -runs
-    shown = lil_matrix((len(wanted), len(arcs) + len(number)))
-    for column, (_, step) in enumerate(arcs):
-        for row, bit in enumerate(wanted):
-            if step.shows & bit:
-                shown[row, column] = 1
-    cost = np.concatenate([np.ones(len(arcs)), np.zeros(len(number))])
+    shown, timers = lil_matrix((len(wanted), columns)), plan.periods
+    meanwhile = lil_matrix((len(timers), columns))
+    for column, arc in enumerate(arcs):
+        shown[:, [column]] = np.array([[bool(arc.step.shows & bit)] for bit in wanted])
+        for row, periods in enumerate(timers):
+            meanwhile[row, column] = arc.lets_run(row, periods)
+    cost = np.concatenate([[arc.up is None for arc in arcs], np.zeros(len(number))])
     constraints = [
         LinearConstraint(balance.tocsr(), starts, starts),
         LinearConstraint(shown.tocsr(), np.ones(len(wanted)), np.inf),
+        *([LinearConstraint(meanwhile.tocsr(), np.zeros(len(timers)), np.inf)] if timers else []),
     ]
-    integrality = np.full_like(cost, plan.is_whole)
+    integrality = np.full_like(cost, plan.is_whole, dtype=int)
     found = milp(cost, constraints=constraints, integrality=integrality, options={"time_limit": PATIENCE})
     least = found.mip_dual_bound if plan.is_whole else found.fun if found.success else None
     return None if least is None else int(np.ceil(least - 1e-6))
+
+
+class Arc(NamedTuple):
+    """What a run can do at a place: a step, or on the way a time is `up` that nobody waits for, which is none."""
+
+    start: Place
+    step: Step
+    up: int | None
+
+    def lets_run(self, timer: int, periods: int) -> int:
+        """For how many of the periods that a time takes it may have run meanwhile; below 0: it is up by itself here."""
+        if self.up is not None:
+            return -periods if self.up == timer else 0
+        return periods if self.step.stimulus == WAIT else 1
+
+
+def all_arcs(plan: Plan, place: Place) -> list[Arc]:
+    """The steps from a place, with the wait for any time that runs instead of that for the first; and what is none."""
+    steps = [step for step in plan.steps(place) if step.stimulus != WAIT or place.pauses]
+    up = plan.expiries(place)
+    return [
+        *(Arc(place, step, None) for step in [*steps, *up.values()]),
+        *(Arc(place, step, timer) for timer, step in up.items()),
+    ]
 
 
 def look_at_all(plan: Plan) -> int | None:
@@ -76,11 +104,11 @@ def look_at_all(plan: Plan) -> int | None:
     pending = plan.places[:1]
     seen, shown = set(pending), 0
     while pending and len(seen) <= MOST:
-        for step in plan.steps(pending.pop()):
-            shown |= step.shows
-            if step.end not in seen:
-                seen.add(step.end)
-                pending.append(step.end)
+        for arc in all_arcs(plan, pending.pop()):
+            shown |= arc.step.shows
+            if arc.step.end not in seen:
+                seen.add(arc.step.end)
+                pending.append(arc.step.end)
     return None if pending else shown
 
 
@@ -97,13 +125,14 @@ def main() -> None:
         tour = Tour(robosc.to_rosgraph(robot), settings, RosTypes().distributions[0])
         coverage = tour.coverage
         wanted = tour.plan.possible - tour.at_start - set(coverage.missed)
-        least = bound(tour.plan, len(tour.traces), [tour.plan.bits[goal] for goal in wanted])
+        plan = tour.plan.without_time()
+        least = bound(plan, len(tour.traces), [tour.plan.bits[goal] for goal in wanted])
         counts = [coverage.transitions, coverage.guards(value=True), coverage.guards(value=False)]
         cells = [f"{seen} of {possible}" for seen, possible in counts]
         told = "not known" if least is None else f"{least} (+{coverage.steps / least - 1:.0%})"
         print(f"| `{name}` | {len(tour.traces)} | {coverage.steps} | {told} | {' | '.join(cells)} |", flush=True)
         if coverage.missed:
-            shown = look_at_all(tour.plan) or 0
+            shown = look_at_all(plan) or 0
             found = sum(bool(tour.plan.bits[goal] & shown) for goal in coverage.missed)
             told_below.append(
                 f"{name}: {len(coverage.missed)} not seen, {found} of them on any step between all places"

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import random
-from collections import Counter, defaultdict
-from dataclasses import dataclass, field
+from collections import Counter
+from dataclasses import dataclass, field, replace
 from functools import cached_property, reduce
 from operator import or_
 from typing import TYPE_CHECKING, NamedTuple
 
 from robosc.engine import ControlLoop, Hooks
 from robosc.metamodel import sct
+from robosc.node_tests.beam_search import beam_search
 from robosc.node_tests.coverage import Goal, Watcher, goals
 from robosc.node_tests.guide import Guide, Way
 from robosc.semantics.roles import event_name
@@ -26,11 +27,13 @@ if TYPE_CHECKING:
     from robosc.synthesis.encoding import Encoding
 
 #: Where there are no more steps all are looked at.
-_ALL = 30_000
-#: So often a tour is planned, each time with other choices between what is as near; the shortest is taken.
-_PLANS = 60
-#: So many ways of the same length a beam search goes on with.
-_WAYS = 5_000
+_ALL = 12_000
+#: So often a tour is planned, each time with other choices between what is as near: with all places known, and without.
+_PLANS, _GUIDED = 10, 5
+#: So many ways of the same length a beam search goes on with, likewise.
+_WAYS, _FEW_WAYS = 300, 30
+#: Where this many steps have been looked at no shorter tour is looked for any more.
+_MOST = 250_000
 #: So long may the way be that takes the place of a part of a tour.
 _DETOUR = 4
 #: So many ways that lead to where something can be seen may not show it.
@@ -58,6 +61,8 @@ class Place(NamedTuple):
     cells: tuple[int, ...]
     running: frozenset[int]
     pauses: bool
+    #: How many periods each time still runs, in the order of the timers; nothing where a step takes no time.
+    left: tuple[int, ...] = ()
 
 
 class Step(NamedTuple):
@@ -90,6 +95,9 @@ class Plan:
     stimuli: Sequence[Stimulus]
     #: No time that is longer, in milliseconds, is waited for.
     longest: int
+    #: How long a period is, and the pause after a failure, in milliseconds.
+    period: int
+    pause: int
     _known: dict[Place, _Known] = field(default_factory=dict)
     _found: dict[Place, dict[Place, list[_Way]]] = field(default_factory=dict)
 
@@ -104,7 +112,7 @@ class Plan:
         resets = [event for plant in self.model.plants for event in plant.events if event.kind == sct.EventKind.reset]
         self._resets = {event_name(event) for event in resets}
         self._timers = {timer.event.name: number for number, timer in enumerate(self._loop.engine.executed.timers)}
-        self._pauses = False
+        self._pauses = self._time_passes = False
         self._shown = self._anywhere = 0
 
     def _before(self, event: str) -> bool:
@@ -118,7 +126,9 @@ class Plan:
 
     def place(self, saved: SavedLoop, *, pauses: bool) -> Place:
         """The place of a loop; it is looked at from there on."""
-        found = Place(saved.cells, frozenset(saved.timers[1]), pauses)
+        now, up = saved.timers
+        left = tuple(-((now - up[number]) // self.period) for number in sorted(up)) if self._time_passes else ()
+        found = Place(saved.cells, frozenset(up), pauses, left)
         self._known.setdefault(found, _Known(saved))
         return found
 
@@ -155,6 +165,23 @@ class Plan:
             known.steps = [step for step in found if step is not None and (step.end != place or step.shows)]
         return known.steps
 
+    @property
+    def periods(self) -> list[int]:
+        """How many whole periods each time takes."""
+        return [timer.milliseconds // self.period for timer in self._loop.engine.executed.timers]
+
+    def expiries(self, place: Place) -> dict[int, Step]:
+        """By the time that is up, among those that run, the step that follows, whichever would be up first."""
+        loop, found = self._loop, {}
+        for number in sorted(place.running):
+            loop.restore(self._known[place].saved)
+            now, up = loop.timers.saved
+            loop.timers.restore((now, {**up, number: now}))
+            self._pauses, self._shown = place.pauses, 0
+            loop.expire()
+            found[number] = self._ended(WAIT)
+        return found
+
     def _step(self, place: Place, saved: SavedLoop, stimulus: Stimulus) -> Step | None:
         loop = self._loop
         loop.restore(saved)
@@ -168,23 +195,47 @@ class Plan:
             self._pauses = stimulus.fails
             loop.end()
         else:
-            wait = None if place.pauses else loop.timers.wait
-            if wait is not None and wait <= self.longest:
+            wait = self.pause if place.pauses else loop.timers.wait
+            if wait is None or wait > self.longest:
+                return None
+            if self._time_passes:
+                for _ in range(-(-wait // self.period) - 1):
+                    self._pass_period()
+            elif not place.pauses:
                 loop.timers.at(loop.timers.now + wait)
                 loop.expire()
-            elif not place.pauses:
-                return None
             self._pauses = False
-        shown = self._rest()
+        return self._ended(stimulus)
+
+    def _ended(self, stimulus: Stimulus) -> Step:
+        self._shown |= self._rest()
+        self._pass_period()
+        return Step(stimulus, self.place(self._loop.saved, pauses=self._pauses), self._shown)
+
+    def _pass_period(self) -> None:
+        """Lets a tick come; where time counts, after a period, with the times that are up on the way."""
+        loop = self._loop
+        if self._time_passes:
+            end = loop.timers.now + self.period
+            while (wait := loop.timers.wait) is not None and loop.timers.now + wait <= end:
+                loop.timers.at(loop.timers.now + wait)
+                loop.expire()
+                self._shown |= self._rest()
+            loop.timers.at(end)
         loop.tick()
-        shown |= self._rest() | self._shown
-        return Step(stimulus, self.place(loop.saved, pauses=self._pauses), shown)
+        self._shown |= self._rest()
 
     def _rest(self) -> int:
         cells, _ = self._loop.engine.saved
         if cells not in self._at_rest:
             self._at_rest[cells] = self._mask(self._watcher.at_rest())
         return self._at_rest[cells]
+
+    def without_time(self) -> Plan:
+        """A plan from the same place on for which no time passes but on the wait for one that is up."""
+        other, start = replace(self, _known={}, _found={}), self.places[0]
+        other.place(self._known[start].saved, pauses=start.pauses)
+        return other
 
     # Tours
 
@@ -194,40 +245,29 @@ class Plan:
         Where there are too many places to look at all of them, decision diagrams say where to go.
         """
         wanted = self._mask(self.possible - shown)
-        if not self.is_whole:
-            return encoded(self.model, lambda encoding: self._guided(start, wanted, encoding))
-        tours = [self._planned(start, wanted, random.Random(seed)) for seed in range(_PLANS)]  # noqa: S311
+        if not self.is_whole and not self._time_passes:
+            known, self._known, self._time_passes = self._known, {}, True
+            start = self.place(known[start].saved, pauses=start.pauses)
+        if self.is_whole:
+            tours = [self._planned(start, wanted, random.Random(seed)) for seed in range(_PLANS)]  # noqa: S311
+        else:
+            tours = encoded(self.model, lambda encoding: self._all_guided(start, wanted, encoding))
         best = max(tours, key=lambda tour: ((_together(tour) & wanted).bit_count(), -len(tour)))
-        return self._beam_search(start, _together(best) & wanted, len(best) - 1) or best
+        wanted &= _together(best)
+        width, detour = (_WAYS, _DETOUR) if self.is_whole else (_FEW_WAYS, 1)
+        for example in tours:
+            followed = example
+            while followed and not wanted & ~_together(followed):
+                shorter = beam_search(
+                    self._steps_until_enough, start, followed, wanted, longest=len(best) - 1, width=width
+                )
+                if shorter is None:
+                    break
+                best = followed = self._shortened(start, shorter, wanted, detour)
+        return best
 
-    def _beam_search(self, start: Place, wanted: int, longest: int) -> list[Step] | None:
-        """A way of at most so many steps that shows all that is wanted; None where none is found.
-
-        Of all ways of a length it goes on with those that show the most. Of two to the same place that is only the one
-        that shows more, where the other shows nothing else.
-        """
-        # The last step of the way to each place that shows this much, and where it came from.
-        beams: list[dict[tuple[Place, int], tuple[tuple[Place, int], Step]]] = []
-        kept = [(start, 0)]
-        for _ in range(longest):
-            beam: dict[tuple[Place, int], tuple[tuple[Place, int], Step]] = {}
-            for here, shown in kept:
-                for step in self.steps(here):
-                    beam.setdefault((step.end, shown | step.shows & wanted), ((here, shown), step))
-            beams.append(beam)
-            end = next((end for end in beam if end[1] == wanted), None)
-            if end is not None:
-                way = []
-                for earlier in reversed(beams):
-                    end, step = earlier[end]
-                    way.append(step)
-                return way[::-1]
-            kept, ways = [], defaultdict[Place, list[int]](list)
-            for place, shown in sorted(beam, key=lambda end: -end[1].bit_count()):
-                if len(kept) < _WAYS and all(shown & ~other for other in ways[place]):
-                    ways[place].append(shown)
-                    kept.append((place, shown))
-        return None
+    def _steps_until_enough(self, place: Place) -> list[Step] | None:
+        return None if len(self._known) * len(self.stimuli) > _MOST else self.steps(place)
 
     def _planned(self, start: Place, wanted: int, choice: random.Random) -> list[Step]:
         tour: list[Step] = []
@@ -258,16 +298,20 @@ class Plan:
             layer = onwards
         return []
 
-    def _guided(self, start: Place, wanted: int, encoding: Encoding) -> list[Step]:
-        """Takes each time the step that shows the most, else the way that the supervised system has to what is left."""
+    def _all_guided(self, start: Place, wanted: int, encoding: Encoding) -> list[list[Step]]:
         guide = self._guide(encoding)
+        return [self._guided(start, wanted, guide, random.Random(seed)) for seed in range(_GUIDED)]  # noqa: S311
+
+    def _guided(self, start: Place, wanted: int, guide: Guide, choice: random.Random) -> list[Step]:
+        """Takes each time the step that shows the most, else the way that the supervised system has to what is left."""
         tour: list[Step] = []
         left, here, in_vain = wanted, start, Counter[Goal]()
         while left:
             # Times first: some are up only before anything has come in.
             showing = [step for step in self.steps(here) if step.shows & left]
             if showing:
-                way = [max(showing, key=lambda step: (step.stimulus == WAIT, (step.shows & left).bit_count()))]
+                much = [(step.stimulus == WAIT, (step.shows & left).bit_count(), choice.random()) for step in showing]
+                way = [showing[much.index(max(much))]]
             else:
                 promising = [goal for goal in self.goals if self.bits[goal] & left and in_vain[goal] < _IN_VAIN]
                 events, aims = self._timed(here, promising) or guide.way(self._codes(here), promising)

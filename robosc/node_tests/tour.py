@@ -41,11 +41,14 @@ class _Controller(DrivenController):
     def watch(self, shown: set[Goal]) -> None:
         """Begins to note what there is to see."""
         self._shown = shown
+        #: What has happened since this was emptied.
+        self.happened: set[str] = set()
         self._watcher = Watcher(self._control)
 
     def _before(self, name: str) -> bool:
         may_happen = super()._before(name)
         if may_happen:
+            self.happened.add(name)
             self._shown.update(self._watcher.happening(name))
         return may_happen
 
@@ -84,6 +87,8 @@ class Tour(Drive):
             LoopSettings(control.events_per_tick, control.reactions_per_tick, control.react_immediately, RESOLUTION_MS),
             [*self._acts, WAIT],
             _LONGEST * self.parameters["period_ms"],
+            self.parameters["period_ms"],
+            self.parameters.get("retry_ms", 0),
         )
         self._shown: set[Goal] = set()
         self._steps = 0
@@ -128,6 +133,7 @@ class Tour(Drive):
     def _stepped(self, step: Step) -> bool:
         """Makes a step; says whether the controller has done something else than was planned."""
         self._steps += 1
+        self._controller.happened.clear()
         if step.stimulus.events:
             self._let_in(self._acts[step.stimulus])
         waits = self._waiting(step.stimulus)
@@ -135,12 +141,13 @@ class Tour(Drive):
             self._pass_period()
             if not waits():
                 break
-        return self._controller.place(self.plan) != step.end
+        return self._controller.place(self.plan)[:3] != step.end[:3]
 
     def _waiting(self, stimulus: Stimulus) -> Callable[[], bool]:
         """Whether what the stimulus waits for is still to come."""
         if stimulus.fails:
-            return lambda: not self._controller.pauses
+            [(failure, _)] = stimulus.events
+            return lambda: failure not in self._controller.happened
         if stimulus.events:
             return lambda: False
         if self._controller.pauses:

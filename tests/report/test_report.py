@@ -4,7 +4,8 @@ import json
 import re
 import shutil
 import subprocess
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -18,7 +19,7 @@ from robosc.configuration import Configuration, find, read
 from robosc.engine import Engine
 from robosc.m2t import supervisor
 from robosc.m2t.c.names import CNames
-from robosc.m2t.models import Models
+from robosc.m2t.models import TraceTest
 from robosc.node_tests.trace_test import trace_test
 from robosc.report import as_html, as_needs, digests
 from robosc.simulation import Simulation
@@ -40,13 +41,33 @@ EACH = [
 ]
 
 
+@cache
+def tests_of(name: str, version: int) -> TraceTest:
+    """The tests of the package of a robot: the report, `transform` and the tests here ask for the same."""
+    graph, near = models_of(name).rosgraph, find(MODELS[name].parent)
+    assert graph is not None
+    return trace_test(graph, read(near) if near else Configuration(), version)
+
+
+@contextmanager
+def planned_once(name: str) -> Iterator[pytest.MonkeyPatch]:
+    """While it lasts, tours of a robot are those of `tests_of`; only of one they are planned each time."""
+    with pytest.MonkeyPatch.context() as patch:
+        if name != QUICK:
+            patch.setattr(
+                "robosc.node_tests.trace_test.trace_test",
+                lambda _graph, _settings, version, _paths=(): tests_of(name, version),
+            )
+        yield patch
+
+
 @pytest.fixture(scope="session")
 def told(verified_once: Callable[[Path], Callable[..., Any]]) -> Told:
     """The report of a robot. What `verify` says of it, it says to others, too: only of one it is asked anew."""
 
     @cache
     def report(name: str) -> dict[str, Any]:
-        with pytest.MonkeyPatch.context() as patch:
+        with planned_once(name) as patch:
             if name != QUICK:
                 patch.setattr(safety_report, "verify", verified_once(MODELS[name]))
             done = CliRunner().invoke(main, ["report", str(MODELS[name]), "--json"])
@@ -64,7 +85,8 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
     def folder(name: str) -> Path:
         made = tmp_path_factory.mktemp(name)
         call = ["transform", str(MODELS[name]), "--to", "supervisor,cif,ros1,ros2", "--with-tests", "-o", str(made)]
-        done = CliRunner().invoke(main, call)
+        with planned_once(name):
+            done = CliRunner().invoke(main, call)
         assert done.exit_code == 0, done.output
         return made
 
@@ -113,14 +135,20 @@ def test_the_digests_are_those_of_what_is_written(name: str, written: Callable[[
     assert read[MODELS[name].name] == digests.digest(MODELS[name].read_bytes())
 
 
-def trace_of(name: str, models: Models, path: str) -> str:
+def trace_of(name: str, path: str) -> str:
     """A trace of the tests of a package, by its path among what is generated."""
-    assert models.rosgraph is not None
-    version = int(path.removeprefix("ros")[0])
-    near = find(MODELS[name].parent)
-    return trace_test(models.rosgraph, read(near) if near else Configuration(), version).files[
-        f"traces/{path.rpartition('/')[2]}"
-    ]
+    return tests_of(name, int(path.removeprefix("ros")[0])).files[f"traces/{path.rpartition('/')[2]}"]
+
+
+@pytest.mark.parametrize("name", EACH)
+def test_the_page_on_tests_tells_what_its_tours_show(name: str) -> None:
+    page = (ROOT / "docs" / "tests-for-your-robot.md").read_text()
+    row = re.search(rf"^\| `{name}` \| (.+) \|$", page, re.MULTILINE)
+    assert row
+    runs, steps, _, transitions, true, false = row[1].split(" | ")
+    test = tests_of(name, 2)
+    assert test.coverage == f"{transitions} transitions, {true} guards true, {false} false, in {steps} steps"
+    assert sum(path.startswith("traces/") for path in test.files) == int(runs)
 
 
 DRIVER = """\
@@ -181,7 +209,7 @@ def test_gcov_counts_as_often_that_a_guard_is_true(name: str, tmp_path: Path, to
     played = 0
     for path in told(name)["coverage"]["traces"]:
         simulation = Simulation(models.sct, models.rosgraph)
-        steps, _ = read_script("trace", trace_of(name, models, path), simulation.engine.events)
+        steps, _ = read_script("trace", trace_of(name, path), simulation.engine.events)
         script = [
             " ".join(str(int(number)) for number in (numbers[step.event], *simulation.engine.saved[1]))
             for step in steps
