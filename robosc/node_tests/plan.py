@@ -30,10 +30,10 @@ if TYPE_CHECKING:
 _ALL = 12_000
 #: So often a tour is planned, each time with other choices between what is as near: with all places known, and without.
 _PLANS, _GUIDED = 10, 5
-#: So many ways of the same length a beam search goes on with, likewise.
-_WAYS, _FEW_WAYS = 300, 30
+#: So many ways of the same length a beam search goes on with, likewise; for a tour that was shortened by one, then.
+_WAYS, _FEW_WAYS = (300, 300), (30, 80)
 #: Where this many steps have been looked at no shorter tour is looked for any more.
-_MOST = 250_000
+_MOST = 320_000
 #: So long may the way be that takes the place of a part of a tour.
 _DETOUR = 4
 #: So many ways that lead to where something can be seen may not show it.
@@ -254,16 +254,17 @@ class Plan:
             tours = encoded(self.model, lambda encoding: self._all_guided(start, wanted, encoding))
         best = max(tours, key=lambda tour: ((_together(tour) & wanted).bit_count(), -len(tour)))
         wanted &= _together(best)
-        width, detour = (_WAYS, _DETOUR) if self.is_whole else (_FEW_WAYS, 1)
+        (first_width, width), detour = (_WAYS, _DETOUR) if self.is_whole else (_FEW_WAYS, 1)
         for example in tours:
-            followed = example
+            followed, ways = example, first_width
             while followed and not wanted & ~_together(followed):
                 shorter = beam_search(
-                    self._steps_until_enough, start, followed, wanted, longest=len(best) - 1, width=width
+                    self._steps_until_enough, start, followed, wanted, longest=len(best) - 1, width=ways
                 )
                 if shorter is None:
                     break
                 best = followed = self._shortened(start, shorter, wanted, detour)
+                ways = width
         return best
 
     def _steps_until_enough(self, place: Place) -> list[Step] | None:
