@@ -22,12 +22,13 @@ from scipy.sparse import lil_matrix
 
 import robosc
 from robosc import configuration as config
-from robosc.node_tests.plan import WAIT
+from robosc.node_tests.steps import WAIT
 from robosc.node_tests.tour import Tour
 from robosc.ros_types import RosTypes
 
 if TYPE_CHECKING:
-    from robosc.node_tests.plan import Place, Plan, Step
+    from robosc.node_tests.plan import Plan
+    from robosc.node_tests.steps import Place, Step
 
 EXAMPLES = Path(__file__).parent.parent / "examples"
 #: Seconds for each bound: of one in whole steps what is proved until then counts.

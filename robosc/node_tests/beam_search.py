@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
 
-    from robosc.node_tests.plan import Place, Step
+    from robosc.node_tests.steps import Place, Step
 
     #: Where a way has come to, and what it has shown.
     _End = tuple[Place, int]

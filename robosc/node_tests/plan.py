@@ -14,6 +14,7 @@ from robosc.metamodel import sct
 from robosc.node_tests.beam_search import beam_search
 from robosc.node_tests.coverage import Goal, Watcher, goals
 from robosc.node_tests.guide import Guide, Way
+from robosc.node_tests.steps import WAIT, Place, Step, Stimulus
 from robosc.semantics.roles import event_name
 from robosc.synthesis import encoded
 
@@ -38,39 +39,6 @@ _MOST = 320_000
 _DETOUR = 4
 #: So many ways that lead to where something can be seen may not show it.
 _IN_VAIN = 4
-
-
-@dataclass(frozen=True)
-class Stimulus:
-    """Something that comes in: a batch of events with their inputs. Without events: time goes by.
-
-    Until the next time is up, that is, or the pause after a failure is over.
-    """
-
-    name: str
-    events: tuple[tuple[str, tuple[tuple[str, Value], ...]], ...] = ()
-    fails: bool = False
-
-
-WAIT = Stimulus("wait")
-
-
-class Place(NamedTuple):
-    """Where a loop is, as far as a plan tells places apart: its cells, the times that run, and whether it pauses."""
-
-    cells: tuple[int, ...]
-    running: frozenset[int]
-    pauses: bool
-    #: How many periods each time still runs, in the order of the timers; nothing where a step takes no time.
-    left: tuple[int, ...] = ()
-
-
-class Step(NamedTuple):
-    """A step of a tour: what comes in, where that leads, and what it shows, a bit for each goal."""
-
-    stimulus: Stimulus
-    end: Place
-    shows: int
 
 
 class _Way(NamedTuple):

@@ -11,7 +11,8 @@ from robosc.engine import Settings as LoopSettings
 from robosc.node_tests.coverage import Coverage, Watcher
 from robosc.node_tests.drive import Drive, DrivenController, MeetingTimesError
 from robosc.node_tests.messages import message
-from robosc.node_tests.plan import WAIT, Place, Plan, Step, Stimulus
+from robosc.node_tests.plan import Plan
+from robosc.node_tests.steps import WAIT, Place, Step, Stimulus
 from robosc.runtime.core.event_log import nested
 from robosc.runtime.core.port import Outcome
 from robosc.runtime.core.times import RESOLUTION_MS

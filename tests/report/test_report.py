@@ -42,7 +42,7 @@ EACH = [
 
 
 @cache
-def tests_of(name: str, version: int) -> TraceTest:
+def planned(name: str, version: int) -> TraceTest:
     """The tests of the package of a robot: the report, `transform` and the tests here ask for the same."""
     graph, near = models_of(name).rosgraph, find(MODELS[name].parent)
     assert graph is not None
@@ -51,12 +51,12 @@ def tests_of(name: str, version: int) -> TraceTest:
 
 @contextmanager
 def planned_once(name: str) -> Iterator[pytest.MonkeyPatch]:
-    """While it lasts, tours of a robot are those of `tests_of`; only of one they are planned each time."""
+    """While it lasts, tours of a robot are those of `planned`; only of one they are planned each time."""
     with pytest.MonkeyPatch.context() as patch:
         if name != QUICK:
             patch.setattr(
                 "robosc.node_tests.trace_test.trace_test",
-                lambda _graph, _settings, version, _paths=(): tests_of(name, version),
+                lambda _graph, _settings, version, _paths=(): planned(name, version),
             )
         yield patch
 
@@ -137,7 +137,7 @@ def test_the_digests_are_those_of_what_is_written(name: str, written: Callable[[
 
 def trace_of(name: str, path: str) -> str:
     """A trace of the tests of a package, by its path among what is generated."""
-    return tests_of(name, int(path.removeprefix("ros")[0])).files[f"traces/{path.rpartition('/')[2]}"]
+    return planned(name, int(path.removeprefix("ros")[0])).files[f"traces/{path.rpartition('/')[2]}"]
 
 
 @pytest.mark.parametrize("name", EACH)
@@ -146,7 +146,7 @@ def test_the_page_on_tests_tells_what_its_tours_show(name: str) -> None:
     row = re.search(rf"^\| `{name}` \| (.+) \|$", page, re.MULTILINE)
     assert row
     runs, steps, _, transitions, true, false = row[1].split(" | ")
-    test = tests_of(name, 2)
+    test = planned(name, 2)
     assert test.coverage == f"{transitions} transitions, {true} guards true, {false} false, in {steps} steps"
     assert sum(path.startswith("traces/") for path in test.files) == int(runs)
 
