@@ -4,10 +4,11 @@
 
 The bound is the least number of steps of a flow through the places of the control loop that shows all that the tours
 show, in as many runs: no runs have fewer, since they are such a flow, in whole steps. A time that nobody waits for may
-be up at any place where it runs, as often as there are steps for it to run in or waits for another one. Where a tour is
-planned without a look at all places, parts of steps are allowed, too: minutes for the sprayer. There is none for the
-warehouse robot, which has too many places. Where a tour does not show all, a line below the table says how much of what
-is missing is seen on any step. Needs scipy (`pip install 'robosc[benchmarks]'`).
+be up at any place where it runs, as often as there are steps for it to run in or waits for another one; in the flow a
+tick comes before it, in a run it may be up before the tick of its period. Where a tour is planned without a look at all
+places, parts of steps are allowed, too: minutes for the sprayer. There is none for the warehouse robot, which has too
+many places. Where a tour does not show all, a line below the table says how much of what is missing is seen on any
+step. Needs scipy (`pip install 'robosc[benchmarks]'`).
 """
 
 from __future__ import annotations

@@ -59,7 +59,7 @@ class Compiler:
         body = "\n    ".join([*beforehand, f"return {_joined(texts, 'and')}"])
         made_here: dict[str, Function] = {}
         # Nothing of a user's text is in it: `_text` writes positions, numbers, operators and names of `_CALLED`.
-        exec(f"def function(cells, inputs):\n    {body}", _CALLED, made_here)  # noqa: S102
+        exec(f"def function(cells, inputs):\n    {body}", _CALLED, made_here)  # noqa: S102 - as said above
         return made_here["function"]
 
     def _text(self, node: ex.Expression, parts: Sequence[str]) -> str:

@@ -217,7 +217,7 @@ class Plan:
             known, self._known, self._time_passes = self._known, {}, True
             start = self.place(known[start].saved, pauses=start.pauses)
         if self.is_whole:
-            tours = [self._planned(start, wanted, random.Random(seed)) for seed in range(_PLANS)]  # noqa: S311
+            tours = [self._planned(start, wanted, choice) for choice in _choices(_PLANS)]
         else:
             tours = encoded(self.model, lambda encoding: self._all_guided(start, wanted, encoding))
         best = max(tours, key=lambda tour: ((_together(tour) & wanted).bit_count(), -len(tour)))
@@ -269,7 +269,7 @@ class Plan:
 
     def _all_guided(self, start: Place, wanted: int, encoding: Encoding) -> list[list[Step]]:
         guide = self._guide(encoding)
-        return [self._guided(start, wanted, guide, random.Random(seed)) for seed in range(_GUIDED)]  # noqa: S311
+        return [self._guided(start, wanted, guide, choice) for choice in _choices(_GUIDED)]
 
     def _guided(self, start: Place, wanted: int, guide: Guide, choice: random.Random) -> list[Step]:
         """Takes each time the step that shows the most, else the way that the supervised system has to what is left."""
@@ -378,6 +378,10 @@ class Plan:
         if self.is_whole:
             self._found[start] = found
         return found
+
+
+def _choices(number: int) -> list[random.Random]:
+    return [random.Random(seed) for seed in range(number)]  # noqa: S311 - the same each time, and nothing is secret
 
 
 def _unlike(stimulus: Stimulus, event: str, inputs: Mapping[str, Value]) -> int:

@@ -33,6 +33,10 @@ class Place(NamedTuple):
     #: How many periods each time still runs, in the order of the timers; nothing where a step takes no time.
     left: tuple[int, ...] = ()
 
+    def resembles(self, other: Place) -> bool:
+        """Whether they are the same but for how long the times still run."""
+        return self._replace(left=other.left) == other
+
 
 class Step(NamedTuple):
     """A step of a tour: what comes in, where that leads, and what it shows, a bit for each goal."""

@@ -142,7 +142,7 @@ class Tour(Drive):
             self._pass_period()
             if not waits():
                 break
-        return self._controller.place(self.plan)[:3] != step.end[:3]
+        return not self._controller.place(self.plan).resembles(step.end)
 
     def _waiting(self, stimulus: Stimulus) -> Callable[[], bool]:
         """Whether what the stimulus waits for is still to come."""

@@ -39,7 +39,7 @@ class Lowering:
         Raises ValueError for what no sct model holds: doubles, strings, division.
         """
         if expression is None:
-            return self.terms.true
+            return self.terms.true if positive else self.terms.false
         pending: list[tuple[_Wanted, list[_Wanted] | None]] = [((expression, positive), None)]
         while pending:
             wanted, parts = pending.pop()
