@@ -3,6 +3,7 @@
 The tests of a file run in one process, unless `pytest_collection_modifyitems` of its folder has given them a group.
 """
 
+import gc
 import json
 import pickle
 import signal
@@ -31,6 +32,8 @@ settings.register_profile("robosc", deadline=None)
 settings.load_profile("robosc")
 # Whoever runs the tests in the background of a script ignores interrupts; the programs that they start don't.
 signal.signal(signal.SIGINT, signal.default_int_handler)
+# Tests make many objects, most of which stay: to look for garbage as often as Python does takes a sixth of the time.
+gc.set_threshold(100_000, 10, 10)
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -115,6 +118,18 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
             item.add_marker(pytest.mark.xdist_group(item.path.name))
     long = {item.path for item in items if item.get_closest_marker("slow") or item.get_closest_marker("build")}
     items.sort(key=lambda item: _turn(item, item.path in long))
+
+
+def pytest_collection_finish() -> None:
+    """What was loaded to find the tests stays."""
+    gc.freeze()
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_sessionfinish() -> None:
+    """pytest looks for garbage five times when it ends, for exceptions that nobody saw. Once is enough."""
+    gc.collect()
+    gc.freeze()
 
 
 def _turn(item: pytest.Item, is_long: bool) -> int:
