@@ -13,7 +13,7 @@ from robosc.analysis.system import counted
 from robosc.analysis.verify.differences import refuted
 from robosc.analysis.verify.loop_lockstep import DifferenceError, Kept, Lockstep
 from robosc.analysis.verify.verdict import Outcome, Verdict
-from robosc.engine import Settings
+from robosc.engine import Settings, remembered
 from robosc.semantics.roles import Roles
 
 if TYPE_CHECKING:
@@ -61,7 +61,7 @@ def explore_loop(program: CProgram, effort: LoopEffort | None = None) -> Verdict
     """
     effort = effort or LoopEffort()
     most = max(_QUESTIONS // max(len(program.events), 1), 1)
-    with program.running([program.follower]) as process:
+    with remembered(), program.running([program.follower]) as process:
         lockstep = Lockstep(program.model, process)
         try:
             seen = _explored(lockstep, min(effort.explored, most))
