@@ -21,6 +21,7 @@ from hypothesis import settings
 
 from robosc.analysis.verify import verify
 from robosc.cli import main
+from robosc.m2t.models import TraceTest
 from tests.sharing import made_once
 
 #: Characters of a parameter that stand in the name of a test.
@@ -105,6 +106,21 @@ def verified(shared_folder: Path, verified_once: Callable[[Path], Callable[..., 
         return json.loads(made_once(shared_folder, f"verified-{path.parent.name}-{path.stem}", lambda: asked(path)))
 
     return answer
+
+
+@pytest.fixture(scope="session")
+def planned_once(shared_folder: Path) -> Callable[[Path, Callable[[], TraceTest], int], TraceTest]:
+    """What `trace_test` makes of a model with its settings for ROS 1 or 2, planned once in this run of the tests."""
+
+    def once(path: Path, plan: Callable[[], TraceTest], version: int) -> TraceTest:
+        def made() -> str:
+            return b64encode(pickle.dumps(plan())).decode("ascii")
+
+        known = made_once(shared_folder, f"tours-{path.parent.name}-{path.stem}-{version}", made)
+        test: TraceTest = pickle.loads(b64decode(known))  # noqa: S301 - our own
+        return test
+
+    return once
 
 
 @pytest.hookimpl(tryfirst=True)

@@ -56,20 +56,34 @@ class Grid:
             return None
         came_from, costs = {first: None}, {first: 0.0}
         queue = [(0.0, first)]
-        while queue:
+        # Whether the end is shut in is looked at from there: from outside all squares within reach would be looked at.
+        around_end, pending = {last}, [last]
+        while queue and (pending or first in around_end):
+            if first not in around_end:
+                pending += self._around(pending.pop(), first, around_end)
             _, cell = heapq.heappop(queue)
             if cell == last:
                 return self._points(came_from, last, end)
             for dx, dy in _NEIGHBOURS:
                 there = cell[0] + dx, cell[1] + dy
                 cost = costs[cell] + math.hypot(dx, dy)
-                if there in self.blocked and max(abs(there[0] - first[0]), abs(there[1] - first[1])) > 1:
+                if self._is_blocked(there, first):
                     continue
                 if cost > furthest or costs.get(there, math.inf) <= cost:
                     continue
                 costs[there], came_from[there] = cost, cell
                 heapq.heappush(queue, (cost + math.hypot(last[0] - there[0], last[1] - there[1]), there))
         return None
+
+    def _is_blocked(self, cell, first):
+        return cell in self.blocked and max(abs(cell[0] - first[0]), abs(cell[1] - first[1])) > 1
+
+    def _around(self, cell, first, known):
+        """The squares next to one that are not known yet, which they are from now on."""
+        squares = ((cell[0] + dx, cell[1] + dy) for dx, dy in _NEIGHBOURS)
+        new = [square for square in squares if square not in known and not self._is_blocked(square, first)]
+        known.update(new)
+        return new
 
     def _points(self, came_from, last, end):
         points, cell = [end], came_from[last]

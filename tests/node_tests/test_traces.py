@@ -33,6 +33,8 @@ from tests.searching import slow_but
 from .in_process_node import InProcessNode
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from robosc.m2t.models import TraceTest
     from robosc.metamodel import rosgraph
 
@@ -52,7 +54,14 @@ MODELS = {
     "sprayer": ROOT / "examples" / "sprayer" / "sprayer.rscd",
     "warehouse_robot": ROOT / "examples" / "warehouse_robot" / "warehouse_robot.rscd",
 }
-SETTINGS = {"porter": CPP / "porter-config.json"}
+SETTINGS = {
+    "porter": CPP / "porter-config.json",
+    **{
+        name: path.with_name(config.FILE_NAME)
+        for name, path in MODELS.items()
+        if path.is_relative_to(ROOT / "examples")
+    },
+}
 
 
 def robot_of(name: str) -> tuple[rosgraph.RosGraph, config.Configuration]:
@@ -62,17 +71,23 @@ def robot_of(name: str) -> tuple[rosgraph.RosGraph, config.Configuration]:
     return robosc.to_rosgraph(robot), configuration
 
 
-@cache
-def made(name: str) -> TraceTest:
-    return trace_test(*robot_of(name), 2)
+@pytest.fixture(scope="session")
+def made(planned_once: Callable[..., TraceTest]) -> Callable[[str], TraceTest]:
+    """The test of a robot. Of the examples those of reports look at the same."""
+
+    @cache
+    def planned(name: str) -> TraceTest:
+        return planned_once(MODELS[name], lambda: trace_test(*robot_of(name), 2), 2)
+
+    return planned
 
 
 class Case:
     """A robot and its test. The graph is a new one each time: tests may break it."""
 
-    def __init__(self, name: str, folder: Path) -> None:
+    def __init__(self, name: str, test: TraceTest, folder: Path) -> None:
         self.graph, self.configuration = robot_of(name)
-        self.test = made(name)
+        self.test = test
         self.files = self.test.files
         self.connections: dict[str, Any] = json.loads(self.files["connections.json"])
         #: Its traces; `trace` is the first.
@@ -104,9 +119,12 @@ def be_impatient(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.fixture
-def case(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Case:
+def case(
+    request: pytest.FixtureRequest, made: Callable[[str], TraceTest], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> Case:
     be_impatient(monkeypatch)
-    return Case(getattr(request, "param", "line_follower"), tmp_path)
+    name = getattr(request, "param", "line_follower")
+    return Case(name, made(name), tmp_path)
 
 
 every_model = pytest.mark.parametrize("case", slow_but(["line_follower", "porter", "kept"], MODELS), indirect=True)
@@ -236,10 +254,12 @@ def requirements() -> list[str]:
 
 
 @pytest.mark.parametrize("fault", requirements())
-def test_a_dropped_requirement_is_noticed(fault: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_dropped_requirement_is_noticed(
+    fault: str, made: Callable[[str], TraceTest], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     name, event = fault.split(":")
     be_impatient(monkeypatch)
-    case = Case(name, tmp_path)
+    case = Case(name, made(name), tmp_path)
     assert case.graph.model.supervisor is not None
     guards = [
         guard

@@ -28,6 +28,7 @@ from tests.chromium import chromium  # noqa: F401  # a fixture
 from tests.examples.conftest import MODELS, PAGES, models_of
 
 Told: TypeAlias = Callable[[str], dict[str, Any]]
+Planned: TypeAlias = Callable[[str, int], TraceTest]
 ROOT = Path(__file__).parents[2]
 QUICK = "supervised_line_follower"
 #: With other robots, in a run of all tests; those of one robot look at the same report.
@@ -41,16 +42,22 @@ EACH = [
 ]
 
 
-@cache
-def planned(name: str, version: int) -> TraceTest:
+@pytest.fixture(scope="session")
+def planned(planned_once: Callable[..., TraceTest]) -> Planned:
     """The tests of the package of a robot: the report, `transform` and the tests here ask for the same."""
-    graph, near = models_of(name).rosgraph, find(MODELS[name].parent)
-    assert graph is not None
-    return trace_test(graph, read(near) if near else Configuration(), version)
+
+    @cache
+    def tests(name: str, version: int) -> TraceTest:
+        graph, near = models_of(name).rosgraph, find(MODELS[name].parent)
+        assert graph is not None
+        settings = read(near) if near else Configuration()
+        return planned_once(MODELS[name], lambda: trace_test(graph, settings, version), version)
+
+    return tests
 
 
 @contextmanager
-def planned_once(name: str) -> Iterator[pytest.MonkeyPatch]:
+def with_tours_of(planned: Planned, name: str) -> Iterator[pytest.MonkeyPatch]:
     """While it lasts, tours of a robot are those of `planned`; only of one they are planned each time."""
     with pytest.MonkeyPatch.context() as patch:
         if name != QUICK:
@@ -62,12 +69,12 @@ def planned_once(name: str) -> Iterator[pytest.MonkeyPatch]:
 
 
 @pytest.fixture(scope="session")
-def told(verified_once: Callable[[Path], Callable[..., Any]]) -> Told:
+def told(verified_once: Callable[[Path], Callable[..., Any]], planned: Planned) -> Told:
     """The report of a robot. What `verify` says of it, it says to others, too: only of one it is asked anew."""
 
     @cache
     def report(name: str) -> dict[str, Any]:
-        with planned_once(name) as patch:
+        with with_tours_of(planned, name) as patch:
             if name != QUICK:
                 patch.setattr(safety_report, "verify", verified_once(MODELS[name]))
             done = CliRunner().invoke(main, ["report", str(MODELS[name]), "--json"])
@@ -78,14 +85,14 @@ def told(verified_once: Callable[[Path], Callable[..., Any]]) -> Told:
 
 
 @pytest.fixture(scope="session")
-def written(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
+def written(tmp_path_factory: pytest.TempPathFactory, planned: Planned) -> Callable[[str], Path]:
     """The folder with all that is generated of a robot."""
 
     @cache
     def folder(name: str) -> Path:
         made = tmp_path_factory.mktemp(name)
         call = ["transform", str(MODELS[name]), "--to", "supervisor,cif,ros1,ros2", "--with-tests", "-o", str(made)]
-        with planned_once(name):
+        with with_tours_of(planned, name):
             done = CliRunner().invoke(main, call)
         assert done.exit_code == 0, done.output
         return made
@@ -135,13 +142,13 @@ def test_the_digests_are_those_of_what_is_written(name: str, written: Callable[[
     assert read[MODELS[name].name] == digests.digest(MODELS[name].read_bytes())
 
 
-def trace_of(name: str, path: str) -> str:
+def trace_of(planned: Planned, name: str, path: str) -> str:
     """A trace of the tests of a package, by its path among what is generated."""
     return planned(name, int(path.removeprefix("ros")[0])).files[f"traces/{path.rpartition('/')[2]}"]
 
 
 @pytest.mark.parametrize("name", EACH)
-def test_the_page_on_tests_tells_what_its_tours_show(name: str) -> None:
+def test_the_page_on_tests_tells_what_its_tours_show(name: str, planned: Planned) -> None:
     page = (ROOT / "docs" / "tests-for-your-robot.md").read_text()
     row = re.search(rf"^\| `{name}` \| (.+) \|$", page, re.MULTILINE)
     assert row
@@ -178,7 +185,7 @@ int main(void)
 
 @pytest.mark.build
 @pytest.mark.parametrize("name", EACH)
-def test_gcov_counts_as_often_that_a_guard_is_true(name: str, tmp_path: Path, told: Told) -> None:
+def test_gcov_counts_as_often_that_a_guard_is_true(name: str, tmp_path: Path, told: Told, planned: Planned) -> None:
     """The C engine, compiled to count its lines, performs the trace; each guard is asked in each of the states."""
     if shutil.which("gcc") is None or shutil.which("gcov") is None:
         pytest.skip("there is no gcc with gcov")
@@ -209,7 +216,7 @@ def test_gcov_counts_as_often_that_a_guard_is_true(name: str, tmp_path: Path, to
     played = 0
     for path in told(name)["coverage"]["traces"]:
         simulation = Simulation(models.sct, models.rosgraph)
-        steps, _ = read_script("trace", trace_of(name, path), simulation.engine.events)
+        steps, _ = read_script("trace", trace_of(planned, name, path), simulation.engine.events)
         script = [
             " ".join(str(int(number)) for number in (numbers[step.event], *simulation.engine.saved[1]))
             for step in steps
