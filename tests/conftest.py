@@ -21,7 +21,11 @@ from hypothesis import settings
 
 from robosc.analysis.verify import verify
 from robosc.cli import main
+from robosc.configuration import Configuration
+from robosc.engine import remembered
 from robosc.m2t.models import TraceTest
+from robosc.metamodel.rosgraph import RosGraph
+from robosc.node_tests.trace_test import trace_test
 from tests.sharing import made_once
 
 #: Characters of a parameter that stand in the name of a test.
@@ -109,16 +113,17 @@ def verified(shared_folder: Path, verified_once: Callable[[Path], Callable[..., 
 
 
 @pytest.fixture(scope="session")
-def planned_once(shared_folder: Path) -> Callable[[Path, Callable[[], TraceTest], int], TraceTest]:
-    """What `trace_test` makes of a model with its settings for ROS 1 or 2, planned once in this run of the tests."""
+def planned_once(shared_folder: Path) -> Callable[[Path, RosGraph, Configuration], list[TraceTest]]:
+    """What `trace_test` makes of a model with its settings, for ROS 1 and 2, planned once in this run of the tests."""
 
-    def once(path: Path, plan: Callable[[], TraceTest], version: int) -> TraceTest:
+    def once(path: Path, graph: RosGraph, settings: Configuration) -> list[TraceTest]:
         def made() -> str:
-            return b64encode(pickle.dumps(plan())).decode("ascii")
+            with remembered():
+                return b64encode(pickle.dumps([trace_test(graph, settings, version) for version in (1, 2)])).decode()
 
-        known = made_once(shared_folder, f"tours-{path.parent.name}-{path.stem}-{version}", made)
-        test: TraceTest = pickle.loads(b64decode(known))  # noqa: S301 - our own
-        return test
+        known = made_once(shared_folder, f"tours-{path.parent.name}-{path.stem}", made)
+        tests: list[TraceTest] = pickle.loads(b64decode(known))  # noqa: S301 - our own
+        return tests
 
     return once
 

@@ -83,6 +83,14 @@ class Plan:
         self._pauses = self._time_passes = False
         self._shown = self._anywhere = 0
 
+    def is_like(self, other: Plan) -> bool:
+        """Whether tours from the same place that show the same are planned as by another plan."""
+        ours, others = (
+            (id(plan.model), plan.settings, tuple(plan.stimuli), plan.longest, plan.period, plan.pause)
+            for plan in (self, other)
+        )
+        return ours == others
+
     def _before(self, event: str) -> bool:
         if event in self._resets and self._pauses:
             return False

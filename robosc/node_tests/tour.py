@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import random
 from collections import Counter
+from contextlib import suppress
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robosc.engine import Settings as LoopSettings
+from robosc.engine import memory
 from robosc.node_tests.coverage import Coverage, Watcher
 from robosc.node_tests.drive import Drive, DrivenController, MeetingTimesError
 from robosc.node_tests.messages import message
@@ -20,7 +22,7 @@ from robosc.semantics.operators import UnreadableError
 from robosc.semantics.roles import event_name
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
     from robosc.configuration import Configuration
     from robosc.metamodel import rosgraph
@@ -72,12 +74,45 @@ class _Controller(DrivenController):
         return True
 
 
+class _Planned(NamedTuple):
+    """Steps from a place on, where something was shown before."""
+
+    start: Place
+    shown: frozenset[Goal]
+    steps: list[Step]
+
+
+class _OtherwiseError(Exception):
+    """A tour can't be planned as an earlier one was."""
+
+
+def tour_of(graph: rosgraph.RosGraph, configuration: Configuration, distribution: RosDistribution) -> Tour:
+    """The tour of a controller on one ROS.
+
+    While the model is remembered (`robosc.engine.remembered`) it is planned once for both where the same comes in.
+    """
+    known = memory()
+    if known is None:
+        return Tour(graph, configuration, distribution)
+    if (earlier := known.get((Tour, graph))) is not None:
+        with suppress(_OtherwiseError):
+            return Tour(graph, configuration, distribution, earlier)
+    made = known[Tour, graph] = Tour(graph, configuration, distribution)
+    return made
+
+
 class Tour(Drive):
     """Runs of one controller, each from its start: `traces` are the lines of each, `coverage` is what they show."""
 
     _controller: _Controller
 
-    def __init__(self, graph: rosgraph.RosGraph, configuration: Configuration, distribution: RosDistribution) -> None:
+    def __init__(
+        self,
+        graph: rosgraph.RosGraph,
+        configuration: Configuration,
+        distribution: RosDistribution,
+        earlier: Tour | None = None,
+    ) -> None:
         super().__init__(graph, configuration, distribution)
         self._choice = random.Random(_SEED)  # noqa: S311  # the same each time
         self._used: Counter[object] = Counter()
@@ -91,6 +126,13 @@ class Tour(Drive):
             self.parameters["period_ms"],
             self.parameters.get("retry_ms", 0),
         )
+        #: Where it went, as planned, one after the other.
+        self.planned: list[_Planned] = []
+        self._planned_before: Iterator[_Planned] | None = None
+        if earlier is not None:
+            if not self.plan.is_like(earlier.plan):
+                raise _OtherwiseError
+            self.plan, self._planned_before = earlier.plan, iter(earlier.planned)
         self._shown: set[Goal] = set()
         self._steps = 0
         #: What is seen before the first step.
@@ -129,7 +171,16 @@ class Tour(Drive):
         self._controller.look()
 
     def _tour(self) -> list[Step]:
-        return self.plan.tour(self._controller.place(self.plan), self._shown)
+        start, shown = self._controller.place(self.plan), frozenset(self._shown)
+        if self._planned_before is None:
+            planned = _Planned(start, shown, self.plan.tour(start, shown))
+        else:
+            before = next(self._planned_before, None)
+            if before is None or before.shown != shown or not before.start.resembles(start):
+                raise _OtherwiseError
+            planned = before
+        self.planned.append(planned)
+        return planned.steps
 
     def _stepped(self, step: Step) -> bool:
         """Makes a step; says whether the controller has done something else than was planned."""

@@ -9,7 +9,7 @@ from robosc.analysis.wording import words
 from robosc.files.resources import locate
 from robosc.m2t.models import TraceTest
 from robosc.metamodel import sct
-from robosc.node_tests.tour import Tour
+from robosc.node_tests.tour import tour_of
 from robosc.ros_types import RosTypes
 from robosc.runtime.core.event_log import nested
 from robosc.semantics.printing import SctPrinter
@@ -38,7 +38,7 @@ def trace_test(
     The same call gives the same test.
     """
     distribution = next(known for known in RosTypes(interface_paths).distributions if known.name == f"ROS {version}")
-    tour = Tour(graph, configuration, distribution)
+    tour = tour_of(graph, configuration, distribution)
     started = tour.parameters
     files = player_files(graph, configuration, started, tour.incoming)
     for number, lines in enumerate(tour.traces, 1):

@@ -72,12 +72,12 @@ def robot_of(name: str) -> tuple[rosgraph.RosGraph, config.Configuration]:
 
 
 @pytest.fixture(scope="session")
-def made(planned_once: Callable[..., TraceTest]) -> Callable[[str], TraceTest]:
+def made(planned_once: Callable[..., list[TraceTest]]) -> Callable[[str], TraceTest]:
     """The test of a robot. Of the examples those of reports look at the same."""
 
     @cache
     def planned(name: str) -> TraceTest:
-        return planned_once(MODELS[name], lambda: trace_test(*robot_of(name), 2), 2)
+        return planned_once(MODELS[name], *robot_of(name))[1]
 
     return planned
 
@@ -155,8 +155,9 @@ def test_tours_see_every_event(case: Case) -> None:
     }
 
 
-@pytest.mark.parametrize("case", ["porter"], indirect=True)
+@pytest.mark.parametrize("case", ["porter", "kept"], indirect=True)
 def test_the_same_call_gives_the_same_test(case: Case) -> None:
+    """Also one that was planned once for ROS 1 and 2, as those of all cases are."""
     assert trace_test(case.graph, case.configuration, 2) == case.test
 
 

@@ -20,7 +20,6 @@ from robosc.engine import Engine
 from robosc.m2t import supervisor
 from robosc.m2t.c.names import CNames
 from robosc.m2t.models import TraceTest
-from robosc.node_tests.trace_test import trace_test
 from robosc.report import as_html, as_needs, digests
 from robosc.simulation import Simulation
 from robosc.simulation.script import read_script
@@ -43,17 +42,16 @@ EACH = [
 
 
 @pytest.fixture(scope="session")
-def planned(planned_once: Callable[..., TraceTest]) -> Planned:
+def planned(planned_once: Callable[..., list[TraceTest]]) -> Planned:
     """The tests of the package of a robot: the report, `transform` and the tests here ask for the same."""
 
     @cache
-    def tests(name: str, version: int) -> TraceTest:
+    def both(name: str) -> list[TraceTest]:
         graph, near = models_of(name).rosgraph, find(MODELS[name].parent)
         assert graph is not None
-        settings = read(near) if near else Configuration()
-        return planned_once(MODELS[name], lambda: trace_test(graph, settings, version), version)
+        return planned_once(MODELS[name], graph, read(near) if near else Configuration())
 
-    return tests
+    return lambda name, version: both(name)[version - 1]
 
 
 @contextmanager

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from contextlib import contextmanager
 from contextvars import ContextVar
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from robosc.m2m.sct_to_engine.build_expressions import as_denial, build_expression, build_value
 from robosc.m2m.sct_to_engine.collect_events import collect_edges, collect_events, collect_groups, collect_sources
@@ -33,8 +33,7 @@ if TYPE_CHECKING:
 #: concerned costs more. Measured, see docs/engine.md.
 POLLED = 64
 
-#: While `remembered` lasts, what was made of which model.
-_made: ContextVar[dict[object, engine.EngineModel] | None] = ContextVar("made", default=None)
+_made: ContextVar[dict[object, Any] | None] = ContextVar("made", default=None)
 
 
 @contextmanager
@@ -47,6 +46,11 @@ def remembered() -> Iterator[None]:
         _made.reset(before)
 
 
+def memory() -> dict[object, Any] | None:
+    """While `remembered` lasts, what was made, by who made it and of what, to be added to; None else."""
+    return _made.get()
+
+
 def transform(model: sct.SupervisoryControlModel, polled: int | None = None) -> engine.EngineModel:
     """What a controller executes of an sct model with its supervisor.
 
@@ -54,12 +58,13 @@ def transform(model: sct.SupervisoryControlModel, polled: int | None = None) -> 
     ValueError where the model has no supervisor, or one without a guard for a controllable event.
     """
     polled = POLLED if polled is None else polled
-    known = _made.get()
+    known = memory()
     if known is None:
         return _transform(model, polled)
-    if (model, polled) not in known:
-        known[model, polled] = _transform(model, polled)
-    return known[model, polled]
+    if (transform, model, polled) not in known:
+        known[transform, model, polled] = _transform(model, polled)
+    made: engine.EngineModel = known[transform, model, polled]
+    return made
 
 
 def lowering(model: sct.SupervisoryControlModel) -> Lowering:
