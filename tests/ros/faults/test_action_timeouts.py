@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
 #: Seconds, as `controller-config.json` has them.
 TIMEOUT, RETRY = 1.0, 0.4
+GONE = "/travel: the server is gone"
 
 
 @pytest.fixture
@@ -60,7 +61,7 @@ def test_dies_with_the_goal(scout: Scout, server: Peer) -> None:
     since = scout.now()
     scout.kill_server()
     scout.until_event(since, ERROR)
-    scout.until_says(since, "/travel: the server is gone")
+    scout.until_says(since, GONE)
     scout.until_event(since, MOVE)
     scout.serve(succeed=True)
     arrive_sometime(scout)
@@ -68,12 +69,15 @@ def test_dies_with_the_goal(scout: Scout, server: Peer) -> None:
 
 @pytest.mark.usefixtures("server")
 def test_comes_back_between_two_goals(scout: Scout) -> None:
+    """That a server has died is said of a goal that it had, of nothing else."""
     scout.kill_server()
     since = scout.now()
     scout.serve(succeed=True)
+    assert scout.says(since, GONE) == 0
     scout.send("/travel_order", data=True)
     arrive_sometime(scout)
-    assert scout.says(since, "/travel: the server is gone") == 0
+    # The node may hear of the death when the goal is on its way already, which is lost then.
+    assert scout.says(since, GONE) <= len(scout.events(since, ERROR))
 
 
 def arrive_sometime(scout: Scout) -> None:
