@@ -154,11 +154,17 @@ def pytest_sessionfinish() -> None:
 
 
 def _turn(item: pytest.Item, is_long: bool) -> int:
-    if ROS in item.path.parents:
+    room = _room(item.path)
+    if room == ROS:
         return 2 if item.get_closest_marker("build") else 0
-    if GENERATORS in item.path.parents:
+    if room == GENERATORS:
         return 1
     return 3 if is_long else 4
+
+
+@cache
+def _room(path: Path) -> Path | None:
+    return next((room for room in (ROS, GENERATORS) if room in path.parents), None)
 
 
 @pytest.fixture

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from contextlib import ExitStack
 from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -89,7 +90,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Tests of one run of a node go to one process, those of another run to the next that is free."""
     groups: dict[str, int] = {}
     for item in items:
-        if HERE in item.path.parents:
+        if is_here(item.path):
             groups.setdefault(group(item), len(groups))
             item.add_marker(pytest.mark.xdist_group(group(item)))
             item.add_marker(pytest.mark.ros)
@@ -98,9 +99,14 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     items.sort(key=lambda item: groups.get(group(item), 0))
 
 
+@cache
+def is_here(path: Path) -> bool:
+    return HERE in path.parents
+
+
 def needs_ros1_workspace(item: pytest.Item) -> bool:
     """Whether a test runs what is compiled in the workspace of ROS 1."""
-    if HERE not in item.path.parents:
+    if not is_here(item.path):
         return False
     return "ros1_workspace" in getattr(item, "fixturenames", ()) or "ros1" in parameters(item).values()
 
