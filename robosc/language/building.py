@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from robosc.diagnostics import Repair
@@ -32,6 +33,7 @@ class Name:
     end: int
 
 
+@cache
 def element_class(rule: str) -> Any | None:
     """The class of the elements that a rule makes; None for an abstract rule and for one that only matches words."""
     found = getattr(rsc, rule, None) or getattr(ex, rule, None)
@@ -98,7 +100,7 @@ class Builder:
         return element
 
     def _set(self, element: Any, feature: str, node: Node) -> None:
-        definition = element.eClass.findEStructuralFeature(feature)
+        definition = getattr(type(element), feature)
         if definition.is_attribute:
             literal = isinstance(element, ex.IntegerLiteral)
             setattr(element, feature, self._integer(node, literal=True) if literal else self._word(node))
