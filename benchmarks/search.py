@@ -11,7 +11,14 @@ import sys
 from pathlib import Path
 
 PROJECT = Path(__file__).parents[1]
-TESTS = ("synthesis", "analysis", "m2t/supervisor/test_differential.py", "m2m")
+TESTS = (
+    "synthesis",
+    "analysis",
+    "m2t/supervisor/test_differential.py",
+    "m2m",
+    "examples/test_verify.py",
+    "test_patterns.py",
+)
 
 
 def main(times: str = "10") -> int:

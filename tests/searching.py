@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import os
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from robosc.analysis.verify import LoopEffort, c_validation
+from robosc.analysis.verify.loop_exploration import explore_loop
+
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator
 
 #: How many times as long the random searches are: `benchmarks/search.py` has the same tests search longer.
 TIMES = int(os.environ.get("ROBOSC_SEARCH", "1"))
@@ -34,3 +38,15 @@ def long_but(short: Iterable[str], names: Iterable[str]) -> list[str]:
     """Names for the parameter of a test: the `short` ones where a run of all tests is made, all in a longer search."""
     chosen = set(short)
     return [name for name in names if TIMES > 1 or name in chosen]
+
+
+@contextmanager
+def fewer_operations() -> Iterator[None]:
+    """While it lasts `verify` tries a tenth of the operations of a control loop; in `benchmarks/search.py` all.
+
+    For models whose constructs the eight examples have, too: these are tried with all.
+    """
+    effort = LoopEffort(LoopEffort.explored * TIMES // 10, LoopEffort.walked * TIMES // 10)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(c_validation, "explore_loop", lambda program: explore_loop(program, effort))
+        yield

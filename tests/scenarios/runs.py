@@ -35,10 +35,10 @@ class Run:
         return self.simulation.record
 
 
-def played(name: str, seed: int = 0, **changes: Any) -> Run:
-    """A run of a scenario from start to end; `changes` are those of `examples.simulator.engine.play`."""
+def played(name: str, seed: int = 0, until: float | str = "end", **changes: Any) -> Run:
+    """A run of a scenario from its start on; `until` is that of `over`, `changes` are those of `play`."""
     simulation = Simulation(SCENARIOS[name], seed)
-    log = play(simulation, over(simulation), quiet=True, **changes)
+    log = play(simulation, over(simulation, until), quiet=True, **changes)
     return Run(simulation, log)
 
 
