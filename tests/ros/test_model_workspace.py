@@ -168,49 +168,6 @@ def test_a_comment_compiles_nothing(model_workspace: Workspace) -> None:
         assert built_again(done.output) == []
 
 
-def test_a_fault_stops_the_build_with_its_place(model_workspace: Workspace) -> None:
-    model = source(model_workspace, "follower_robot", "person_follower.rscd")
-    text = model.read_text(encoding="utf-8")
-    right = "  requirement move needs EmergencyStop.in_service and PersonDetector.detected\n"
-    assert right in text
-    line = right.replace("detected", "detectd").rstrip("\n")
-    with touched_later(model, text.replace(right, f"{line}\n")):
-        done = build(model_workspace)
-        assert done.status != 0
-        number = text[: text.index("requirement move")].count("\n") + 1
-        column = line.index("detectd") + 1
-        assert f"{model}:{number}:{column}: error: " in done.output
-        assert f"    {line}\n    {' ' * (column - 1)}^^^^^^^\n" in done.output
-        assert "did you mean `detected`?" in done.output
-    assert build(model_workspace).status == 0
-
-
-def test_a_definition_that_changes_is_read_again(model_workspace: Workspace) -> None:
-    """The model is checked against it: what the build depends on follows from the model."""
-    definition = source(model_workspace, "bboxes_ex_msgs", "msg/BoundingBox.msg")
-    text = definition.read_text(encoding="utf-8")
-    with touched_later(definition, text.replace("img_width", "img_breadth")):
-        done = build(model_workspace)
-        assert done.status != 0
-        assert "person_follower.rscd" in done.output
-        assert "img_width" in done.output
-    assert build(model_workspace).status == 0
-
-
-def test_what_the_package_does_not_declare_is_listed(model_workspace: Workspace) -> None:
-    package = source(model_workspace, "follower_robot", "package.xml")
-    text = package.read_text(encoding="utf-8")
-    library, tag = {1: ("roscpp", "exec_depend"), 2: ("rclcpp", "depend")}[model_workspace.ros.version]
-    without = text.replace("  <depend>geometry_msgs</depend>\n", "")
-    without = without.replace(f"<depend>{library}</depend>", f"<build_depend>{library}</build_depend>")
-    with touched_later(package, without):
-        done = build(model_workspace)
-        assert done.status != 0
-        said = done.output.partition("Add to it:\n")[2].partition("CMake Error")[0]
-        assert said.split() == ["<depend>geometry_msgs</depend>", f"<{tag}>{library}</{tag}>"]
-    assert build(model_workspace).status == 0
-
-
 def test_traces_are_played(model_workspace: Workspace, tmp_path: Path) -> None:
     """Against the node that is part of the package, by the generated test."""
     version = model_workspace.ros.version
@@ -235,7 +192,54 @@ def test_traces_are_played(model_workspace: Workspace, tmp_path: Path) -> None:
         told = played(results, model_workspace, model_workspace.environment())
         # The launch system counts two for each trace, CTest the program.
         assert f"Summary: {1 + version} tests, 0 errors, 0 failures, 0 skipped" in told, done.output + told
+
+
+def test_what_stops_a_build(model_workspace: Workspace) -> None:
+    """Each fault in its turn; afterwards all is built again at once, as a build takes seconds."""
+    a_fault_stops_it_with_its_place(model_workspace)
+    what_the_package_does_not_declare_is_listed(model_workspace)
+    a_definition_that_changes_is_read_again(model_workspace)
     assert build(model_workspace).status == 0
+
+
+def a_fault_stops_it_with_its_place(model_workspace: Workspace) -> None:
+    model = source(model_workspace, "follower_robot", "person_follower.rscd")
+    text = model.read_text(encoding="utf-8")
+    right = "  requirement move needs EmergencyStop.in_service and PersonDetector.detected\n"
+    assert right in text
+    line = right.replace("detected", "detectd").rstrip("\n")
+    with touched_later(model, text.replace(right, f"{line}\n")):
+        done = build(model_workspace)
+        assert done.status != 0
+        number = text[: text.index("requirement move")].count("\n") + 1
+        column = line.index("detectd") + 1
+        assert f"{model}:{number}:{column}: error: " in done.output
+        assert f"    {line}\n    {' ' * (column - 1)}^^^^^^^\n" in done.output
+        assert "did you mean `detected`?" in done.output
+
+
+def a_definition_that_changes_is_read_again(model_workspace: Workspace) -> None:
+    """The model is checked against it: what the build depends on follows from the model."""
+    definition = source(model_workspace, "bboxes_ex_msgs", "msg/BoundingBox.msg")
+    text = definition.read_text(encoding="utf-8")
+    with touched_later(definition, text.replace("img_width", "img_breadth")):
+        done = build(model_workspace)
+        assert done.status != 0
+        assert "person_follower.rscd" in done.output
+        assert "img_width" in done.output
+
+
+def what_the_package_does_not_declare_is_listed(model_workspace: Workspace) -> None:
+    package = source(model_workspace, "follower_robot", "package.xml")
+    text = package.read_text(encoding="utf-8")
+    library, tag = {1: ("roscpp", "exec_depend"), 2: ("rclcpp", "depend")}[model_workspace.ros.version]
+    without = text.replace("  <depend>geometry_msgs</depend>\n", "")
+    without = without.replace(f"<depend>{library}</depend>", f"<build_depend>{library}</build_depend>")
+    with touched_later(package, without):
+        done = build(model_workspace)
+        assert done.status != 0
+        said = done.output.partition("Add to it:\n")[2].partition("CMake Error")[0]
+        assert said.split() == ["<depend>geometry_msgs</depend>", f"<{tag}>{library}</{tag}>"]
 
 
 def played(command: list[str], workspace: Workspace, environment: dict[str, str]) -> str:
