@@ -10,6 +10,7 @@ import re
 import shlex
 import tomllib
 import xml.etree.ElementTree as ET
+from contextlib import nullcontext
 from fnmatch import fnmatch
 from typing import TYPE_CHECKING
 
@@ -22,6 +23,7 @@ from robosc.cli import main
 from robosc.language import Documents, read
 from tests.docs.pages import MARKS, PAGES, ROOT, Block, blocks, without_blocks
 from tests.docs.running import Desk, commands, matches
+from tests.searching import fewer_operations
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -99,7 +101,9 @@ def test_the_commands_of_a_page_do_what_it_says(page: Path, tmp_path: Path) -> N
         found = commands(block)
         assert found, f"{block.name} holds no command"
         for number, (command, shown) in enumerate(found):
-            status, told = desk.run(command, desk.place(block))
+            # Where the page does not say how many there were.
+            with nullcontext() if " operations" in (shown or "") else fewer_operations():
+                status, told = desk.run(command, desk.place(block))
             wanted = int(block.marks.get("status", 0)) if number == len(found) - 1 else 0
             assert status == wanted, f"{block.name}: {command}\n{told}"
             if shown is not None:
