@@ -16,6 +16,8 @@ from jsonschema import Draft202012Validator
 
 from robosc.files.resources import locate
 from tests.ros.line_follower_rules import commands_in, late_moves, violations
+from tests.scenarios.rules.books import BOOKS
+from tests.scenarios.runs import moved_while_stopped, poses
 
 if TYPE_CHECKING:
     from tests.ros.conftest import Drive
@@ -65,6 +67,17 @@ def test_halts_without_a_line(drive: Drive) -> None:
 def test_moves_only_in_states_that_allow_it(drive: Drive) -> None:
     assert violations(drive.log) == []
     assert late_moves(drive.record, TRANSPORT, front=0.5) == []
+
+
+def test_does_nothing_that_is_forbidden_in_its_scenario(drive: Drive) -> None:
+    log = [*drive.log]
+    while log[-1]["direction"] == "outside":
+        # At the very end, when it is shut down, the node halts the robot whatever the requirements say.
+        log.pop()
+    assert sum(entry["direction"] == "out" for entry in log) >= 3
+    assert BOOKS["line_follower"]().violations(log) == []
+    assert moved_while_stopped(drive.record, 1.0) < 0.02
+    assert min(pose["gap"] for pose in poses(drive.record)) >= 0
 
 
 def test_what_is_received_is_what_was_decided(drive: Drive) -> None:

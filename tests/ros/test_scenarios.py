@@ -1,7 +1,8 @@
 """The scenarios over a real ROS: each goal is reached, and nothing forbidden was ever sent.
 
 In simulated time, as fast as the controllers answer: how busy the machine is does not matter much. What the controller
-did is read from its own event log by the second opinions of `tests/scenarios/rules`.
+did is read from its own event log by the second opinions of `tests/scenarios/rules`. The line follower's scenario is
+that of `test_line_follower.py`, which asks for the same and more.
 """
 
 from __future__ import annotations
@@ -51,7 +52,7 @@ class LiveRun:
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     if "run" in metafunc.fixturenames:
-        runs = [(kind, name) for kind in ("ros1", "ros2") for name in SCENARIOS]
+        runs = [(kind, name) for kind in ("ros1", "ros2") for name in SCENARIOS if name != "line_follower"]
         ids = [f"{kind}-{name}" for kind, name in runs]
         metafunc.parametrize(("kind", "name"), runs, indirect=["kind"], ids=ids, scope="session")
 
