@@ -2,7 +2,8 @@
 
     python benchmarks/search.py [times]
 
-runs the tests that do so with `times` as many models as `./run-tests` does (10 unless told).
+runs the tests that do so with `times` as many models as `./run-tests` does (10 unless told). The control loops of the
+listings and the patterns are tried with as many times the operations, which are all that `verify` tries.
 """
 
 import os
