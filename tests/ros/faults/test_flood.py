@@ -1,6 +1,4 @@
-"""2,000 messages a second, for 2 seconds: more than all queues hold. `ROBOSC_FLOOD_SECONDS` says how long else: see
-`benchmarks/flood.py`, which takes a minute.
-"""
+"""2,000 messages a second, for two seconds, or `ROBOSC_FLOOD_SECONDS`; a minute of them: `benchmarks/flood.py`."""
 
 from __future__ import annotations
 
