@@ -10,18 +10,12 @@ import rclpy
 from builtin_interfaces.msg import Time
 from rclpy.action import ActionServer, CancelResponse, GoalResponse
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
-from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
+from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor, SingleThreadedExecutor
 from rclpy.qos import qos_profile_sensor_data
 from rosgraph_msgs.msg import Clock
 from std_msgs.msg import String
 
 from .connection import EPOCH, Connection, UnknownTypeError
-
-try:
-    # It takes a fiftieth of the time for a message.
-    from rclpy.experimental import EventsExecutor as Executor
-except ImportError:  # not in every rclpy
-    from rclpy.executors import SingleThreadedExecutor as Executor
 
 
 class Ros2(Connection):
@@ -45,7 +39,7 @@ class Ros2(Connection):
         if simulation.scenario.alive:
             self._node.create_subscription(String, simulation.scenario.alive, lambda _: self.alive(), 100)
         self._goals = []
-        self._executor = Executor()
+        self._executor = SingleThreadedExecutor()
         self._executor.add_node(self._node)
         self._servers = [self._server(action, kind) for action, kind in simulation.serves.items()]
         self._answerers = _Answerers(self, simulation.answers) if simulation.answers else None
