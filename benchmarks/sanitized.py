@@ -97,12 +97,18 @@ could do so just as the answer to the first request came. Now nobody asks again 
 On the code of 2026-11-25 without sanitizers, compiled ROS 2 nodes played all ten scenarios of
 `tests/ros/test_scenarios.py`: each of their 50 tests passed. The ball was not pushed into the goal in a first run, in
 which more than thirty processes shared two cores. With `ros2 launch` and `launch_test`, the four tests of launch files
-passed, and those four of `tests/ros/test_traces.py` that are of the compiled line follower.
+passed, and the eight of `tests/ros/test_traces.py` that are of compiled ROS 2 nodes: the line follower, the porter and
+the managed porter follow their traces. So does `courier_controller`, generated with tests, whose trace `colcon test`
+played. Of the 20 tests of `tests/ros/test_ros2_node.py`, 18 passed; the two that load 500 components were not run.
 
 clang-tidy 14 has read `managed_porter` in ROS 2 and `usher_layer` in ROS 1, and with them the shared headers that they
 include, by `tests/ros/.clang-tidy` (2026-11-25). It found a comparison of a number with itself, a constant in a header
 that was not `inline`, virtual destructors that were protected, and two copies too many. All of that was mended; no
-behaviour was wrong.
+behaviour was wrong. The three headers that only layers in ROS 2 include were read one by one, as templates with types
+put in. It found shared pointers that callbacks take by value, as rclcpp wants them, and nothing else. The static
+analyser says nothing of these three: it does not find a fault that is planted in one. It found nothing in the node of
+`usher_layer` in ROS 2, for which it takes 39 seconds of a processor; the other checks have not read that node to its
+end.
 
 | | last run | packages | tests passed | failed | reports on generated code | on libraries alone |
 |---|---|---|---|---|---|---|"""
