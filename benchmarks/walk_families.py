@@ -224,7 +224,6 @@ FAMILIES: Mapping[str, Callable[[int], Files]] = {
 def write(family: str, number: int, folder: Path) -> Path:
     """Writes the model to a folder; returns where the model itself is."""
     files = FAMILIES[family](number)
-    folder.mkdir(parents=True, exist_ok=True)
     for name, text in files.items():
         (folder / name).write_text(text)
     return folder / next(iter(files))

@@ -37,7 +37,7 @@ settings.register_profile("robosc", deadline=None)
 settings.load_profile("robosc")
 # Whoever runs the tests in the background of a script ignores interrupts; the programs that they start don't.
 signal.signal(signal.SIGINT, signal.default_int_handler)
-# Tests make many objects, most of which stay: to look for garbage as often as Python does takes a sixth of the time.
+# Tests make many objects, most of which stay: to look for garbage as often as Python does takes a fifth of the time.
 gc.set_threshold(100_000, 10, 10)
 
 

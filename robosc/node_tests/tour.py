@@ -9,7 +9,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robosc.engine import Settings as LoopSettings
-from robosc.engine import memory
+from robosc.engine import once
 from robosc.node_tests.coverage import Coverage, Watcher
 from robosc.node_tests.drive import Drive, DrivenController, MeetingTimesError
 from robosc.node_tests.messages import message
@@ -91,14 +91,16 @@ def tour_of(graph: rosgraph.RosGraph, configuration: Configuration, distribution
 
     While the model is remembered (`robosc.engine.remembered`) it is planned once for both where the same comes in.
     """
-    known = memory()
-    if known is None:
+
+    def anew() -> Tour:
         return Tour(graph, configuration, distribution)
-    if (earlier := known.get((Tour, graph))) is not None:
-        with suppress(_OtherwiseError):
-            return Tour(graph, configuration, distribution, earlier)
-    made = known[Tour, graph] = Tour(graph, configuration, distribution)
-    return made
+
+    first = once((Tour, graph), anew)
+    if first.is_for(configuration, distribution):
+        return first
+    with suppress(_OtherwiseError):
+        return Tour(graph, configuration, distribution, first)
+    return anew()
 
 
 class Tour(Drive):
@@ -169,6 +171,10 @@ class Tour(Drive):
     def _work(self) -> None:
         super()._work()
         self._controller.look()
+
+    def is_for(self, configuration: Configuration, distribution: RosDistribution) -> bool:
+        """Whether it was asked for with these."""
+        return self._configuration == configuration and self._distribution is distribution
 
     def _tour(self) -> list[Step]:
         start, shown = self._controller.place(self.plan), frozenset(self._shown)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from contextlib import contextmanager
 from contextvars import ContextVar
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from robosc.m2m.sct_to_engine.build_expressions import as_denial, build_expression, build_value
 from robosc.m2m.sct_to_engine.collect_events import collect_edges, collect_events, collect_groups, collect_sources
@@ -23,7 +23,7 @@ from robosc.metamodel import engine, sct
 from robosc.semantics.roles import Roles, event_name, plant_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from robosc.m2m.sct_to_engine.collect_events import EdgeTable
     from robosc.m2m.sct_to_engine.combine_guards import GuardTerms
@@ -33,6 +33,9 @@ if TYPE_CHECKING:
 #: concerned costs more. Measured, see docs/engine.md.
 POLLED = 64
 
+_Made = TypeVar("_Made")
+
+#: While `remembered` lasts, what was made, by its key.
 _made: ContextVar[dict[object, Any] | None] = ContextVar("made", default=None)
 
 
@@ -46,9 +49,15 @@ def remembered() -> Iterator[None]:
         _made.reset(before)
 
 
-def memory() -> dict[object, Any] | None:
-    """While `remembered` lasts, what was made, by who made it and of what, to be added to; None else."""
-    return _made.get()
+def once(key: object, make: Callable[[], _Made]) -> _Made:
+    """What `make` makes; while `remembered` lasts, what it made when this was first asked for the same key."""
+    known = _made.get()
+    if known is None:
+        return make()
+    if key not in known:
+        known[key] = make()
+    found: _Made = known[key]
+    return found
 
 
 def transform(model: sct.SupervisoryControlModel, polled: int | None = None) -> engine.EngineModel:
@@ -58,13 +67,7 @@ def transform(model: sct.SupervisoryControlModel, polled: int | None = None) -> 
     ValueError where the model has no supervisor, or one without a guard for a controllable event.
     """
     polled = POLLED if polled is None else polled
-    known = memory()
-    if known is None:
-        return _transform(model, polled)
-    if (transform, model, polled) not in known:
-        known[transform, model, polled] = _transform(model, polled)
-    made: engine.EngineModel = known[transform, model, polled]
-    return made
+    return once((transform, model, polled), lambda: _transform(model, polled))
 
 
 def lowering(model: sct.SupervisoryControlModel) -> Lowering:

@@ -233,28 +233,19 @@ def _sources(folder: Path) -> list[Path]:
     return [path for path in folder.rglob("*.c*") if path.suffix in (".c", ".cpp")]
 
 
-def _compiled(sources: Sequence[Path], include: Sequence[str], objects: Path) -> list[Path]:
-    """The object files of sources: those of one language are read together, as what they all include takes longest."""
+def _compiled(sources: Iterable[Path], include: Sequence[str], objects: Path) -> list[Path]:
+    """The object files of sources, compiled side by side."""
     objects.mkdir(parents=True)
+    made = {source: objects / f"{number}.o" for number, source in enumerate(sources)}
 
-    def compiled(source: Path, made: Path) -> Path:
+    def compile_one(source: Path) -> None:
         compiler = "g++" if source.suffix == ".cpp" else "gcc"
-        _run(compiler, "-O0", "-w", "-fPIC", *include, "-c", source, "-o", made)
-        return made
+        _run(compiler, "-O0", "-w", "-fPIC", *include, "-c", source, "-o", made[source])
 
-    made = []
-    for suffix in sorted({source.suffix for source in sources}):
-        own = [source for source in sources if source.suffix == suffix]
-        together = objects / f"all{suffix}"
-        together.write_text("".join(f'#include "{source}"\n' for source in own), encoding="utf-8")
-        try:
-            made.append(compiled(together, objects / f"all{suffix}.o"))
-        except BuildError:
-            # Perhaps two of them have one name for something: none of them has to know the others.
-            with ThreadPoolExecutor(os.cpu_count()) as executor:
-                numbers = range(len(own))
-                made += executor.map(compiled, own, [objects / f"{number}{suffix}.o" for number in numbers])
-    return made
+    with ThreadPoolExecutor(os.cpu_count()) as executor:
+        for _ in executor.map(compile_one, made):
+            pass
+    return list(made.values())
 
 
 def _run(compiler: str, *arguments: str | Path) -> None:
