@@ -155,7 +155,7 @@ def test_tours_see_every_event(case: Case) -> None:
     }
 
 
-@pytest.mark.parametrize("case", ["porter", "kept"], indirect=True)
+@pytest.mark.parametrize("case", ["porter", "kept", "line_follower"], indirect=True)
 def test_the_same_call_gives_the_same_test(case: Case) -> None:
     """Also one that was planned once for ROS 1 and 2, as those of all cases are."""
     assert trace_test(case.graph, case.configuration, 2) == case.test
