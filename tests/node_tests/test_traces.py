@@ -16,7 +16,7 @@ from jsonschema import Draft202012Validator
 
 import robosc
 from robosc import configuration as config
-from robosc.engine import Engine
+from robosc.engine import Engine, remembered
 from robosc.files.resources import locate
 from robosc.metamodel import expression as ex
 from robosc.node_tests import trace_player
@@ -159,6 +159,16 @@ def test_tours_see_every_event(case: Case) -> None:
 def test_the_same_call_gives_the_same_test(case: Case) -> None:
     """Also one that was planned once for ROS 1 and 2, as those of all cases are."""
     assert trace_test(case.graph, case.configuration, 2) == case.test
+
+
+def test_a_tour_with_other_settings_is_another_one() -> None:
+    graph, configuration = robot_of("line_follower")
+    slower = configuration.control_loop.model_copy(update={"period_ms": 350})
+    other = configuration.model_copy(update={"control_loop": slower})
+    with remembered():
+        first, second = (trace_test(graph, asked, 2).files for asked in (configuration, other))
+    assert first != second
+    assert second == trace_test(graph, other, 2).files
 
 
 # Logs of robots
