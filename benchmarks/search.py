@@ -1,9 +1,10 @@
-"""Compares synthesis, findings, explanations, verification and engines with their definitions on many random models.
+"""Searches longer: compares synthesis, verification, engines and all else with their definitions on many random models.
 
     python benchmarks/search.py [times]
 
-runs the tests that do so with `times` as many models as `./run-tests` does (10 unless told). The control loops of the
-listings and the patterns are tried with as many times the operations, which are all that `verify` tries.
+runs the tests with random input, and those that search, with `times` as many examples as `./run-tests` does (10 unless
+told). The control loops of the listings and the patterns are tried with as many times the operations, which are all
+that `verify` tries.
 """
 
 import os
@@ -12,6 +13,7 @@ import sys
 from pathlib import Path
 
 PROJECT = Path(__file__).parents[1]
+#: What searches, beside the tests that hypothesis makes random input for.
 TESTS = (
     "synthesis",
     "analysis",
@@ -23,17 +25,15 @@ TESTS = (
 
 
 def main(times: str = "10") -> int:
-    command = [
-        sys.executable,
-        "-m",
-        "pytest",
-        "-n",
-        "auto",
-        "-m",
-        "slow or build",
-        *(f"tests/{name}" for name in TESTS),
+    pytest = [sys.executable, "-m", "pytest", "-n", "auto"]
+    searches = [
+        ["-m", "hypothesis and not ros", "tests"],
+        ["-m", "(slow or build) and not hypothesis", *(f"tests/{name}" for name in TESTS)],
     ]
-    return subprocess.run(command, cwd=PROJECT, env={**os.environ, "ROBOSC_SEARCH": times}, check=False).returncode
+    environment = {**os.environ, "ROBOSC_SEARCH": times}
+    return max(
+        subprocess.run([*pytest, *search], cwd=PROJECT, env=environment, check=False).returncode for search in searches
+    )
 
 
 if __name__ == "__main__":

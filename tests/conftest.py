@@ -26,14 +26,16 @@ from robosc.engine import remembered
 from robosc.m2t.models import TraceTest
 from robosc.metamodel.rosgraph import RosGraph
 from robosc.node_tests.trace_test import trace_test
+from tests.searching import examples
 from tests.sharing import made_once
 
 #: Characters of a parameter that stand in the name of a test.
 LONGEST = 80
 ROS, GENERATORS = Path(__file__).parent / "ros", Path(__file__).parent / "m2t"
 
-# Time is measured in benchmarks; a busy machine fails no test.
-settings.register_profile("robosc", deadline=None)
+# Time is measured in benchmarks; a busy machine fails no test. `benchmarks/search.py` tries more.
+settings.register_profile("robosc", deadline=None, max_examples=examples(50))
+settings.register_profile("ci", settings.get_profile("ci"), max_examples=examples(50))
 settings.load_profile("robosc")
 # Whoever runs the tests in the background of a script ignores interrupts; the programs that they start don't.
 signal.signal(signal.SIGINT, signal.default_int_handler)

@@ -34,6 +34,12 @@ def slow_but(quick: Iterable[str], values: Iterable[Any]) -> list[Any]:
     return [value if is_quick(value) else pytest.param(value, marks=pytest.mark.slow) for value in values]
 
 
+def matrix_but(chosen: Iterable[str], values: Iterable[Any]) -> list[Any]:
+    """As `slow_but`, and those that are not chosen only `benchmarks/matrix.py` tries: one way leads through all."""
+    names, rest = set(chosen), [pytest.mark.slow, pytest.mark.matrix]
+    return [pytest.param(value, marks=[pytest.mark.slow] if value in names else rest) for value in values]
+
+
 def long_but(short: Iterable[str], names: Iterable[str]) -> list[str]:
     """Names for the parameter of a test: the `short` ones where a run of all tests is made, all in a longer search."""
     chosen = set(short)

@@ -19,7 +19,7 @@ from robosc.metamodel import sct
 pytestmark = pytest.mark.slow
 
 ROOT = Path(__file__).parents[2]
-SIZES = (30, 120)
+SIZES = (25, 75)
 #: What grows with n·log n, and what is small beside what is done once, may lie a little above 1.
 MOST = 1.3
 

@@ -21,6 +21,7 @@ from robosc.debugger.launching import _KEYS
 from robosc.debugger.protocol import FramingError
 from robosc.debugger.stops import FILTERS
 from robosc.m2t.models import Models
+from tests.searching import examples
 
 from ..cli.conftest import DOOR, not_longer_than
 from .client import ROOT, Client, OverPort, Program
@@ -286,7 +287,7 @@ FITTING = {
 
 
 @pytest.mark.slow
-@settings(max_examples=60)
+@settings(max_examples=examples(30))
 @given(
     st.lists(
         st.tuples(

@@ -19,6 +19,7 @@ from robosc.diagrams.graph import Arrow, Graph, Group, Node
 from robosc.diagrams.graph_drawing import draw
 from robosc.diagrams.graph_layout import lay_out
 from robosc.language import read
+from tests.searching import examples
 
 YARD = Path(__file__).with_name("yard")
 ENDINGS = {"mermaid": "mmd", "dot": "dot", "svg": "svg"}
@@ -152,7 +153,7 @@ def skeleton(notation: str, text: str) -> list[str]:
 @pytest.mark.slow
 @pytest.mark.parametrize("notation", GRAPH_NOTATIONS)
 @pytest.mark.parametrize("states", [True, False])
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(30), deadline=None)
 @given(title=TEXTS | st.sampled_from(HOSTILE), text=TEXTS | st.sampled_from(HOSTILE))
 def test_no_text_gets_out_of_its_place(notation: str, states: bool, title: str, text: str) -> None:
     drawn = diagram(made(title, text, states=states), notation)
@@ -196,7 +197,7 @@ def groups(draw: st.DrawFn, *, downwards: bool) -> Group:
     return Group("n", "title", (), nodes, [Arrow(f"n{one}", f"n{other}", labels) for one, other in chosen])
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 @given(data=st.data(), downwards=st.booleans())
 def test_nothing_overlaps_and_arrows_join_their_nodes(data: st.DataObject, downwards: bool) -> None:
     group = data.draw(groups(downwards=downwards))

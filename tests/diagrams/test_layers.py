@@ -6,6 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from robosc.diagrams.layers import Link, arrange
+from tests.searching import examples
 
 
 @st.composite
@@ -25,7 +26,7 @@ def graphs(draw: st.DrawFn) -> tuple[dict[str, tuple[float, float]], list[Link]]
     return sizes, links
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=examples(50), deadline=None)
 @given(graph=graphs())
 def test_nothing_is_in_the_way(graph: tuple[dict[str, tuple[float, float]], list[Link]]) -> None:
     sizes, links = graph

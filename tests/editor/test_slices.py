@@ -14,6 +14,7 @@ from robosc.editor.findings import quickly
 from robosc.editor.project import Project
 from tests.editor.server import COMMAND, Editor, findings, initialize, of, open_text, position, replace
 from tests.editor.test_robustness import EXAMPLES, URI
+from tests.searching import examples
 
 TEXTS = [path.read_text() for path in EXAMPLES]
 #: What reading the text finds, as against the rules, some of which conclude from what is absent in a slice.
@@ -50,7 +51,7 @@ def changes(draw: st.DrawFn) -> tuple[str, str]:
 
 
 @pytest.mark.slow
-@settings(max_examples=40)
+@settings(max_examples=examples(20))
 @given(changes())
 def test_what_is_found_quickly_is_what_is_found(change: tuple[str, str]) -> None:
     quick, whole = both(*change)

@@ -13,6 +13,7 @@ from robosc.metamodel import expression as ex
 from robosc.metamodel import sct
 from robosc.semantics.roles import event_name, plant_of
 from tests.engine.robots import robots
+from tests.searching import examples
 
 _SETTINGS = st.builds(
     Settings,
@@ -93,7 +94,7 @@ class Observed:
 
 _observed = st.builds(Observed, robots(), _SETTINGS, st.integers(0, 2**32))
 _some = settings(
-    max_examples=25,
+    max_examples=examples(12),
     deadline=None,
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much, HealthCheck.data_too_large],
 )

@@ -17,6 +17,7 @@ from robosc.language.grammar import words_of
 from robosc.language.recovery import parse_file
 from robosc.language.text import Text, decode
 from robosc.language.tokens import Kind, Tokens
+from tests.searching import examples
 
 ROOT = Path(__file__).parent.parent.parent
 FILES = [
@@ -123,7 +124,7 @@ def layouts(draw: st.DrawFn) -> tuple[str, str]:
 
 
 @pytest.mark.slow
-@settings(max_examples=120, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=examples(60), deadline=None, suppress_health_check=list(HealthCheck))
 @given(layouts())
 def test_whatever_the_layout(texts: tuple[str, str]) -> None:
     original, noisy = texts

@@ -12,6 +12,7 @@ from robosc.metamodel.validity import faults
 from robosc.metamodel.xmi import load
 from tests.random_sct import sct_models
 from tests.sct_models import edge, model, needs, plant
+from tests.searching import examples
 
 
 def messages(root: Any) -> list[str]:
@@ -43,7 +44,7 @@ def test_a_valid_model_has_no_faults(folder: Any) -> None:
 
 
 @pytest.mark.slow
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=examples(25), deadline=None)
 @given(given=sct_models())
 def test_random_valid_models_have_none(given: sct.SupervisoryControlModel) -> None:
     assert messages(given) == []

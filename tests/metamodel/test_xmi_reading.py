@@ -13,6 +13,7 @@ from robosc.diagnostics import Diagnostic, ModelError
 from robosc.diagnostics.rules import page
 from robosc.files.resources import locate
 from robosc.metamodel.xmi import load, to_texts
+from tests.searching import examples
 
 HEAD = (
     '<?xml version="1.0" encoding="UTF-8"?>\n'
@@ -301,7 +302,7 @@ def test_a_truncated_file_is_a_finding(folder: Path, texts: dict[str, str], name
 
 
 @pytest.mark.slow
-@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=examples(75), deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(data=st.data())
 def test_no_damage_makes_anything_but_findings(folder: Path, texts: dict[str, str], data: st.DataObject) -> None:
     """Words of the file change places: the result is a model, or findings inside the files."""

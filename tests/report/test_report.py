@@ -30,11 +30,20 @@ Told: TypeAlias = Callable[[str], dict[str, Any]]
 Planned: TypeAlias = Callable[[str, int], TraceTest]
 ROOT = Path(__file__).parents[2]
 QUICK = "supervised_line_follower"
+#: Their reports take longest, and have nothing that that of the warehouse's robot does not have.
+LONG = ("object_finder", "sprayer")
 #: With other robots, in a run of all tests; those of one robot look at the same report.
 EACH = [
     QUICK,
     *(
-        pytest.param(name, marks=[pytest.mark.slow, pytest.mark.xdist_group(f"report {name}")])
+        pytest.param(
+            name,
+            marks=[
+                pytest.mark.slow,
+                pytest.mark.xdist_group(f"report {name}"),
+                *([pytest.mark.matrix] if name in LONG else []),
+            ],
+        )
         for name in PAGES
         if name != QUICK
     ),

@@ -60,6 +60,8 @@ scenario "a call that fails, a pause, and another call"
   response from fill
   expect Pump.full
 """
+#: A compiled node plays scenarios over ROS 1 in any case.
+OVER_ROS = pytest.mark.parametrize("runner", [pytest.param("ros1", marks=pytest.mark.matrix), "ros2"], indirect=True)
 
 
 def played(
@@ -79,11 +81,13 @@ def _path(environment: dict[str, str]) -> str:
     return ":".join(filter(None, (str(PROJECT), environment.get("PYTHONPATH"))))
 
 
+@OVER_ROS
 def test_a_node_plays_scenarios(runner: Runner, tmp_path: Path) -> None:
     status, said = played(runner, runner.robosc, tmp_path, STOPS)
     assert (status, "1 scenario, 0 failed" in said) == (0, True), said
 
 
+@OVER_ROS
 def test_a_call_that_fails_and_times(runner: Runner, tmp_path: Path) -> None:
     model = tmp_path / "plant.rscd"
     model.write_text(PUMP, encoding="utf-8")
@@ -91,6 +95,7 @@ def test_a_call_that_fails_and_times(runner: Runner, tmp_path: Path) -> None:
     assert (status, "1 scenario, 0 failed" in said) == (0, True), said
 
 
+@OVER_ROS
 def test_a_node_that_does_something_else_is_told_at_the_line(runner: Runner, tmp_path: Path) -> None:
     """It has forgotten its stop button."""
     shutil.copytree(LINE_FOLLOWER.parent, tmp_path / "careless")

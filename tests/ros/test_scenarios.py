@@ -36,6 +36,8 @@ LAYERS = {
         "controller/line_stepper.rscd",
     )
 }
+#: Over ROS 2 they have no kind of communication that others don't have.
+REST = [("ros2", name) for name in ("object_finder", "obstacle_navigation", "person_follower", "push_ball", "sprayer")]
 
 
 @dataclass(frozen=True)
@@ -52,9 +54,13 @@ class LiveRun:
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     if "run" in metafunc.fixturenames:
-        runs = [(kind, name) for kind in ("ros1", "ros2") for name in SCENARIOS if name != "line_follower"]
-        ids = [f"{kind}-{name}" for kind, name in runs]
-        metafunc.parametrize(("kind", "name"), runs, indirect=["kind"], ids=ids, scope="session")
+        runs = [
+            pytest.param(kind, name, id=f"{kind}-{name}", marks=[pytest.mark.matrix] if (kind, name) in REST else [])
+            for kind in ("ros1", "ros2")
+            for name in SCENARIOS
+            if name != "line_follower"
+        ]
+        metafunc.parametrize(("kind", "name"), runs, indirect=["kind"], scope="session")
 
 
 @pytest.fixture(scope="session")

@@ -151,7 +151,7 @@ def test_without_a_master_it_waits_and_can_be_ended(run_ros1: Runner, tmp_path: 
         assert processes.logs().splitlines()[1:] == [address]
 
 
-@pytest.mark.parametrize("kind", ["run_ros1", "run_ros2"])
+@pytest.mark.parametrize("kind", [pytest.param("run_ros1", marks=pytest.mark.matrix), "run_ros2"])
 def test_a_node_that_starts_again_is_followed(
     kind: str, request: pytest.FixtureRequest, chromium: Any, tmp_path: Path
 ) -> None:

@@ -17,6 +17,7 @@ from robosc.configuration import NO_STOP, NO_STOP_ON_SILENCE, Configuration
 from robosc.files.resources import locate
 from robosc.runtime.core.port import Endpoint, Outcome
 from tests.runtime.fake import Record, World
+from tests.searching import examples
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -295,7 +296,7 @@ _STEPS = st.lists(
 
 
 @pytest.mark.slow
-@settings(max_examples=40, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=examples(20), suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(steps=_STEPS)
 def test_what_goes_out_is_what_is_logged(steps: list[tuple[str, int]], tmp_path: Path) -> None:
     log = tmp_path / "events.jsonl"

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from robosc.configuration import Configuration
 from robosc.runtime.core.port import Outcome
 from tests.runtime.fake import Record, World
+from tests.searching import examples
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -179,7 +180,7 @@ def needs(following: bool, recorder: str, tags: Sequence[int]) -> bool:
 
 
 @pytest.mark.slow
-@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=examples(30), deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(
     st.lists(
         st.one_of(st.sampled_from(("toggle", "record")), st.lists(st.integers(0, 3), max_size=4)),

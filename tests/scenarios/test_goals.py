@@ -14,7 +14,7 @@ from examples.simulator.scenarios import SCENARIOS
 from examples.simulator.world import STEP
 from tests.scenarios.rules.books import BOOKS
 from tests.scenarios.runs import Entry, moved_while_stopped, played, poses, run_of, times_of
-from tests.searching import slow_but
+from tests.searching import matrix_but, slow_but
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 #: With all who look at the same runs.
 pytestmark = pytest.mark.xdist_group("scenarios")
 EACH = pytest.mark.parametrize("name", slow_but(["line_follower", "push_ball", "supervised_line_follower"], SCENARIOS))
+#: Where a run is made once more.
+SOME = pytest.mark.parametrize("name", matrix_but(["line_follower", "maze_solver", "simple_navigation"], SCENARIOS))
 
 
 def test_there_is_a_scenario_for_each_example() -> None:
@@ -54,8 +56,7 @@ def test_stands_while_stop_is_pressed(name: str) -> None:
     assert moved_while_stopped(run_of(name).record, allowance=0.3) < 0.005
 
 
-@pytest.mark.slow
-@EACH
+@SOME
 def test_errors_of_sensors_change_the_way_but_not_its_end(name: str) -> None:
     other = played(name, seed=1)
     assert other.simulation.reached
@@ -63,8 +64,7 @@ def test_errors_of_sensors_change_the_way_but_not_its_end(name: str) -> None:
     assert BOOKS[name]().violations(other.log) == []
 
 
-@pytest.mark.slow
-@EACH
+@SOME
 def test_a_run_is_always_the_same(name: str) -> None:
     """A third of it in each detail, after another run; that the rest comes out the same, the pictures show."""
     first = run_of(name)

@@ -18,6 +18,7 @@ from robosc.semantics.roles import event_name
 from robosc.simulation import Simulation
 from robosc.simulation.data import data_beside
 from robosc.simulation.kept import Kept
+from tests.searching import examples
 
 TANK = """\
 robot Keeper {
@@ -94,7 +95,7 @@ def message(value: Any) -> Any:
 
 
 @pytest.mark.slow
-@settings(max_examples=150)
+@settings(max_examples=examples(75))
 @given(STEPS)
 def test_it_is_what_the_node_makes_of_the_messages(steps: list[tuple[str, Any]]) -> None:
     simulation = Simulation(MODEL, GRAPH)

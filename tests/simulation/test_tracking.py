@@ -18,6 +18,7 @@ from robosc.semantics.edges import edges_by_event, origin
 from robosc.semantics.roles import event_name
 from robosc.simulation import Simulation
 from robosc.simulation.tracking import ReportError, Tracker
+from tests.searching import examples
 
 ROOT = Path(__file__).parents[2]
 MODELS = [
@@ -50,7 +51,7 @@ def reported(engine: Engine, events: list[str], time: float = 0.0) -> dict[str, 
 
 
 @pytest.mark.slow
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(30), deadline=None)
 @given(st.sampled_from(MODELS), st.integers(0, 2**32), st.lists(st.integers(1, 6), min_size=1, max_size=12))
 def test_it_is_where_the_engine_is(path: Path, seed: int, sizes: list[int]) -> None:
     model, graph = loaded(path)

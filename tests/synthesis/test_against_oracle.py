@@ -16,7 +16,7 @@ from tests.synthesis.oracle import Oracle
 pytestmark = pytest.mark.slow
 
 RANDOM_MODELS = settings(
-    max_examples=examples(35), deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
+    max_examples=examples(18), deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
 )
 
 

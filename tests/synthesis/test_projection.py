@@ -13,11 +13,12 @@ from robosc.synthesis.fixpoint import reachable
 from robosc.synthesis.projection import Projection
 from robosc.synthesis.relation import event_relations
 from tests.random_sct import sct_models
+from tests.searching import examples
 
 
 @pytest.mark.slow
 @given(sct_models(), st.data(), st.sampled_from([1, 64]))
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=examples(25), deadline=None)
 def test_it_says_of_the_elements_what_the_states_do(model, data, widest):
     layout = Layout(model)
     encoding = Encoding(layout, Diagrams(layout.levels, 1 << 16))

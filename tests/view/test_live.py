@@ -15,6 +15,7 @@ from robosc.semantics.definition import definition_text
 from robosc.simulation import Simulation
 from robosc.simulation.simulation import whole_state
 from robosc.view import Live
+from tests.searching import examples
 
 from .robots import GATE, Viewer, wholes
 
@@ -59,7 +60,7 @@ STEPS = st.lists(
 
 
 @pytest.mark.slow
-@settings(max_examples=80)
+@settings(max_examples=examples(40))
 @given(STEPS, st.integers(2, 12))
 def test_the_last_moment_is_what_the_engine_says(steps: list[tuple[str, Any]], kept: int) -> None:
     """Whoever comes early or late, and however few moments are kept."""

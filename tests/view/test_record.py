@@ -16,6 +16,7 @@ from robosc.simulation import DataError, Simulation
 from robosc.simulation.script import Step
 from robosc.simulation.simulation import whole_state
 from robosc.view.moments import ActionError
+from tests.searching import examples
 
 from .robots import Viewer, record, wholes
 
@@ -51,7 +52,7 @@ def assert_true(shown: Record, simulation: Simulation) -> None:
 
 
 @pytest.mark.slow
-@settings(max_examples=60)
+@settings(max_examples=examples(30))
 @given(st.lists(ACTIONS, max_size=25))
 def test_moments_say_what_the_engine_says(actions: list[dict[str, Any]]) -> None:
     SHARED.do({"action": "restart"})
@@ -137,7 +138,7 @@ def test_explained() -> None:
             shown.explained(moment, event)
 
 
-@settings(max_examples=30)
+@settings(max_examples=examples(15))
 @given(st.lists(st.tuples(ACTIONS, st.booleans()), max_size=15))
 def test_every_viewer_sees_the_same(actions: list[tuple[dict[str, Any], bool]]) -> None:
     """One reads now and then, one comes late: both know in the end what has happened."""

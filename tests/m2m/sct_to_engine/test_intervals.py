@@ -14,10 +14,11 @@ from robosc.semantics.domains import Interval, Width, storage, working_width
 from tests.m2m.sct_to_engine import oracle
 from tests.random_sct import sct_models
 from tests.sct_models import edge, model, plant
+from tests.searching import examples
 
 
 @pytest.mark.slow
-@settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=examples(30), deadline=None, suppress_health_check=list(HealthCheck))
 @given(sct_models(), st.randoms(use_true_random=False))
 def test_values_stay_in_their_interval_and_depend_on_what_is_read_only(made, random) -> None:
     lower = lowering(made)

@@ -273,7 +273,7 @@ def _supervised(made: sct.SupervisoryControlModel) -> sct.SupervisoryControlMode
 
 
 @pytest.mark.slow
-@settings(max_examples=examples(60), deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=examples(30), deadline=None, suppress_health_check=list(HealthCheck))
 @given(sct_models(), st.randoms(use_true_random=False))
 def test_an_engine_model_means_what_its_sct_model_does(made: sct.SupervisoryControlModel, random) -> None:
     _supervised(made)
@@ -314,7 +314,7 @@ def _drawn(kind: ex.Type, random) -> tuple[object, object]:
 
 
 @pytest.mark.slow
-@settings(max_examples=25, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=examples(12), deadline=None, suppress_health_check=list(HealthCheck))
 @given(sct_models())
 def test_engine_models_can_be_saved_and_are_the_same_each_time(made: sct.SupervisoryControlModel) -> None:
     _supervised(made)
@@ -431,7 +431,7 @@ _CONDITIONS = st.recursive(
 
 
 @given(guards=st.lists(_CONDITIONS, min_size=1, max_size=4))
-@settings(max_examples=examples(40), suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=examples(20), suppress_health_check=[HealthCheck.too_slow])
 def test_an_answer_is_never_blocked_by_its_data(guards: list[str]) -> None:
     assert always_possible(guards, 3)
 

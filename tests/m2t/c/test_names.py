@@ -8,6 +8,7 @@ from robosc.m2t.c.names import KEYWORDS, CNames
 from robosc.metamodel import sct
 from tests.m2t.supervisor import corners
 from tests.sct_models import model, plant
+from tests.searching import examples
 
 _words = st.sampled_from(["a", "b", "a_b", "b_a", "a_b_a", "int", "event", "name", "state", "bool", "class", "_", "b_"])
 
@@ -22,7 +23,7 @@ def _all(names: CNames, made: sct.SupervisoryControlModel) -> tuple[list[str], l
     return enumerators + functions, members, [names.member(input_) for owner in made.plants for input_ in owner.inputs]
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(30))
 @given(
     st.lists(_words, unique=True, min_size=1, max_size=5),
     st.lists(_words, unique=True, max_size=4),

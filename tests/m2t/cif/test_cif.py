@@ -25,6 +25,7 @@ from tests.m2t.cif.differences import differences
 from tests.m2t.cif.rebuilding import rebuild
 from tests.random_sct import sct_models
 from tests.sct_models import disables, edge, model, needs, plant
+from tests.searching import examples
 
 HERE = Path(__file__).parent
 
@@ -152,7 +153,7 @@ def test_plain_models_come_back_as_they_were() -> None:
 
 
 @pytest.mark.slow
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(30), deadline=None)
 @given(given=sct_models())
 def test_every_model_keeps_its_meaning(given: sct.SupervisoryControlModel) -> None:
     text = generated(given)["robot.cif"]

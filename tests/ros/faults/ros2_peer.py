@@ -9,7 +9,7 @@ import rclpy
 from action_msgs.srv import CancelGoal
 from rclpy.action import ActionServer, CancelResponse, GoalResponse
 from rclpy.callback_groups import ReentrantCallbackGroup
-from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
+from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor, SingleThreadedExecutor
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.time import Time
 from topics import fill
@@ -25,7 +25,8 @@ class Ros:
         rclpy.init()
         self.node = rclpy.create_node(name)
         self.group = ReentrantCallbackGroup()
-        self.executor = MultiThreadedExecutor(num_threads=8)
+        # Only calls and goals wait for what a test has them do; several threads cost several times as much.
+        self.executor = MultiThreadedExecutor(num_threads=8) if name == "server" else SingleThreadedExecutor()
         self.executor.add_node(self.node)
         self.actions = None
         self.spinning = threading.Thread(target=self._spin, daemon=True)

@@ -1,0 +1,16 @@
+"""Runs the rows of long tables of tests that `./run-tests` leaves out, as others of the same table lead the same way.
+
+    python benchmarks/matrix.py [arguments of pytest]
+
+They are marked `matrix`: nodes run from their models over ROS 1, where compiled ones do the same; the scenarios over
+both ROS; the demands without which a second opinion objects; reports and runs of each robot.
+"""
+
+import subprocess
+import sys
+from pathlib import Path
+
+RUN_TESTS = Path(__file__).parents[1] / "run-tests"
+
+if __name__ == "__main__":
+    sys.exit(subprocess.run([RUN_TESTS, "-m", "matrix", *sys.argv[1:]], check=False).returncode)
