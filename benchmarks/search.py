@@ -3,7 +3,7 @@
     python benchmarks/search.py [times]
 
 runs the tests with random input, and those that search, with `times` as many examples as `./run-tests` does (10 unless
-told). The control loops of the listings and the patterns are tried with as many times the operations, which are all
+told). Of listings, patterns and the two large robots as many times the operations and states are tried, which are all
 that `verify` tries.
 """
 

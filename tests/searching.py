@@ -9,8 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from robosc.analysis.verify import LoopEffort, c_validation
+from robosc.analysis import verify
+from robosc.analysis.verify import LoopEffort, c_validation, validate_model
 from robosc.analysis.verify.loop_exploration import explore_loop
+from robosc.analysis.verify.model_reading import Effort
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -47,12 +49,14 @@ def long_but(short: Iterable[str], names: Iterable[str]) -> list[str]:
 
 
 @contextmanager
-def fewer_operations() -> Iterator[None]:
-    """While it lasts `verify` tries a tenth of the operations of a control loop; in `benchmarks/search.py` all.
+def less_effort() -> Iterator[None]:
+    """While it lasts `verify` tries a tenth of the operations of a control loop, and of the states of a large model.
 
-    For models whose constructs the eight examples have, too: these are tried with all.
+    For models whose constructs others have, too, which are tried with all; in `benchmarks/search.py` these are as well.
     """
-    effort = LoopEffort(LoopEffort.explored * TIMES // 10, LoopEffort.walked * TIMES // 10)
+    loop = LoopEffort(LoopEffort.explored * TIMES // 10, LoopEffort.walked * TIMES // 10)
+    model = Effort(states=Effort.states * TIMES // 10, random=Effort.random * TIMES // 10)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(c_validation, "explore_loop", lambda program: explore_loop(program, effort))
+        patch.setattr(c_validation, "explore_loop", lambda program: explore_loop(program, loop))
+        patch.setattr(verify, "validate_model", lambda robot, plants: validate_model(robot, plants, model))
         yield

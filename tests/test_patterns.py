@@ -8,7 +8,7 @@ import pytest
 from click.testing import CliRunner
 
 from robosc.cli import main
-from tests.searching import fewer_operations
+from tests.searching import less_effort
 
 PAGE = Path(__file__).parent.parent / "docs" / "patterns.md"
 PATTERNS = PAGE.with_suffix("")
@@ -40,7 +40,7 @@ def answered(name: str, result: str = "") -> str:
 @EACH
 @pytest.mark.parametrize("command", ["check", "synthesize", pytest.param("verify", marks=pytest.mark.slow)])
 def test_nothing_is_said_of_it(name: str, command: str) -> None:
-    with fewer_operations():
+    with less_effort():
         done = CliRunner().invoke(main, [command, str(PATTERNS / f"{name}.rscd")])
     assert (done.exit_code, done.stderr) == (0, ""), done.output
 

@@ -23,7 +23,7 @@ from robosc.cli import main
 from robosc.language import Documents, read
 from tests.docs.pages import MARKS, PAGES, ROOT, Block, blocks, without_blocks
 from tests.docs.running import Desk, commands, matches
-from tests.searching import fewer_operations
+from tests.searching import less_effort
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -102,7 +102,7 @@ def test_the_commands_of_a_page_do_what_it_says(page: Path, tmp_path: Path) -> N
         assert found, f"{block.name} holds no command"
         for number, (command, shown) in enumerate(found):
             # Where the page does not say how many there were.
-            with nullcontext() if " operations" in (shown or "") else fewer_operations():
+            with nullcontext() if " operations" in (shown or "") else less_effort():
                 status, told = desk.run(command, desk.place(block))
             wanted = int(block.marks.get("status", 0)) if number == len(found) - 1 else 0
             assert status == wanted, f"{block.name}: {command}\n{told}"
