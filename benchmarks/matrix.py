@@ -3,7 +3,7 @@
     python benchmarks/matrix.py [arguments of pytest]
 
 They are marked `matrix`: nodes run from their models over ROS 1, where compiled ones do the same; the scenarios over
-both ROS; the demands without which a second opinion objects; reports and runs of each robot.
+the other ROS; the demands without which a second opinion objects; reports and runs of more robots.
 """
 
 import subprocess

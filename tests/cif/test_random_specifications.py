@@ -16,7 +16,7 @@ from tests.cif.comparing import agrees, reading_of
 from tests.cif.random_specifications import Specification
 
 
-@pytest.mark.parametrize("start", [0, *(pytest.param(start, marks=pytest.mark.slow) for start in range(20, 120, 20))])
+@pytest.mark.parametrize("start", [0, *(pytest.param(start, marks=pytest.mark.slow) for start in range(20, 60, 20))])
 def test_as_many_states_as_by_the_definition(start: int) -> None:
     counts = [agrees(Specification(seed, narrow=seed % 2 == 1)) for seed in range(start, start + 20)]
     assert counts.count(None) < 10

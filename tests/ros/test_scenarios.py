@@ -36,8 +36,9 @@ LAYERS = {
         "controller/line_stepper.rscd",
     )
 }
-#: Over ROS 2 they have no kind of communication that others don't have.
-REST = [("ros2", name) for name in ("object_finder", "obstacle_navigation", "person_follower", "push_ball", "sprayer")]
+#: With topics, with an action, and behind a layer: these run over ROS 2, the others over ROS 1, all over both in
+#: `benchmarks/matrix.py`.
+OVER_ROS_2 = ("maze_solver", "simple_navigation", "supervised_line_follower")
 
 
 @dataclass(frozen=True)
@@ -55,7 +56,12 @@ class LiveRun:
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     if "run" in metafunc.fixturenames:
         runs = [
-            pytest.param(kind, name, id=f"{kind}-{name}", marks=[pytest.mark.matrix] if (kind, name) in REST else [])
+            pytest.param(
+                kind,
+                name,
+                id=f"{kind}-{name}",
+                marks=[] if (kind == "ros2") == (name in OVER_ROS_2) else [pytest.mark.matrix],
+            )
             for kind in ("ros1", "ros2")
             for name in SCENARIOS
             if name != "line_follower"
