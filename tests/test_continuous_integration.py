@@ -98,6 +98,7 @@ def test_without_models_it_fails(job: Job) -> None:
     assert (done.returncode, done.stdout) == (1, "::error::there are no models: no .rscd or .cif file\n")
 
 
+@pytest.mark.slow
 def test_findings_become_sarif(job: Job) -> None:
     job.run("Find models")
     assert job.run("Check").returncode == 0

@@ -242,6 +242,7 @@ def drawn() -> dict[str, bool]:
     return found
 
 
+@pytest.mark.slow
 def test_every_hint_that_says_what_to_write_is_an_edit() -> None:
     told = [start for starts in TOLD.values() for start in starts]
     without = [hint for hint, is_edit in drawn().items() if not is_edit]

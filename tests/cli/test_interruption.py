@@ -34,6 +34,7 @@ run()
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("hiding", ["pass", "raise SyntaxError('interrupted import')", "raise OSError('interrupted')"])
 def test_an_interrupt_that_comes_out_otherwise(door: Path, hiding: str) -> None:
     done = subprocess.run(

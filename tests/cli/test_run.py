@@ -26,6 +26,7 @@ def test_wants_to_know_which_ros() -> None:
     assert "--ros1 or --ros2" in done.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("option", "module", "repair"),
     [

@@ -32,6 +32,7 @@ async def client(lsp_client: Editor, tmp_path: Path):
     await lsp_client.shutdown_session()
 
 
+@pytest.mark.slow
 @pytest.mark.asyncio
 async def test_a_name_in_the_texts_of_two_folders(client: Editor, tmp_path: Path) -> None:
     texts = {name: (tmp_path / name).read_text() for name in ("robots/cart.rscd", "robots/van.rscd")}
@@ -64,6 +65,7 @@ async def test_a_name_in_the_texts_of_two_folders(client: Editor, tmp_path: Path
     assert [symbol.location.uri for symbol in symbols] == [(tmp_path / "parts/wheels.rscd").as_uri()]
 
 
+@pytest.mark.slow
 @pytest.mark.asyncio
 async def test_folders_come_and_go(client: Editor, tmp_path: Path) -> None:
     uri = open_text(client, tmp_path / "robots/cart.rscd", ROBOT)

@@ -479,6 +479,7 @@ async def test_who_can_make_this_state_change(client: Editor, folder: Path) -> N
     close(client, uri)
 
 
+@pytest.mark.slow
 async def test_quick_fix_over_the_protocol(client: Editor, folder: Path) -> None:
     text = ROBOT.replace("Door.open", "Door.opem")
     uri, (finding,) = await opened(client, folder / "fix.rscd", text)

@@ -64,6 +64,7 @@ def neovim(version: tuple[int, int]) -> str:
     return program
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("nth", "version"), [(0, (0, 11)), (1, (0, 7))], ids=["0.11", "0.7"])
 def test_neovim(folder: Path, nth: int, version: tuple[int, int]) -> None:
     program = neovim(version)

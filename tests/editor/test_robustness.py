@@ -92,6 +92,7 @@ def test_a_small_text_cut_off_anywhere() -> None:
         ask_everything(made, TINY[:end], end)
 
 
+@pytest.mark.slow
 def test_a_text_of_many_constructs_cut_off() -> None:
     made = project(SMALL)
     for end in range(0, len(SMALL) + 1, 19):

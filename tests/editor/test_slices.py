@@ -114,6 +114,7 @@ def test_only_large_texts() -> None:
     assert [found.code for found in quickly(made.snapshot(), path)] == ["unresolved-reference"]
 
 
+@pytest.mark.slow
 @pytest.mark.asyncio
 async def test_over_the_protocol(tmp_path: Path) -> None:
     text = model(480)

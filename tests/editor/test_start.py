@@ -16,6 +16,7 @@ from robosc.editor.server import Server
 from tests.editor.server import COMMAND, LIBRARY, ROBOT, ROOT, Editor, findings, initialize, open_text
 
 
+@pytest.mark.slow
 @pytest.mark.asyncio
 async def test_over_a_port(tmp_path: Path) -> None:
     server = await asyncio.create_subprocess_exec(
@@ -38,6 +39,7 @@ async def test_over_a_port(tmp_path: Path) -> None:
     assert await server.wait() == 0
 
 
+@pytest.mark.slow
 @pytest.mark.asyncio
 async def test_libraries_of_the_call_and_of_the_editor(tmp_path: Path) -> None:
     for folder, name in (("first", "Wheels"), ("second", "Feet")):

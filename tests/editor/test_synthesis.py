@@ -106,6 +106,7 @@ def test_what_an_editor_can_do_with_a_robot() -> None:
     ]
 
 
+@pytest.mark.slow
 @pytest.mark.asyncio
 async def test_over_the_protocol(tmp_path: Path) -> None:
     (tmp_path / "wheels.rscd").write_text(LIBRARY)

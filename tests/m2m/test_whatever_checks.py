@@ -121,6 +121,7 @@ def test_a_long_expression_is_transformed(path: Path, operator: str, operand: st
     assert robosc_to_rosgraph.transform(trace).publishers
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("condition", "message"),
     [

@@ -161,6 +161,7 @@ def test_the_same_call_gives_the_same_test(case: Case) -> None:
     assert trace_test(case.graph, case.configuration, 2) == case.test
 
 
+@pytest.mark.slow
 def test_a_tour_with_other_settings_is_another_one() -> None:
     graph, configuration = robot_of("line_follower")
     slower = configuration.control_loop.model_copy(update={"period_ms": 350})

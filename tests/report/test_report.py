@@ -266,6 +266,7 @@ def test_the_page_opens_and_shows_the_numbers(name: str, chromium: Any, tmp_path
     assert faults == []
 
 
+@pytest.mark.slow
 def test_the_same_on_every_run(told: Told) -> None:
     again = CliRunner().invoke(main, ["report", str(MODELS[QUICK]), "--json"])
     assert json.loads(again.stdout) == told(QUICK)
@@ -316,6 +317,7 @@ def test_a_refuted_property_is_an_error(tmp_path: Path) -> None:
     assert [one["outcome"] for one in json.loads(done.stdout)["verdicts"]].count("refuted") == 1
 
 
+@pytest.mark.slow
 def test_files_are_written(tmp_path: Path, told: Told) -> None:
     page, needs = tmp_path / "report.html", tmp_path / "needs.json"
     done = CliRunner().invoke(main, ["report", str(MODELS[QUICK]), "-o", str(page), "--needs", str(needs)])

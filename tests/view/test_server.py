@@ -136,6 +136,7 @@ def test_the_token_opens_everything() -> None:
     assert asking.get("/description").json()["robot"] == "Gate"
 
 
+@pytest.mark.slow
 def test_explained() -> None:
     asking = client()
     answer = asking.get("/explain", params={"moment": 0, "event": "message_close.c_trigger"})

@@ -468,6 +468,7 @@ MUTANTS: list[tuple[Callable[[sct.SupervisoryControlModel], None], str]] = [
 ]
 
 
+@pytest.mark.slow
 def test_a_right_model_is_proved(models: tuple[rsc.Base, sct.SupervisoryControlModel]) -> None:
     """All constructs of the language's second edition that the supervisor knows are in it."""
     found = validate_model(*models, Effort(first=1_000_000))

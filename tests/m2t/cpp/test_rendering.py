@@ -14,6 +14,7 @@ from robosc.m2t.ros.rendering import fold, line_comment, raw_literal, xml_attrib
 LITERAL = re.compile(r'"(?:\\.|[^"\\])*"')
 
 
+@pytest.mark.slow
 @given(st.text())
 def test_a_comment_stays_a_comment(text: str) -> None:
     lines = line_comment(text, 4).split("\n")
