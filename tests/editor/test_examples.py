@@ -14,8 +14,8 @@ from tests.editor.test_robustness import EXAMPLES, parameters
 pytestmark = pytest.mark.asyncio(loop_scope="module")
 #: Copies of an example are one text.
 TEXTS = {path.read_text(): path for path in EXAMPLES}
-#: For the others there is more to answer; most for the last.
-SMALL, LARGE = "line_stepper", "warehouse_robot"
+#: For the others there is more to answer.
+SMALL = "line_stepper"
 OTHERS = (types.TEXT_DOCUMENT_DEFINITION, types.TEXT_DOCUMENT_HOVER, types.TEXT_DOCUMENT_CODE_LENS)
 
 
@@ -29,14 +29,7 @@ async def client(lsp_client: Editor):
 @pytest.mark.parametrize(
     ("text", "path"),
     [
-        pytest.param(
-            text,
-            path,
-            id=path.stem,
-            marks=[]
-            if path.stem == SMALL
-            else [pytest.mark.slow, *([pytest.mark.matrix] if path.stem == LARGE else [])],
-        )
+        pytest.param(text, path, id=path.stem, marks=[pytest.mark.slow] if path.stem != SMALL else [])
         for text, path in TEXTS.items()
     ],
 )
