@@ -1,4 +1,4 @@
-"""Runs the rows of long tables of tests that `./run-tests` leaves out, as others of the same table lead the same way.
+"""Runs the rows of long tables of tests that `./run-tests` leaves out, because other rows run the same code.
 
     python benchmarks/matrix.py [arguments of pytest]
 

@@ -30,7 +30,7 @@ Told: TypeAlias = Callable[[str], dict[str, Any]]
 Planned: TypeAlias = Callable[[str, int], TraceTest]
 ROOT = Path(__file__).parents[2]
 QUICK = "supervised_line_follower"
-#: Their reports take longest, and have nothing that that of the warehouse's robot does not have.
+#: Their reports take longest, and the warehouse's robot has all kinds of what is in them.
 LONG = ("object_finder", "sprayer")
 #: With other robots, in a run of all tests; those of one robot look at the same report.
 EACH = [

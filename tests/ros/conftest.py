@@ -94,15 +94,15 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
             groups.setdefault(group(item), len(groups))
             item.add_marker(pytest.mark.xdist_group(group(item)))
             item.add_marker(pytest.mark.ros)
-            if is_one_more_way(item):
+            if runs_from_model_over_ros1(item):
                 item.add_marker(pytest.mark.matrix)
             if needs_ros1_workspace(item) or "model_workspace" in getattr(item, "fixturenames", ()):
                 item.add_marker(pytest.mark.build)
     items.sort(key=lambda item: groups.get(group(item), 0))
 
 
-def is_one_more_way(item: pytest.Item) -> bool:
-    """Whether a node runs from its model over ROS 1, where the compiled one does the same: a drive is enough."""
+def runs_from_model_over_ros1(item: pytest.Item) -> bool:
+    """Whether a test looks at what the compiled node does, too. The drive of the line follower stays in all runs."""
     return "run-ros1" in parameters(item).values() and "drive" not in getattr(item, "fixturenames", ())
 
 
