@@ -1,4 +1,4 @@
-"""Runs the rows of long tables of tests that `./run-tests` leaves out, because other rows run the same code.
+"""Runs the rows of long tables of tests that `./run-tests` leaves out: it has other rows of the same tables.
 
     python benchmarks/matrix.py [arguments of pytest]
 

@@ -37,7 +37,7 @@ def slow_but(quick: Iterable[str], values: Iterable[Any]) -> list[Any]:
 
 
 def matrix_but(chosen: Iterable[str], values: Iterable[Any]) -> list[Any]:
-    """As `slow_but`; those that are not chosen only `benchmarks/matrix.py` tries, as the same code runs for all."""
+    """As `slow_but`; those that are not chosen only `benchmarks/matrix.py` tries."""
     names, rest = set(chosen), [pytest.mark.slow, pytest.mark.matrix]
     return [pytest.param(value, marks=[pytest.mark.slow] if value in names else rest) for value in values]
 
@@ -52,8 +52,8 @@ def long_but(short: Iterable[str], names: Iterable[str]) -> list[str]:
 def less_effort() -> Iterator[None]:
     """While it lasts `verify` tries a tenth of the operations of a control loop, and of the states of a large model.
 
-    For models without constructs of their own: others that have them are tried with all effort. In
-    `benchmarks/search.py` these are, too.
+    For models that are too large for all their states in any case, or whose constructs others have that are tried with
+    all effort. In `benchmarks/search.py` these are, too.
     """
     loop = LoopEffort(LoopEffort.explored * TIMES // 10, LoopEffort.walked * TIMES // 10)
     model = Effort(states=Effort.states * TIMES // 10, random=Effort.random * TIMES // 10)

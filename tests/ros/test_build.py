@@ -23,9 +23,7 @@ def test_builds_without_warnings(workspace: Workspace) -> None:
     assert "CMake Warning" not in workspace.build
 
 
-@pytest.mark.parametrize(
-    "package", [LARGEST[0], *(pytest.param(package, marks=pytest.mark.matrix) for package in LARGEST[1:])]
-)
+@pytest.mark.parametrize("package", LARGEST)
 def test_gcc_has_nothing_to_say(ros1_workspace: Workspace, package: str) -> None:
     """The compiler of Debian, with nothing precompiled, of what clang builds here because it is faster."""
     if shutil.which("g++") is None:

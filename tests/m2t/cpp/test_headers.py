@@ -80,14 +80,7 @@ def node_handle(tmp_path_factory: pytest.TempPathFactory) -> list[str]:
     return [*compiler, "-include-pch", str(precompiled)]
 
 
-@pytest.mark.parametrize(
-    "header",
-    # Those of ROS 1 take longest; `test_gcc_has_nothing_to_say` reads most of them, too.
-    [
-        pytest.param(header, marks=[pytest.mark.matrix] if header.startswith("robosc_ros1/") else [])
-        for header in HEADERS
-    ],
-)
+@pytest.mark.parametrize("header", HEADERS)
 def test_compiles_alone(header: str, request: pytest.FixtureRequest) -> None:
     found = middleware(header)
     if found is None or shutil.which("g++") is None:
