@@ -210,6 +210,7 @@ class _Recovery:
         start, end = root.items[0].start, root.items[-1].end
         base = self._built(f"{header}{''.join(self._content[start:end])}}}", start - len(header), builder)
         if base is not None:
+            del builder.declared[base]  # Its name stands nowhere in the text.
             base.source = self._text.source(root.start, min(root.end, len(self._text.content)))
         return base
 

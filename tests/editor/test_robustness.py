@@ -92,6 +92,13 @@ def test_a_small_text_cut_off_anywhere() -> None:
         ask_everything(made, TINY[:end], end)
 
 
+def test_a_first_line_with_a_fault_anywhere() -> None:
+    made = project(TINY)
+    for at in range(TINY.index("{") + 1):
+        for piece in ("{", " "):
+            ask_everything(made, TINY[:at] + piece + TINY[at:], at)
+
+
 @pytest.mark.slow
 def test_a_text_of_many_constructs_cut_off() -> None:
     made = project(SMALL)
