@@ -52,10 +52,12 @@ def link_folders(app: Sphinx, doctree: nodes.document) -> None:
         link.replace_self(nodes.reference("", "", *link.children, refuri=f"{REPOSITORY}/{path}"))
 
 
-def add_script(app: Sphinx) -> None:
-    """The scripts that draw Mermaid, where they are installed."""
-    script = app.srcdir / MERMAID
-    if script.is_file() and app.builder.format == "html":
+def add_script(
+    app: Sphinx, _page: str, _template: str, _context: dict[str, Any], doctree: nodes.document | None
+) -> None:
+    """The scripts that draw Mermaid (3 MB), where they are installed, in the pages that have something to draw."""
+    drawings = doctree.findall(nodes.container) if doctree is not None else ()
+    if (app.srcdir / MERMAID).is_file() and any("mermaid-drawing" in drawing["classes"] for drawing in drawings):
         app.add_js_file("mermaid.tiny.js", loading_method="defer")
         app.add_js_file("draw-mermaid.js", loading_method="defer")
 
@@ -75,6 +77,6 @@ def setup(app: Sphinx) -> dict[str, Any]:
     app.add_directive("mermaid", Mermaid)
     app.add_lexer("cif", TextLexer)  # Pygments has none
     app.connect("doctree-read", link_folders)
-    app.connect("builder-inited", add_script)
+    app.connect("html-page-context", add_script)
     app.connect("build-finished", finish)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -1,7 +1,6 @@
 // Draws what stands in Mermaid on the page, in the colours that the page has, and anew when these change.
 (() => {
   const drawings = [...document.querySelectorAll(".mermaid-drawing")].map((place) => [place, place.textContent.trim()]);
-  if (drawings.length === 0) return;
 
   const dark = matchMedia("(prefers-color-scheme: dark)");
   const isDark = () => {

@@ -9,6 +9,7 @@ import subprocess
 import sys
 from functools import cached_property
 from html.parser import HTMLParser
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from urllib.parse import unquote, urlsplit
 
@@ -18,7 +19,6 @@ from tests.docs.pages import ROOT
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
-    from pathlib import Path
 
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("site")]
 
@@ -100,6 +100,15 @@ def test_nothing_is_loaded_from_elsewhere(site: Site) -> None:
     assert missing == []
     styles = "".join(path.read_text(encoding="utf-8") for path in site.folder.rglob("*.css"))
     assert re.findall(r"url\(['\"]?https?:|@import", styles) == []
+
+
+def test_only_pages_that_draw_load_the_script_for_it(site: Site) -> None:
+    if not MERMAID.is_dir():
+        pytest.skip("Node's packages are not installed: build_page of scripts/environment")
+    texts = {path.relative_to(site.folder): path.read_text(encoding="utf-8") for path in site.pages}
+    draw = {path for path, text in texts.items() if "mermaid-drawing" in text}
+    assert Path("docs/architecture.html") in draw
+    assert {path for path, text in texts.items() if "mermaid.tiny.js" in text} == draw
 
 
 def test_models_are_coloured(site: Site) -> None:
