@@ -10,7 +10,7 @@ import signal
 from base64 import b64decode, b64encode
 from collections.abc import Callable
 from contextlib import nullcontext
-from functools import cache
+from functools import cache, lru_cache
 from importlib import import_module
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -24,6 +24,7 @@ from robosc.analysis.verify import verify
 from robosc.cli import main
 from robosc.configuration import Configuration
 from robosc.engine import remembered
+from robosc.language import grammar, recovery
 from robosc.m2t.models import TraceTest
 from robosc.metamodel.rosgraph import RosGraph
 from robosc.node_tests.trace_test import trace_test
@@ -31,6 +32,8 @@ from tests.examples.conftest import SCENARIOS
 from tests.searching import examples, less_effort
 from tests.sharing import made_once
 
+#: Characters of a text whose tree is not kept.
+LONG_TEXT = 20_000
 #: Characters of a parameter that stand in the name of a test.
 LONGEST = 80
 ROS, GENERATORS = Path(__file__).parent / "ros", Path(__file__).parent / "m2t"
@@ -67,12 +70,24 @@ _SHARED = pytest.StashKey[Path]()
 
 
 def pytest_configure(config: pytest.Config) -> None:
+    remember_trees(config)
     given = getattr(config, "workerinput", {}).get("shared_folder")
     if given is None:
         temporary = TemporaryDirectory(prefix="robosc-tests-", ignore_cleanup_errors=True)
         config.add_cleanup(temporary.cleanup)
         given = temporary.name
     config.stash[_SHARED] = Path(given)
+
+
+def remember_trees(config: pytest.Config) -> None:
+    """Has each process parse a text once, as long as it is among the last: many tests read the same few robots.
+
+    A tree is not changed by who builds a model of it. Long texts, whose trees are large, are parsed each time.
+    """
+    known = lru_cache(64)(grammar.parse)
+    patch = pytest.MonkeyPatch()
+    patch.setattr(recovery, "parse", lambda text, rule: (known if len(text) < LONG_TEXT else grammar.parse)(text, rule))
+    config.add_cleanup(patch.undo)
 
 
 @pytest.fixture(scope="session")

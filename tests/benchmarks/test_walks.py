@@ -13,7 +13,7 @@ from benchmarks import walks
 from benchmarks.walk_families import FAMILIES, write
 from robosc.checks import check
 from robosc.diagnostics import ModelError
-from robosc.language import read
+from robosc.language import grammar, read, recovery
 from robosc.metamodel import sct
 
 pytestmark = pytest.mark.slow
@@ -22,6 +22,11 @@ ROOT = Path(__file__).parents[2]
 SIZES = (25, 75)
 #: What grows with n·log n, and what is small beside what is done once, may lie a little above 1.
 MOST = 1.3
+
+
+@pytest.fixture(autouse=True)
+def parsed_each_time(monkeypatch):
+    monkeypatch.setattr(recovery, "parse", grammar.parse)
 
 
 def calls(work, *arguments):

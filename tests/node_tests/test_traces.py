@@ -28,7 +28,7 @@ from robosc.ros_types import RosTypes
 from robosc.runtime.core.node_data import NodeData
 from robosc.semantics.edges import edges_from
 from robosc.semantics.roles import event_name
-from tests.searching import slow_but
+from tests.searching import matrix_but, slow_but
 
 from .in_process_node import InProcessNode
 
@@ -127,7 +127,12 @@ def case(
     return Case(name, made(name), tmp_path)
 
 
-every_model = pytest.mark.parametrize("case", slow_but(["line_follower", "porter", "kept"], MODELS), indirect=True)
+#: The sprayer's tours take the longest to plan, and those of the other large robot are here.
+ROBOTS = [
+    *slow_but(["line_follower", "porter", "kept"], [name for name in MODELS if name != "sprayer"]),
+    *matrix_but([], ["sprayer"]),
+]
+every_model = pytest.mark.parametrize("case", ROBOTS, indirect=True)
 
 
 @every_model
