@@ -8,10 +8,11 @@ import json
 import pickle
 import signal
 from base64 import b64decode, b64encode
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from contextlib import nullcontext
 from functools import cache, lru_cache
 from importlib import import_module
+from itertools import chain, zip_longest
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -45,7 +46,7 @@ settings.load_profile("robosc")
 # Whoever runs the tests in the background of a script ignores interrupts; the programs that they start don't.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 # Tests make many objects, most of which stay: to look for garbage as often as Python does takes a fifth of the time.
-gc.set_threshold(100_000, 10, 10)
+gc.set_threshold(300_000, 10, 10)
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -155,13 +156,19 @@ def planned_once(shared_folder: Path) -> Callable[[Path, RosGraph, Configuration
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Tests over ROS come first: they wait, and others fill the time. What they need is built meanwhile.
 
-    At the end come short tests, which leave no process idle. Before xdist reads the groups, and after those of `ros`.
+    Those that need it take turns with others that are long: where all processes wait, no core works. At the end come
+    short tests, which leave no process idle. Before xdist reads the groups, and after those of `ros`.
     """
     for item in items:
         if item.get_closest_marker("xdist_group") is None:
             item.add_marker(pytest.mark.xdist_group(item.path.name))
     long = {item.path for item in items if item.get_closest_marker("slow") or item.get_closest_marker("build")}
-    items.sort(key=lambda item: _turn(item, item.path in long))
+    turns: list[list[pytest.Item]] = [[], [], [], [], []]
+    for item in items:
+        turns[_turn(item, item.path in long)].append(item)
+    first, second, built, others, last = turns
+    taken = zip_longest(_groups(built), _groups(others), fillvalue=())
+    items[:] = [*first, *second, *chain.from_iterable(chain.from_iterable(taken)), *last]
 
 
 def pytest_collection_finish() -> None:
@@ -183,6 +190,15 @@ def _turn(item: pytest.Item, is_long: bool) -> int:
     if room == GENERATORS:
         return 1
     return 3 if is_long else 4
+
+
+def _groups(items: list[pytest.Item]) -> Iterable[list[pytest.Item]]:
+    """The items by the groups in which xdist hands them out."""
+    groups: dict[str, list[pytest.Item]] = {}
+    for item in items:
+        mark = item.get_closest_marker("xdist_group")
+        groups.setdefault(mark.args[0] if mark else "", []).append(item)
+    return groups.values()
 
 
 @cache

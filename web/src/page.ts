@@ -23,6 +23,9 @@ const ALL_BUTTONS: [string, Record<string, unknown>][] = [
   ["Start again", { action: "restart" }],
 ];
 
+/** Milliseconds from one drawing to the next: nobody reads more than 30 a second, and each costs the machine beside the robot. */
+const DRAWING = 32;
+
 /** Which of the server's robots the page shows. */
 const ROBOT = new URLSearchParams(location.search).get("robot") ?? "0";
 
@@ -44,6 +47,7 @@ class Page {
   private following = true;
   private ofSource = "";
   private drawing = false;
+  private drawn = -Infinity;
 
   constructor(
     private readonly description: Description,
@@ -113,18 +117,26 @@ class Page {
 
   private choose(number: number): void {
     this.shown = number;
+    this.drawn = -Infinity;
     this.following = number === this.run.end;
     this.schedule();
   }
 
-  /** However much comes, a frame shows it once. */
+  /** However much comes, it is drawn 30 times a second; what somebody has chosen, in the next frame. */
   private schedule(): void {
     if (this.drawing) return;
     this.drawing = true;
-    requestAnimationFrame(() => {
-      this.drawing = false;
-      if (this.run.end >= this.run.first) this.show(this.run.moment(this.shown));
-    });
+    requestAnimationFrame((now) => this.frame(now));
+  }
+
+  private frame(now: number): void {
+    if (now < this.drawn + DRAWING) {
+      requestAnimationFrame((later) => this.frame(later));
+      return;
+    }
+    this.drawing = false;
+    this.drawn = now;
+    if (this.run.end >= this.run.first) this.show(this.run.moment(this.shown));
   }
 
   private show(moment: Moment): void {
