@@ -37,6 +37,8 @@ from tests.sharing import made_once
 LONG_TEXT = 20_000
 #: Characters of a parameter that stand in the name of a test.
 LONGEST = 80
+#: Fixtures of tests that wait for others, a browser or a registry of packages, and so take long.
+WAITED_FOR = {"chromium", "wheel"}
 ROS, GENERATORS = Path(__file__).parent / "ros", Path(__file__).parent / "m2t"
 
 # Time is measured in benchmarks; a busy machine fails no test. `benchmarks/search.py` tries more.
@@ -187,7 +189,7 @@ def _turn(item: pytest.Item, is_long: bool) -> int:
     room = _room(item.path)
     if room == ROS:
         return 2 if item.get_closest_marker("build") else 0
-    if room == GENERATORS:
+    if room == GENERATORS or not WAITED_FOR.isdisjoint(getattr(item, "fixturenames", ())):
         return 1
     return 3 if is_long else 4
 
