@@ -156,9 +156,9 @@ def planned_once(shared_folder: Path) -> Callable[[Path, RosGraph, Configuration
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Tests over ROS come first: they wait, and others fill the time. What they need is built meanwhile.
+    """Tests over ROS come first, and meanwhile what some of them need is built.
 
-    Those that need it take turns with others that are long: where all processes wait, no core works. At the end come
+    They wait, so they take turns with others that are long: where all processes wait, no core works. At the end come
     short tests, which leave no process idle. Before xdist reads the groups, and after those of `ros`.
     """
     for item in items:
@@ -168,9 +168,8 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     turns: list[list[pytest.Item]] = [[], [], [], [], []]
     for item in items:
         turns[_turn(item, item.path in long)].append(item)
-    first, second, built, others, last = turns
-    taken = zip_longest(_groups(built), _groups(others), fillvalue=())
-    items[:] = [*first, *second, *chain.from_iterable(chain.from_iterable(taken)), *last]
+    over_ros, generated, over_what_is_built, long_ones, last = turns
+    items[:] = [*_taking_turns(over_ros, generated), *_taking_turns(over_what_is_built, long_ones), *last]
 
 
 def pytest_collection_finish() -> None:
@@ -192,6 +191,11 @@ def _turn(item: pytest.Item, is_long: bool) -> int:
     if room == GENERATORS or not WAITED_FOR.isdisjoint(getattr(item, "fixturenames", ())):
         return 1
     return 3 if is_long else 4
+
+
+def _taking_turns(some: list[pytest.Item], others: list[pytest.Item]) -> Iterable[pytest.Item]:
+    pairs = zip_longest(_groups(some), _groups(others), fillvalue=())
+    return chain.from_iterable(chain.from_iterable(pairs))
 
 
 def _groups(items: list[pytest.Item]) -> Iterable[list[pytest.Item]]:
