@@ -169,7 +169,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:
         turns[_turn(item, item.path in long)].append(item)
     over_ros, generated, over_what_is_built, long_ones, last = turns
-    items[:] = [*_taking_turns(over_ros, generated), *_taking_turns(over_what_is_built, long_ones), *last]
+    items[:] = [*_taking_turns([*over_ros, *over_what_is_built], [*generated, *long_ones]), *last]
 
 
 def pytest_collection_finish() -> None:
