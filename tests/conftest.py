@@ -8,7 +8,7 @@ import json
 import pickle
 import signal
 from base64 import b64decode, b64encode
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Sequence
 from contextlib import nullcontext
 from functools import cache, lru_cache
 from importlib import import_module
@@ -156,10 +156,10 @@ def planned_once(shared_folder: Path) -> Callable[[Path, RosGraph, Configuration
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Tests over ROS come first, and meanwhile what some of them need is built.
+    """Tests over ROS wait, so they take turns with others that are long: where all processes wait, no core works.
 
-    They wait, so they take turns with others that are long: where all processes wait, no core works. At the end come
-    short tests, which leave no process idle. Before xdist reads the groups, and after those of `ros`.
+    Those that need the workspace of ROS 1 come in the middle, as it is built meanwhile. At the end come short tests,
+    which leave no process idle. Before xdist reads the groups, and after those of `ros`.
     """
     for item in items:
         if item.get_closest_marker("xdist_group") is None:
@@ -169,7 +169,11 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:
         turns[_turn(item, item.path in long)].append(item)
     over_ros, generated, over_what_is_built, long_ones, last = turns
-    items[:] = [*_taking_turns([*over_ros, *over_what_is_built], [*generated, *long_ones]), *last]
+    waiting, working = _groups(over_ros), _groups([*generated, *long_ones])
+    middle = len(waiting) // 2
+    waiting[middle:middle] = _groups(over_what_is_built)
+    pairs = zip_longest(waiting, working, fillvalue=())
+    items[:] = chain.from_iterable([*chain.from_iterable(pairs), last])
 
 
 def pytest_collection_finish() -> None:
@@ -193,18 +197,13 @@ def _turn(item: pytest.Item, is_long: bool) -> int:
     return 3 if is_long else 4
 
 
-def _taking_turns(some: list[pytest.Item], others: list[pytest.Item]) -> Iterable[pytest.Item]:
-    pairs = zip_longest(_groups(some), _groups(others), fillvalue=())
-    return chain.from_iterable(chain.from_iterable(pairs))
-
-
-def _groups(items: list[pytest.Item]) -> Iterable[list[pytest.Item]]:
+def _groups(items: list[pytest.Item]) -> list[Sequence[pytest.Item]]:
     """The items by the groups in which xdist hands them out."""
     groups: dict[str, list[pytest.Item]] = {}
     for item in items:
         mark = item.get_closest_marker("xdist_group")
         groups.setdefault(mark.args[0] if mark else "", []).append(item)
-    return groups.values()
+    return list(groups.values())
 
 
 @cache
