@@ -201,8 +201,8 @@ def _groups(items: list[pytest.Item]) -> list[Sequence[pytest.Item]]:
     """The items by the groups in which xdist hands them out."""
     groups: dict[str, list[pytest.Item]] = {}
     for item in items:
-        mark = item.get_closest_marker("xdist_group")
-        groups.setdefault(mark.args[0] if mark else "", []).append(item)
+        (mark, *_) = item.iter_markers("xdist_group")
+        groups.setdefault(mark.args[0], []).append(item)
     return list(groups.values())
 
 

@@ -26,6 +26,7 @@ MOST = 1.3
 
 @pytest.fixture(autouse=True)
 def parsed_each_time(monkeypatch):
+    """Parsing is counted, too: `tests.conftest.remember_trees` does it once."""
     monkeypatch.setattr(recovery, "parse", grammar.parse)
 
 

@@ -103,12 +103,11 @@ def test_nothing_is_loaded_from_elsewhere(site: Site) -> None:
 
 
 def test_only_pages_that_draw_load_the_script_for_it(site: Site) -> None:
-    if not MERMAID.is_dir():
-        pytest.skip("Node's packages are not installed: build_page of scripts/environment")
     texts = {path.relative_to(site.folder): path.read_text(encoding="utf-8") for path in site.pages}
     draw = {path for path, text in texts.items() if "mermaid-drawing" in text}
     assert Path("docs/architecture.html") in draw
-    assert {path for path, text in texts.items() if "mermaid.tiny.js" in text} == draw
+    load = {path for path, text in texts.items() if "mermaid.tiny.js" in text}
+    assert load == (draw if MERMAID.is_dir() else set())
 
 
 def test_models_are_coloured(site: Site) -> None:

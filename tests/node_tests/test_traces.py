@@ -127,7 +127,7 @@ def case(
     return Case(name, made(name), tmp_path)
 
 
-#: The sprayer's tours take the longest to plan, and those of the other large robot are here.
+#: The sprayer's tours take longest to plan. In a run of all tests there are those of the other large robot.
 ROBOTS = [
     *slow_but(["line_follower", "porter", "kept"], [name for name in MODELS if name != "sprayer"]),
     *matrix_but([], ["sprayer"]),

@@ -357,6 +357,26 @@ def test_another_address_needs_the_token(chromium: Any) -> None:
                 urlopen(asked, timeout=60)  # noqa: S310
 
 
+def test_it_draws_30_times_a_second_at_most_and_what_is_chosen_in_the_next_frame(chromium: Any) -> None:
+    count = """(happening) => new Promise((done) => {
+      const [frames, began] = [120, performance.now()];
+      let [drawings, number] = [0, 0];
+      new MutationObserver((changes) => (drawings += changes.length)).observe(
+        document.body, { attributeFilter: ["data-moment"] });
+      const place = happening === "input" ? document.getElementById("moment") : window;
+      requestAnimationFrame(function frame() {
+        if (number++ === frames) return done([frames, drawings, performance.now() - began]);
+        place.dispatchEvent(new Event(happening));
+        requestAnimationFrame(frame);
+      });
+    })"""
+    with served(MODEL) as address, opened(chromium, address) as page:
+        _, drawings, milliseconds = page.evaluate(count, "resize")
+        assert 2 < drawings <= milliseconds / 32 + 2
+        frames, drawings, _ = page.evaluate(count, "input")
+        assert drawings >= frames - 1
+
+
 def test_finding_folding_and_zooming(chromium: Any) -> None:
     with served(MODEL) as address, opened(chromium, address) as page:
         page.get_by_label("Find").fill("blocked")

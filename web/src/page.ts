@@ -23,7 +23,7 @@ const ALL_BUTTONS: [string, Record<string, unknown>][] = [
   ["Start again", { action: "restart" }],
 ];
 
-/** Milliseconds from one drawing to the next: nobody reads more than 30 a second, and each costs the machine beside the robot. */
+/** Milliseconds from one drawing to the next: nobody reads more than 30 a second, and the robot may run on the same machine. */
 const DRAWING = 32;
 
 /** Which of the server's robots the page shows. */
@@ -122,7 +122,7 @@ class Page {
     this.schedule();
   }
 
-  /** However much comes, it is drawn 30 times a second; what somebody has chosen, in the next frame. */
+  /** However much comes, it is drawn 30 times a second at most; what somebody has chosen, in the next frame. */
   private schedule(): void {
     if (this.drawing) return;
     this.drawing = true;
