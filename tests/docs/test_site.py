@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import re
-import shutil
 import subprocess
 import sys
 from functools import cached_property
@@ -15,6 +14,7 @@ from urllib.parse import unquote, urlsplit
 
 import pytest
 
+from tests.chromium import browser
 from tests.docs.pages import ROOT
 
 if TYPE_CHECKING:
@@ -134,15 +134,8 @@ def test_words_are_found(site: Site) -> None:
 
 @pytest.fixture(scope="module")
 def chromium() -> Iterator[Any]:
-    program = shutil.which("chromium")
-    if program is None:
-        pytest.skip("there is no chromium (Debian's package)")
-    from playwright.sync_api import sync_playwright  # noqa: PLC0415
-
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=program, args=["--no-sandbox"])
-        yield browser
-        browser.close()
+    with browser() as chromium:
+        yield chromium
 
 
 class Opened:
