@@ -1,7 +1,8 @@
 """The operators of expressions, each fact about them once: who parses, prints, types or computes reads it here.
 
 A new operator is a class of `metamodel/expression.ecore`, an alternative in the grammar, and a row below; a function is
-a word of the grammar and a row. The rest is what can not be said by its symbol: the encoding of synthesis, C, CIF, C++.
+a word of the grammar and a row. What a row can't say stands elsewhere: the spelling in C++, and of what the supervisor
+computes, how it is written out by cases, or its encoding, C and CIF. `docs/architecture.md` says where.
 """
 
 from __future__ import annotations
