@@ -42,7 +42,7 @@ def name(plant: sct.Plant) -> str:
 def words(event: sct.Event) -> str:
     """An event, such as `request to Platform.move`.
 
-    Of internal transitions and of statements that provide data also the line, and what tells them apart.
+    Of silent transitions and of statements that provide data also the line, and what tells them apart.
     """
     owner = f"`{name(plant_of(event))}`"
     if event.kind == sct.EventKind.data:

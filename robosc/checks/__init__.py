@@ -24,12 +24,12 @@ if TYPE_CHECKING:
 def check(
     base: rsc.Base | None, known: Iterable[Diagnostic] = (), interfaces: RosTypes | None = None
 ) -> list[Diagnostic]:
-    """All breaches of rules in a robot or library and in every library that its imports reach, in order.
+    """The violations of all rules in a robot or library and in every library that it imports, directly or not.
 
-    `known` are the findings from reading the text: a rule that concludes something from what is absent keeps silent
-    where the text could not be read, or the name not be resolved, that may be what it misses. They are not repeated in
-    the answer. `interfaces` is what is known of ROS types; None: what is known without folders of the call. Nothing is
-    wrong with a base that is None: reading has said why there is none.
+    They are sorted by file, position and rule. `known`: the findings from reading the texts; they are not returned
+    again, and no rule reports what they may have caused, such as the absence of something that may stand in a part of
+    the text that could not be read or resolved. `interfaces`: the known ROS types; None: `RosTypes()`. A base of None
+    gives [].
     """
     if base is None:
         return []

@@ -64,7 +64,7 @@ class Finding:
         return (Related(*place(self.related), "this is what the finding speaks of"),)
 
     def can_be_false(self, findings: Sequence[Diagnostic]) -> bool:
-        """Whether what reading the text found makes it doubtful."""
+        """Whether a fault of the text may have caused it: it relies on a part that could not be read or resolved."""
         if isinstance(self.element, ex.Expression):
             expression = place(self.element)[1]
             if any(finding.rule == "syntax" and _goes_on(expression, finding.span) for finding in findings):

@@ -56,10 +56,11 @@ class Alternative:
 
 
 class Repair(NamedTuple):
-    """How to mend a fault: in words, and the text to write in its place (None: that takes more than another text).
+    """How to mend a finding.
 
-    `choices` are the texts of which one can be written there; `elsewhere` what is written at other offsets: the first,
-    the one behind the last, and the text.
+    `hint`: the sentence for a person. `text`: replaces the text of the finding's span; None: no single replacement
+    mends it. `choices`: replacements of which a person picks one. `elsewhere`: further replacements in the same file,
+    as (start, end, text), offsets in code points from 0, the end exclusive.
     """
 
     hint: str

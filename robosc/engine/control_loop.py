@@ -18,10 +18,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Settings:
-    """How much the loop does.
+    """Limits of a control loop.
 
-    Events in one tick (0: no limit), reactions to one topic, service or action between two ticks, whether it reacts;
-    and how many milliseconds later it may be than the caller says.
+    `events_per_tick`: most cancels and triggers in a tick; 0: no limit. `reactions_per_tick`: most that one topic,
+    service or action starts between two ticks. `react_immediately`: whether the end of a batch starts any.
+    `resolution_ms`: by how many milliseconds the time that the caller passes may lag behind the true one, as it was
+    rounded down; timers are set that much later, so that none expires early.
     """
 
     events_per_tick: int = 0
@@ -56,10 +58,12 @@ class SavedLoop(NamedTuple):
 class ControlLoop:
     """Runs a model with its supervisor.
 
-    Incoming data: `begin()`, `perform(event, data)` for each event of the batch, `end()`. Every period: `tick()`. After
-    `end` and `tick` silent events and data plants rest, or a livelock was reported. Cancels and triggers run from two
-    queues, the least recently run first. Each topic, service and action has a count of reactions of its own, so that
-    none uses up another's. Raises what `Engine` raises.
+    Incoming data: `begin()`, `perform(event, data)` for each event of the batch, `end()`. Every period: `tick()`.
+
+    To settle is to run silent events to completion, with the choice of data before each and at the end; a livelock is
+    reported where more of them follow each other than the model's bound says. After `end` and `tick` the loop has
+    settled. Cancels and triggers run from two queues, the least recently run first. Each topic, service and action has
+    a count of reactions of its own, so that none uses up another's. Raises what `Engine` raises.
 
     `timers` are the model's times: tell them before each call what time it is (`timers.at`), and call `expire` when
     they want to be asked (`timers.wait`), until it finds nothing.
@@ -156,9 +160,11 @@ class ControlLoop:
         self._state_before = self.engine.state
 
     def end(self) -> None:
-        """Ends a batch: settles, then runs each cancel and trigger that it made possible, or whose data it changed.
+        """Ends a batch: settles, then runs each cancel and trigger that it made possible or whose data it changed.
 
-        What found its count used up is owed: until the next tick it runs after another batch that changes the state.
+        None is run before the first tick or without `react_immediately`. One topic, service or action starts at most
+        `reactions_per_tick` of them between two ticks. What is left over waits for the end of a later batch that
+        changes the state, or for the next tick.
         """
         self._settle()
         if self._ticked and self.settings.react_immediately:
@@ -181,7 +187,10 @@ class ControlLoop:
         return event
 
     def tick(self) -> None:
-        """Settles, then runs each enabled cancel and trigger once."""
+        """Settles, then runs each enabled cancel and trigger once, cancels first.
+
+        At most `events_per_tick` are run, and one of those that share a topic.
+        """
         self._ticked = True
         self._reactions = [self.settings.reactions_per_tick] * len(self._reactions)
         self._owed.clear()

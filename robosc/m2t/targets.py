@@ -1,4 +1,4 @@
-"""What can be generated: a target is a room of `robosc.m2t` of its name; those that are ROS packages share one.
+"""What can be generated: a target is a part of `robosc.m2t` of its name; those that are ROS packages share `ros`.
 
 Packages of others add targets by entry points (`robosc.targets`).
 """
@@ -145,7 +145,7 @@ class Target:
         return cast("OptionalGenerator", self.generator()).generate(models, configuration, **options)
 
     def generator(self) -> Generator:
-        """What generates it: a module of its name, or a target of the room for ROS; loaded when it is asked for."""
+        """What generates it: a module of its name, or a target of `robosc.m2t.ros`; loaded when it is asked for."""
         if self.package is None:
             return cast("Generator", import_module(f"robosc.m2t.{self.name}"))
         return cast("Generator", import_module("robosc.m2t.ros").TARGETS[self.name])

@@ -141,9 +141,9 @@ class RosTypes:
         ]
 
     def why_unknown(self, package: str, name: str, section: Section) -> tuple[str, str, tuple[str, str] | None]:
-        """A message and a hint about a type of which no distribution gives this section; and the type that is meant.
+        """Why no distribution has this section of a type: a message, a hint, and the type that was probably meant.
 
-        That is its package and its name; None: nobody can say.
+        That is its package and its name; None: there is no close match.
         """
         kind = section.kind
         for distribution in self.distributions:

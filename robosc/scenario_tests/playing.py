@@ -58,7 +58,10 @@ _FROM_THE_ROBOT = (sct.EventKind.response, sct.EventKind.error, sct.EventKind.fe
 
 
 def unknown_events(model: sct.SupervisoryControlModel, scenarios: Iterable[Scenario]) -> Iterator[Diagnostic]:
-    """What scenarios name that the robot does not have, or that does not come from it."""
+    """A finding for each line that names an event which the model does not have.
+
+    Also for each that lets something come from the robot which the robot does not send.
+    """
     for line in (line for scenario in scenarios for line in scenario.steps):
         if not isinstance(line, (Incoming, Allowed, Sent)):
             continue
@@ -114,7 +117,11 @@ class Player(Drive):
         return self._sources
 
     def play(self, scenario: Scenario, operations: Operations) -> list[Diagnostic]:
-        """What is not as the scenario expects it; after something that can't be played nothing is tried any more."""
+        """Plays a scenario and returns a finding for each expectation that fails.
+
+        It stops at the first step that can't be played, with a finding. `operations` records the calls of the control
+        loop, by line.
+        """
         self._controller = self._begin(_Controller)
         self._controller.note(operations)
         self._controller.start()

@@ -1,4 +1,4 @@
-"""The events of messages, services and actions, and the data that each of them carries: one table for all rooms."""
+"""The events of messages, services and actions, and the data that each of them carries: one table for all packages."""
 
 from __future__ import annotations
 

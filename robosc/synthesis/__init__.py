@@ -5,12 +5,13 @@
         model.supervisor = synthesis.supervisor
 
 `solve` lets its caller look at the decision diagrams, too; `encoded` makes those of a model without synthesis. Why a
-supervisor is empty and what is doubtful about one is found by `robosc.analysis`. The modules, from the ground up: `bdd`
-wraps the library of decision diagrams; `order` puts variables in order; `arithmetic` computes with vectors of diagrams;
-`encoding` maps elements and expressions to diagrams, and `decoding` and `cover` back; `relation` is what an event does;
-`fixpoint` closes sets of states, in small steps or by `acceleration`; `guards` says in expressions what the fixpoint
-found, as seen from few elements by `projection`, and `simplification` makes requirements shorter; `run_to_completion`
-bounds internal events.
+supervisor is empty and what is doubtful about one is found by `robosc.analysis`.
+
+The modules, from the lowest up: `bdd` wraps the library of decision diagrams; `order` puts variables in order;
+`arithmetic` computes with vectors of diagrams; `encoding` maps elements and expressions to diagrams, and `decoding` and
+`cover` back; `relation` is what an event does; `fixpoint` closes sets of states, in small steps or by `acceleration`;
+`guards` says in expressions what the fixpoint found, as seen from few elements by `projection`, and `simplification`
+makes requirements shorter; `run_to_completion` bounds internal events.
 """
 
 from __future__ import annotations
@@ -160,19 +161,21 @@ def solve(
     statistics: Statistics | None = None,
     effort: int | None = None,
 ) -> T:
-    """What `look` makes of the synthesis of a model; all else is as `synthesize` says.
+    """Synthesizes and returns `look(solution)`.
 
-    `look` may run several times, with room for more nodes each time. `effort` bounds the work for each guard, in nodes
-    looked at: beyond it the supervisor is not whole, and `unwritten` names what is missing.
+    When the decision diagrams outgrow their limit, synthesis and `look` run again with a larger one, so `look` must
+    have no lasting side effects. `effort`: most nodes visited for one guard; what synthesis added to a guard that takes
+    more is left out, and `unwritten` lists its event. All else, and errors, as `synthesize`.
     """
     statistics = statistics or Statistics()
     return _with_states(model, lambda found: look(_solved(found, statistics, effort)), memory, statistics, supervise)
 
 
 def encoded(model: sct.SupervisoryControlModel, look: Callable[[Encoding], T], memory: int = MEMORY) -> T:
-    """What `look` makes of the decision diagrams of a model; it may run several times, with more room each time.
+    """Returns `look(encoding)`, of the decision diagrams of a model without synthesis.
 
-    Raises MemoryError where the decision diagrams would take more than `memory` bytes.
+    When these outgrow their limit, `look` runs again with a larger one, so it must have no lasting side effects. Raises
+    MemoryError where they would take more than `memory` bytes.
     """
     layout = Layout(model)
     return with_enough_memory(

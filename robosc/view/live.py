@@ -33,12 +33,12 @@ class Live(Moments):
         self._say()
 
     def heard(self, publishers: int) -> None:
-        """So many nodes tell their state now."""
+        """Receives the number of nodes that publish their state; called every now and then."""
         self._publishers = publishers
         self._say()
 
     def defined(self, text: str) -> None:
-        """A node has told its definition: it has started, or this has begun to listen."""
+        """Receives the JSON text of a definition: a node has started, or this has begun to listen."""
         self._faults.clear()
         try:
             if json.dumps(json_value(text), sort_keys=True) != self._definition:
@@ -49,7 +49,7 @@ class Live(Moments):
         self._say()
 
     def told(self, text: str) -> None:
-        """A node has told its state."""
+        """Receives the JSON text of one report on `~/state`."""
         try:
             report = json_value(text)
             followed = self._tracker.report(report)

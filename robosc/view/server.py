@@ -41,11 +41,11 @@ _HEADERS = {
 def application(
     shown: Sequence[tuple[Mapping[str, Any], Moments]], hosts: Collection[str], token: str | None = None
 ) -> ASGIApp:
-    """An ASGI application for the descriptions and runs of robots; it answers only who asks for one of `hosts`.
+    """An ASGI application that serves the page with each robot's description and run.
 
-    What is asked with `?robot=1` is of the second; without that of the first. With a `token` it answers whoever has it,
-    from the address `/?token=…`, and only them; the host may be any then.
-    Raises PageError where the page has not been built.
+    `?robot=1` selects the second robot; without it the first. Without a `token`, requests whose Host header is not in
+    `hosts` get status 421. With one, any host may ask, but only who opened `/?token=…`; others get 403. Raises
+    PageError where the page is not built.
     """
     answers = _Answers(shown)
     routes = [

@@ -72,7 +72,7 @@ class Explanation:
 
     @property
     def allowed(self) -> bool:
-        """Whether it can happen."""
+        """Whether the event can happen in this state under the supervisor."""
         return self.by is None and self.situation.reach is Reach.SUPERVISED
 
     @property
@@ -97,8 +97,8 @@ class Emptiness:
     """Why a supervisor is empty.
 
     `stuck` are the plants that can't be in a marked state any more where the reason's trace ends, `blamed` the
-    requirements that forbid something from there on. `loosenings`: one of these requirements left out, there would be
-    a supervisor; None where no requirement at all would have to be there for it to be empty.
+    requirements that forbid something from there on. `loosenings`: the requirements each of which, left out alone,
+    would give a supervisor; None: there would be none even without any requirement.
     """
 
     reason: Reason
@@ -127,7 +127,7 @@ class Possibility:
 
     @property
     def possible(self) -> bool:
-        """Whether it can."""
+        """Whether the event can happen in some state that the supervised robot reaches."""
         return self.nearest is not None and self.nearest.allowed
 
 

@@ -50,9 +50,11 @@ __all__ = [
 
 
 def verify(models: Models, configuration: Configuration) -> list[Verdict]:
-    """The verdicts on a model with its supervisor, on how it was made, and on what the configuration makes of it.
+    """Examines a supervised model, and gives a verdict for each property.
 
-    Raises ValueError where the model has no supervisor, MemoryError where decision diagrams take more than 4 GB.
+    Examined are the model's properties (`verify_system`), its plants against the robot's text (skipped where
+    `models.robosc` is None), and the C and CIF that are generated with this configuration (`validate`). Raises
+    ValueError without a supervisor, MemoryError where decision diagrams take more than 4 GB.
     """
     read = timed(validate_model, models.robosc, models.sct)
     return [*verify_system(models.sct), read, *validate(models, configuration)]

@@ -44,9 +44,10 @@ _LONGEST = 10_000
 
 @dataclass(frozen=True)
 class LoopEffort:
-    """How far to go: so many batches, ticks and the like are tried in the loop's states, so many at random.
+    """How many operations (batches, ticks and the like) are tried.
 
-    Fewer, where a robot has many events.
+    `explored`: most while the loop's states are explored. `walked`: those of the random walk after it. Neither is more
+    than `_QUESTIONS` divided by the number of events.
     """
 
     explored: int = 60_000

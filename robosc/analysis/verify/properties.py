@@ -200,7 +200,7 @@ def claim_holds(system: GuardedSystem, claimed: sct.Property) -> Verdict:
 
 
 def no_dead_events(system: GuardedSystem) -> Verdict:
-    """Each trigger, each internal transition and each reset can happen in some reachable state."""
+    """Each trigger, each silent transition and each reset can happen in some reachable state."""
     events = [event for event in system.relations if event.kind in _LIVE]
     dead = [event for event in events if not (system.controlled & system.allowed[event]).satisfiable()]
     evidence = f"{system.size}, {counted(len(events), 'event')}"

@@ -41,7 +41,10 @@ _made: ContextVar[dict[object, Any] | None] = ContextVar("made", default=None)
 
 @contextmanager
 def remembered() -> Iterator[None]:
-    """While it lasts, each model is transformed once, however many ask for it; nobody changes a model meanwhile."""
+    """A context in which `once` keeps its results, so that each model is transformed once.
+
+    Models must not change meanwhile. A nested context starts empty.
+    """
     before = _made.set({})
     try:
         yield
@@ -50,7 +53,7 @@ def remembered() -> Iterator[None]:
 
 
 def once(key: object, make: Callable[[], _Made]) -> _Made:
-    """What `make` makes; while `remembered` lasts, what it made when this was first asked for the same key."""
+    """The result of `make()`; within `remembered`, that of the first call with an equal `key`."""
     known = _made.get()
     if known is None:
         return make()

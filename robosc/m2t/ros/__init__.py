@@ -1,8 +1,8 @@
 """ROS packages: controllers and supervisory layers, for ROS 1 and ROS 2.
 
 `include` holds real C++ headers, the same in every package: `robosc` needs no middleware, `robosc_ros1` and
-`robosc_ros2` put it on one. `templates` prints what the model decides; `ros1` and `ros2` are what differs. What this
-room offers are its targets.
+`robosc_ros2` put it on one. `templates` prints what the model decides; `ros1` and `ros2` are what differs. This
+package offers its targets.
 """
 
 from __future__ import annotations

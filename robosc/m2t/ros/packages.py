@@ -80,7 +80,7 @@ class Used:
 
 
 class Middleware(Protocol):
-    """What differs between ROS 1 and ROS 2; a room of its name beside this file has its templates."""
+    """What differs between ROS 1 and ROS 2; a folder of its name beside this file has its templates."""
 
     #: 1 or 2.
     version: ClassVar[int]

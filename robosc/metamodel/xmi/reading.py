@@ -41,9 +41,11 @@ def load(
 
     These must lie in the file's folder or below. Raises ModelError with all findings, located in the files: `syntax`
     for what is no XML, `xmi` for what is no model of these metamodels, refers to nothing, or breaks a rule that every
-    such model keeps (`robosc.metamodel.validity`). Nothing is ever fetched, and no entity expanded. `texts` gets
-    what was read, by the names that findings carry. `locate` gives the path, as the user would write it, of a text
-    that elements come from, by the name that the model has of it.
+    such model keeps (`robosc.metamodel.validity`). Nothing is ever fetched, and no entity expanded.
+
+    `texts`: filled with the text of each file that was read, by the file name that findings carry. `locate`: maps the
+    name of a source text, as the model stores it, to the path that the user would write; None or no answer: the name
+    stays.
     """
     loading = _Loading(Path(path), {} if texts is None else texts)
     if locate is not None:

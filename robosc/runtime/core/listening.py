@@ -14,13 +14,13 @@ class Listener(Protocol):
     """What is called, from a thread of the middleware's, with what nodes tell."""
 
     def defined(self, text: str) -> None:
-        """A text on `~/definition`."""
+        """Receives the JSON text of a definition on `~/definition`."""
 
     def told(self, text: str) -> None:
-        """A text on `~/state`."""
+        """Receives the JSON text of one report on `~/state`."""
 
     def heard(self, publishers: int) -> None:
-        """How many nodes tell their states: called now and then."""
+        """Receives the number of nodes that publish their state; called every now and then."""
 
 
 class ReportSubscriber(Protocol):

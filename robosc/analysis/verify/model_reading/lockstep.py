@@ -49,12 +49,14 @@ class DifferenceError(Exception):
 
 @dataclass(frozen=True)
 class Effort:
-    """How far to look.
+    """How much is compared, and what is done when that is too little.
 
-    At a `first` part of the states; where that is not all, with so many `values` of what events read, reachable or not;
-    where that does not do, at so many `states`, and in memory so many `bits` of them, asking so often (`tries`) what an
-    event does in a state, of one event in one state for so many values of its `inputs`. Where that is not all, either,
-    so many tries more on a random way.
+    Up to `first` states are explored. If there are more, each event is compared for all combinations of the values that
+    it reads, reachable or not, up to `values` combinations in total. If these are too many, or a difference may be
+    unreachable, up to `states` states are explored (fewer where all of them together take more than `bits` bits), with
+    at most `tries` evaluations of an event; one that has to be computed counts as `_COMPUTED` of them. An event with
+    more than `inputs` combinations of input values is sampled in each state. The rest is sampled by `random`
+    evaluations on a random walk.
     """
 
     first: int = 100_000
