@@ -49,8 +49,8 @@ HEAD = """\
 How soon a robot stops, and what its node costs. `python benchmarks/reaction.py` measured it on {machine} and wrote this
 page.
 
-The world around the node is a Python program here. What the middleware and the measuring take of the times below, an
-echo shows that was asked in between: a small message to another Python node, and its answer.
+The world around the node is a Python program here. The times include what the middleware and the measuring program
+take. To show how much that is, an echo was measured in between: a small message to another Python node, and its answer.
 """
 
 STOP = """\
@@ -77,8 +77,8 @@ TIMES = """\
 
 From pressing a button to the beep that a model sends 200 ms later (`after 200 ms`), with the way of two messages, while
 a sensor sends at 100 Hz: 200 times each. Milliseconds later than that; none was early. `python benchmarks/expiry.py`
-measures it. The two cores had four times as much to do as they could, and twelve times as much while it was the
-compiled ROS 2 node.
+measures it. The two cores were loaded to four times their capacity, and to twelve times while the node was the
+compiled one of ROS 2.
 
 | node | median | maximum | early |
 | --- | ---: | ---: | ---: |

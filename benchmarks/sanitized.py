@@ -55,10 +55,10 @@ and with its thread sanitizer, and drives them on a live graph: a scenario, the 
 loaded into both kinds of containers and unloaded again under a rain of messages, the ways to end a node. ROS itself is
 as it comes: reports on its libraries alone are counted apart; leaks, and `new-delete-type-mismatch` in `rcutils`, are
 not looked for. A test may fail here where what sanitizers cost breaks a bound: of time, or of the memory in a flood,
-since the address sanitizer keeps what was freed for a while. The thread sanitizer does not see the counters of shared
-pointers that such a library counts down: it reports `operator delete` of what the last of them frees, also where that
-is right. Orders of locks that are all roscpp's own, which it takes one way where it connects and the other where a
-connection breaks, count as the library's, whoever called it; so do those of its logging.
+since the address sanitizer keeps what was freed for a while. The thread sanitizer does not see reference counts that
+a library without instrumentation decrements. So it reports the `operator delete` of the last owner as a race, even
+where it is correct. Orders of locks that are all roscpp's own, which it takes one way where it connects and the other
+where a connection breaks, count as the library's, whoever called it; so do those of its logging.
 
 The address sanitizer reports nothing in ROS 2, where 500 components came and went in each container. All 20 tests of
 `tests/ros/test_ros2_node.py` passed, and 54 of 55 of `tests/ros/faults`: the flood took 17.9 MB more memory, of at
