@@ -90,6 +90,6 @@ def extensions(group: Group) -> Mapping[str, Extension]:
     """What is installed of a group, by name; of two of one name the first by package."""
     found: dict[str, Extension] = {}
     entries = [(entry.name, entry.dist.name if entry.dist else "", entry) for entry in entry_points(group=group)]
-    for name, _, entry in sorted(entries, key=lambda one: one[:2]):
+    for name, _, entry in sorted(entries, key=lambda triple: triple[:2]):
         found.setdefault(name, Extension(entry))
     return found

@@ -67,7 +67,7 @@ def _uncontrollable(system: SynthesizedSystem) -> Reason:
     if violated:
         return replace(reason, event=event, unmarked=(), violated=violated)
     changing = {relation.event for relation, _ in system.plant_moves}
-    at_fault = [one for one in forbidden_from(system, last.states[-1]) if one.event in changing]
+    at_fault = [requirement for requirement in forbidden_from(system, last.states[-1]) if requirement.event in changing]
     return replace(reason, event=event, requirements=tuple(at_fault))
 
 
@@ -87,7 +87,7 @@ def _blocked_from_the_start(system: SynthesizedSystem) -> Reason:
     for index, ((relation, _), codes, after) in enumerate(zip(path.moves, path.states, path.states[1:], strict=False)):
         if not system.is_in(codes, relation.requirement):
             reason = _described(system, unmarked, steps[: index + 1], codes)
-            at_fault = [one for one, asked in relation.asked.items() if not system.is_in(codes, asked)]
+            at_fault = [requirement for requirement, asked in relation.asked.items() if not system.is_in(codes, asked)]
             return replace(reason, event=relation.event, requirements=tuple(at_fault))
         violated = system.violated(after)
         if violated:

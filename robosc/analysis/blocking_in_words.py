@@ -51,7 +51,12 @@ def counterexample_in_words(counterexample: BlockingCounterexample, model: sct.S
         )
     if counterexample.violated:
         # Without lines: the sentence stands in generated code, which changes where the robot does.
-        named = listed([f"`{one.text}`" if one.text else "a requirement" for one in counterexample.violated])
+        named = listed(
+            [
+                f"`{requirement.text}`" if requirement.text else "a requirement"
+                for requirement in counterexample.violated
+            ]
+        )
         problem = violates(named, counterexample.violated)
     if not counterexample.onwards:
         return f"after {steps}, {problem}"

@@ -222,7 +222,7 @@ class Observer:
                 )
             elif forbidden:
                 requirements = forbidding(permission.relation, enabled)
-                stated = any(one.automaton is not None for one in requirements)
+                stated = any(requirement.automaton is not None for requirement in requirements)
                 way = self._way_of_plants(enabled) if stated else None
                 trace = self._system.trace(way) if way is not None else None
                 yield NeverEnabled(event, Forbidden.BY_REQUIREMENTS, requirements=requirements, trace=trace)
@@ -254,7 +254,9 @@ class Observer:
             asked = relation.asked.items()
             return replace(
                 found,
-                requirements=tuple(one for one, where in asked if not system.is_in(way.states[number], where)),
+                requirements=tuple(
+                    requirement for requirement, allowing in asked if not system.is_in(way.states[number], allowing)
+                ),
                 trace=system.trace(Path(way.states[: number + 2], way.moves[: number + 1])),
                 needed=relation.event,
             )
@@ -274,7 +276,9 @@ class Observer:
             after = permission.where if step is None else step.image(permission.where)
             if not (after & self._system.started_where(event)).satisfiable():
                 at_fault = forbidding(permission.relation, after)
-                yield SelfCancelling(event, tuple(one for one in at_fault if one.automaton is None))
+                yield SelfCancelling(
+                    event, tuple(requirement for requirement in at_fault if requirement.automaton is None)
+                )
 
     def _provide_gaps(self) -> Iterator[ProvideGap]:
         for event in self._triggers:

@@ -131,7 +131,7 @@ class SupervisedSystem:
 
     def violated(self, codes: Codes) -> tuple[sct.StatedRequirement, ...]:
         """What a state violates."""
-        return tuple(one for one, states in self.violations.items() if self.is_in(codes, states))
+        return tuple(requirement for requirement, states in self.violations.items() if self.is_in(codes, states))
 
     def holds(self, expression: ex.Expression | None, codes: Codes) -> bool:
         """Whether a condition is true in a state."""
@@ -192,7 +192,9 @@ class SynthesizedSystem(SupervisedSystem):
         moves = ((relation, relation.step_where(other.required[event])) for event, relation in self.relations.items())
         other.moves = [(relation, step) for relation, step in moves if step is not None]
         other.supervised_moves = other.moves
-        other.violations = {one: states for one, states in self.violations.items() if one not in requirements}
+        other.violations = {
+            requirement: states for requirement, states in self.violations.items() if requirement not in requirements
+        }
         other.found = supervise(self.encoding, other.moves, other.violating)
         other.controlled = other.found.controlled
         return other
@@ -221,7 +223,9 @@ class SynthesizedSystem(SupervisedSystem):
         The requirement that says so stands at the action itself.
         """
         plant, requirements = plant_of(event), self.relations[event].requirements
-        stands_there = plant.source is not None and [one.source for one in requirements] == [plant.source]
+        stands_there = plant.source is not None and [requirement.source for requirement in requirements] == [
+            plant.source
+        ]
         if event.kind != sct.EventKind.cancel or not stands_there:
             return None
         return next((other for other in plant.events if other.kind == sct.EventKind.trigger), None)
@@ -229,7 +233,9 @@ class SynthesizedSystem(SupervisedSystem):
     def started_where(self, trigger: sct.Event, left_out: AbstractSet[sct.StatedRequirement] = frozenset()) -> Diagram:
         """Where an action is not cancelled: what it `needs` holds, whatever orders and counts say of another start."""
         asked = self.relations[trigger].asked.items()
-        return self.diagrams.all_of(holds for one, holds in asked if one.automaton is None and one not in left_out)
+        return self.diagrams.all_of(
+            holds for requirement, holds in asked if requirement.automaton is None and requirement not in left_out
+        )
 
     def _asked(self, relation: EventRelation, left_out: AbstractSet[sct.StatedRequirement]) -> Diagram:
         """Where the requirements on an event hold but for those left out."""

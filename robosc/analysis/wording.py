@@ -114,7 +114,9 @@ def forbid(requirements: Sequence[sct.Requirement], what: str) -> str:
 
 def violates(named: str, requirements: Sequence[sct.StatedRequirement]) -> str:
     """That requirements, named so, do not hold."""
-    events = dict.fromkeys(one.event for one in requirements if isinstance(one, sct.Requirement))
+    events = dict.fromkeys(
+        requirement.event for requirement in requirements if isinstance(requirement, sct.Requirement)
+    )
     if events:
         return f"{listed([words(event) for event in events])} can come, which {named} {_forbid(requirements)}"
     return f"{named} {'is' if len(requirements) == 1 else 'are'} violated"
@@ -138,7 +140,7 @@ def in_words(steps: Sequence[TraceStep], model: sct.SupervisoryControlModel) -> 
 
 def _data(input_name: str, chosen: Value, event: sct.Event) -> str:
     """What comes with an event: a piece of its data, or what the node computes of it, as the model writes that."""
-    computed = next((found.text for found in event.inputs if found.name == input_name), None)
+    computed = next((carried.text for carried in event.inputs if carried.name == input_name), None)
     if computed is None:
         said = input_name.removeprefix(f"i_{event.kind.name}").removeprefix("_") or "value"
         return f"{said} = {text(chosen)}"

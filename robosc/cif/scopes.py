@@ -244,8 +244,8 @@ class Specification:
                 if read.type is not None:
                     raise construct(read, "channels", CHANNELS)
             case _ if rule in _LISTS:
-                for one in getattr(read, _LISTS[rule]):
-                    self._name(rule, one, read, scope)
+                for declaration in getattr(read, _LISTS[rule]):
+                    self._name(rule, declaration, read, scope)
 
     @staticmethod
     def _name(rule: str, read: Any, outer: Any, scope: Scope) -> Declared:
@@ -304,7 +304,7 @@ class Specification:
             if inside.definition is definition:
                 raise CifFaultError(read, "cyclic-definition", f"`{plain(definition.name)}` is made of itself")
             inside = inside.parent
-        parameters = [(one, name) for one in definition.parameters for name in one.names]
+        parameters = [(parameter, name) for parameter in definition.parameters for name in parameter.names]
         if len(parameters) != len(read.arguments):
             wanted = f"{len(parameters)} argument{'' if len(parameters) == 1 else 's'}"
             raise CifFaultError(

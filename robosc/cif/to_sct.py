@@ -200,7 +200,7 @@ class _Transformation:
             watched = used
         requirement = scope.kind == "requirement"
         for event in used:
-            edges = [one for one in taken if one.event is event]
+            edges = [edge for edge in taken if edge.event is event]
             self._place(edges, event, scope, watching=requirement or event in (watched or ()))
             if requirement and event not in (watched or ()):
                 self._require(edges, event, scope)
@@ -208,15 +208,15 @@ class _Transformation:
     def _alphabet(self, taken: Iterable[_Taken], scope: Scope) -> list[sct.Event]:
         """The events that an automaton takes part in."""
         declared = self._events(scope, "Alphabet")
-        for one in taken:
-            if declared is not None and one.event not in declared:
-                message = f"`{one.event.name}` is not in the alphabet of `{scope.path}`"
+        for edge in taken:
+            if declared is not None and edge.event not in declared:
+                message = f"`{edge.event.name}` is not in the alphabet of `{scope.path}`"
                 with self._names.reporting():
-                    raise CifFaultError(one.read, "cif-declaration", message, "add it there")
-        return list(dict.fromkeys(one.event for one in taken)) if declared is None else declared
+                    raise CifFaultError(edge.read, "cif-declaration", message, "add it there")
+        return list(dict.fromkeys(edge.event for edge in taken)) if declared is None else declared
 
     def _events(self, scope: Scope, rule: str) -> list[sct.Event] | None:
-        found = [self._event(name, scope) for one in scope.declarations(rule) for name in one.events]
+        found = [self._event(name, scope) for declaration in scope.declarations(rule) for name in declaration.events]
         return list(dict.fromkeys(found)) if any(True for _ in scope.declarations(rule)) else None
 
     def _event(self, name: Any, scope: Scope) -> sct.Event:
@@ -230,20 +230,20 @@ class _Transformation:
         return event
 
     def _taken(self, read: Any, location: sct.Location, scope: Scope) -> Iterator[_Taken]:
-        if not read.events or any(one.tau for one in read.events):
+        if not read.events or any(edge_event.tau for edge_event in read.events):
             raise construct(read, "edges without an event", TAU)
         if read.urgent:
             raise construct(read, "urgent edges", "leave out `now`")
-        for one in read.events:
-            if one.communication:
-                raise construct(one, "channels", CHANNELS)
-        events = [self._event(one.event, scope) for one in read.events]
+        for edge_event in read.events:
+            if edge_event.communication:
+                raise construct(edge_event, "channels", CHANNELS)
+        events = [self._event(edge_event.event, scope) for edge_event in read.events]
         target = location
         if read.target is not None:
             name = plain(read.target.name)
             found = scope.names.get(name)
             if not isinstance(found, sct.Location):
-                known = [one.name for one in location.eContainer().locations]
+                known = [sibling.name for sibling in location.eContainer().locations]
                 raise CifFaultError(read.target, "unresolved-reference", *_missing(name, known))
             target = found
         guard = self._values.condition(read.guards, scope)
@@ -282,19 +282,19 @@ class _Transformation:
         """The edges of an event in a plant; where it only watches the event, it stays if no edge can be taken."""
         plant = scope.plant
         assert plant is not None
-        for one in edges:
-            guard = [copied(part) for part in (one.guard,) if part is not None]
-            if one.fits is not None and event.controllable:
-                guard.append(copied(one.fits))
-            made = sct.Edge(event=event, guard=conjunction(guard), target=one.target, source=located(one.read))
-            for variable, value, read in one.updates:
+        for edge in edges:
+            guard = [copied(part) for part in (edge.guard,) if part is not None]
+            if edge.fits is not None and event.controllable:
+                guard.append(copied(edge.fits))
+            made = sct.Edge(event=event, guard=conjunction(guard), target=edge.target, source=located(edge.read))
+            for variable, value, read in edge.updates:
                 made.updates.append(sct.Update(variable=variable, value=copied(value), source=located(read)))
-            one.location.edges.append(made)
-            if one.fits is not None and not event.controllable:
-                self._stay_in_range(one, plant)
+            edge.location.edges.append(made)
+            if edge.fits is not None and not event.controllable:
+                self._stay_in_range(edge, plant)
         if watching:
             for location in plant.locations:
-                guards = [one.guard for one in edges if one.location is location]
+                guards = [edge.guard for edge in edges if edge.location is location]
                 if all(guard is not None for guard in guards):
                     others = [ex.Negation(operand=copied(guard)) for guard in guards if guard is not None]
                     stay = sct.Edge(event=event, guard=conjunction(others), target=location, source=located(scope.read))
@@ -304,20 +304,20 @@ class _Transformation:
             location = plant.locations[0]
             location.edges.append(sct.Edge(event=event, guard=never, target=location, source=located(scope.read)))
 
-    def _stay_in_range(self, one: _Taken, plant: sct.Plant) -> None:
+    def _stay_in_range(self, edge: _Taken, plant: sct.Plant) -> None:
         """An uncontrollable event must not happen where it would leave the range of a variable."""
-        assert one.fits is not None
-        premises = [*_at(one.location, plant), *(copied(part) for part in (one.guard,) if part is not None)]
+        assert edge.fits is not None
+        premises = [*_at(edge.location, plant), *(copied(part) for part in (edge.guard,) if part is not None)]
         premise = conjunction(premises)
-        fits = copied(one.fits)
+        fits = copied(edge.fits)
         condition = fits if premise is None else ex.Implication(left=premise, right=fits)
         self.model.requirements.append(
             sct.Requirement(
-                event=one.event,
+                event=edge.event,
                 kind=sct.RequirementKind.needs,
                 condition=condition,
-                text=_words(one.read),
-                source=located(one.read),
+                text=_words(edge.read),
+                source=located(edge.read),
             )
         )
 
@@ -326,9 +326,9 @@ class _Transformation:
         plant = scope.plant
         assert plant is not None
         allowed = []
-        for one in edges:
-            guard = [copied(part) for part in (one.guard,) if part is not None]
-            here = conjunction([*_at(one.location, plant), *guard])
+        for edge in edges:
+            guard = [copied(part) for part in (edge.guard,) if part is not None]
+            here = conjunction([*_at(edge.location, plant), *guard])
             if here is None:
                 return
             allowed.append(here)
@@ -361,11 +361,13 @@ class _Transformation:
                     message = f"`{declared.name}` is {shown(declared.type)}, its initial value {shown(made.type)}"
                     raise CifFaultError(value, "integer-range" if isinstance(made.type, range) else "type", message)
             several.append(made.expression)
-        constants = [constant_value(one) for one in several]
+        constants = [constant_value(value) for value in several]
         if len(several) == 1 and constants[0] is not None:
             variable.initial = literal(constants[0])
             return
-        either = disjunction(ex.Equation(left=sct.VariableReference(variable=variable), right=one) for one in several)
+        either = disjunction(
+            ex.Equation(left=sct.VariableReference(variable=variable), right=value) for value in several
+        )
         assert either is not None
         self.model.initialPredicates.append(either)
 
@@ -410,9 +412,9 @@ class _Transformation:
                 raise construct(read, "supervisor invariants", SUPERVISORS)
             what = "invariants of no kind"
             raise construct(read, what, "write `requirement` before it, or `plant` where the system itself sees to it")
-        for one in read.invariants:
+        for invariant in read.invariants:
             with self._names.reporting():
-                self._invariant(one, read.kind == "plant", scope, location)
+                self._invariant(invariant, read.kind == "plant", scope, location)
 
     def _invariant(self, read: Any, plant: bool, scope: Scope, location: sct.Location | None) -> None:
         told = read.restriction
@@ -453,7 +455,7 @@ class _Transformation:
         for read, condition in self._plant_invariants:
             for event, excluding in plant_invariants.keep(condition, edges):
                 with self._names.reporting():
-                    overlap = [one for own in edges[event].values() for one in own]
+                    overlap = [edge for own in edges[event].values() for edge in own]
                     if excluding is None or (not event.controllable and _several(overlap)):
                         raise construct(read, f"this plant invariant with `{event.name}`", "state it by guards")
                     self._exclusions.setdefault(event, []).append(excluding)
@@ -462,7 +464,7 @@ class _Transformation:
     def _exclude(self) -> None:
         """What plant invariants exclude, a plant of one location excludes; what no automaton has, nothing restricts."""
         used = {edge.event for scope in _inside(self._names.root) if scope.plant for edge in _edges(scope.plant)}
-        for requirement in [one for one in self.model.requirements if one.event not in used]:
+        for requirement in [requirement for requirement in self.model.requirements if requirement.event not in used]:
             self.model.requirements.remove(requirement)
         if not self._exclusions:
             return

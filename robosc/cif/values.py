@@ -70,10 +70,10 @@ class Values:
         """That all of some booleans hold; None of none."""
         made = []
         for read in reads:
-            one = self.whole(read, scope)
-            if one.type != BOOLEAN:
-                raise CifFaultError(read, "type", f"a condition is bool, this is {shown(one.type)}")
-            made.append(one.expression)
+            boolean = self.whole(read, scope)
+            if boolean.type != BOOLEAN:
+                raise CifFaultError(read, "type", f"a condition is bool, this is {shown(boolean.type)}")
+            made.append(boolean.expression)
         return conjunction(made)
 
     def constant(self, read: Any, scope: Scope) -> tuple[Any, Type]:
@@ -119,11 +119,11 @@ class Values:
             raise CifFaultError(
                 read, "argument", f"`{name}` takes {wanted} argument{'s'[: wanted - 1]}, found {len(given)}"
             )
-        for argument, one in zip(read.arguments, given, strict=True):
-            if not isinstance(one.type, range):
+        for argument, value in zip(read.arguments, given, strict=True):
+            if not isinstance(value.type, range):
                 raise CifFaultError(argument, "type", f"`{name}` wants an int")
-        made = ex.FunctionCall(function=name, arguments=[one.expression for one in given])
-        bounds = [(one.type.start, one.type.stop - 1) for one in given if isinstance(one.type, range)]
+        made = ex.FunctionCall(function=name, arguments=[value.expression for value in given])
+        bounds = [(value.type.start, value.type.stop - 1) for value in given if isinstance(value.type, range)]
         if name == "abs":
             [(low, high)] = bounds
             return Typed(read, made, range(max(low, -high, 0), max(-low, high) + 1))
@@ -135,7 +135,7 @@ class Values:
             what = _SUFFIXES[read.suffix[0]]
             raise construct(read, what, "write an algebraic variable for what it computes")
         if switched is not None:
-            own = next((one for one in switched.locations if one.name == plain(read.name.text)), None)
+            own = next((location for location in switched.locations if location.name == plain(read.name.text)), None)
             if own is not None:
                 return Typed(read, sct.LocationReference(location=own), BOOLEAN)
         made = self._value(read, self.names.find(read.name, scope))
@@ -159,7 +159,7 @@ class Values:
                 return Typed(read, sct.VariableReference(variable=found.made), found.type)
             case Declared(kind="Literal"):
                 enumeration = self.enumeration(found.outer)
-                literal = next(one for one in enumeration.literals if one.name == found.name)
+                literal = next(literal for literal in enumeration.literals if literal.name == found.name)
                 return Typed(read, ex.EnumerationLiteralReference(literal=literal), enumeration)
         raise CifFaultError(read, "type", f"`{read.name.text}` has no value")
 
@@ -209,7 +209,9 @@ class Values:
                     self._known[last] = self._made(last)
             elif used in path:
                 circle = list(path)
-                self._known |= {one: _computed_from_itself(one) for one in circle[circle.index(used) :]}
+                self._known |= {
+                    definition: _computed_from_itself(definition) for definition in circle[circle.index(used) :]
+                }
             elif used not in self._open:
                 path[used] = iter(self._uses(used))
 
@@ -217,13 +219,15 @@ class Values:
         """The definitions and arguments that one names; a key of a `switch` may be a location of the same name."""
         scope = found.scope
         types = [found.outer.type if found.kind != "Types" else found.read.type] if isinstance(found, Declared) else []
-        reads = [bound for one in types if type(one).__name__ == "Integer" for bound in (one.low, one.high) if bound]
-        names = [one.type for one in types if type(one).__name__ == "NamedType"]
+        reads = [
+            bound for kind in types if type(kind).__name__ == "Integer" for bound in (kind.low, kind.high) if bound
+        ]
+        names = [kind.type for kind in types if type(kind).__name__ == "NamedType"]
         if isinstance(found, Argument) or (found.kind != "Types" and found.read.value is not None):
             reads.append(found.read if isinstance(found, Argument) else found.read.value)
         elif found.kind == "Algebraics":
             with suppress(CifFaultError):
-                reads += [one for _, one in self.equations(scope).get(found.name, ())]
+                reads += [equation for _, equation in self.equations(scope).get(found.name, ())]
         for name in (*names, *(name for read in reads for name in named(read))):
             with suppress(CifFaultError):
                 used = self.names.find(name, scope)
@@ -271,16 +275,16 @@ class Values:
             )
         made: Typed | None = None
         for location, read in reversed(equations):
-            one = self.typed(read, found.scope)
+            value = self.typed(read, found.scope)
             if made is None or location is None:
-                made = one
+                made = value
                 continue
-            if isinstance(one.type, range) and isinstance(made.type, range):
-                kind: Any = range(min(one.type.start, made.type.start), max(one.type.stop, made.type.stop))
+            if isinstance(value.type, range) and isinstance(made.type, range):
+                kind: Any = range(min(value.type.start, made.type.start), max(value.type.stop, made.type.stop))
             else:
-                kind = one.type
+                kind = value.type
             condition = sct.LocationReference(location=location)
-            choice = ex.Conditional(condition=condition, then=one.expression, otherwise=made.expression)
+            choice = ex.Conditional(condition=condition, then=value.expression, otherwise=made.expression)
             made = Typed(found.read, choice, kind)
         assert made is not None
         return made
@@ -290,17 +294,17 @@ class Values:
         if scope not in self._equations:
             known = self._equations[scope] = {}
             told: list[tuple[sct.Location | None, Any]] = [
-                (None, one) for declared in scope.declarations("Equations") for one in declared.equations
+                (None, equation) for declared in scope.declarations("Equations") for equation in declared.equations
             ]
             if scope.plant is not None and scope.kind is not None:
                 for location, read in zip(scope.plant.locations, scope.bodies[0].locations, strict=True):
                     for element in read.elements:
                         if type(element).__name__ == "Equations":
-                            told += [(location, one) for one in element.equations]
-            for place, one in told:
-                if one.derivative:
-                    raise construct(one, "continuous variables", "leave them to simulation")
-                known.setdefault(plain(one.name), []).append((place, one.value))
+                            told += [(location, equation) for equation in element.equations]
+            for place, equation in told:
+                if equation.derivative:
+                    raise construct(equation, "continuous variables", "leave them to simulation")
+                known.setdefault(plain(equation.name), []).append((place, equation.value))
         return self._equations[scope]
 
     # Types
@@ -334,7 +338,9 @@ class Values:
         """The enumeration of a declaration."""
         if declared.made is None:
             declared.made = ex.Enumeration(name=declared.name, origin=declared.scope.path or None)
-            declared.made.literals.extend(ex.EnumerationLiteral(name=plain(one.name)) for one in declared.read.literals)
+            declared.made.literals.extend(
+                ex.EnumerationLiteral(name=plain(literal.name)) for literal in declared.read.literals
+            )
         found: ex.Enumeration = declared.made
         return found
 

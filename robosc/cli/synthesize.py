@@ -135,7 +135,7 @@ def _weight(weight: Weight) -> dict[str, Any]:
     """A requirement of the text, and in how many states it matters."""
     first = weight.requirements[0]
     file, span = place(first)
-    texts = list(dict.fromkeys(one.text for one in weight.requirements))
+    texts = list(dict.fromkeys(requirement.text for requirement in weight.requirements))
     return {
         "name": first.name,
         "texts": texts,

@@ -163,7 +163,7 @@ def _meant(
     types = RosTypes(paths.interfaces)
     reading = read_text(path, paths.libraries, types, Documents({path: longer.text}))
     findings = [*reading.findings, *(check(reading.base, reading.findings, types) if reading.base else ())]
-    report.add(told for told in map(longer.told, findings) if told.rule == RULE)
+    report.add(finding for finding in map(longer.told, findings) if finding.rule == RULE)
     report.stop_on_errors()
     robot: rsc.Robot = reading.base  # type: ignore[assignment]  # it is the same but for the properties
     model = robosc.to_sct(robot)

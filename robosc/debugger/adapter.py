@@ -367,31 +367,31 @@ class Adapter:
     # Breakpoints
 
     def _set_breakpoints(self, arguments: Mapping[str, Any]) -> Mapping[str, Any]:
-        lines = [self._line(one) for one in _objects(arguments.get("breakpoints"))]
+        lines = [self._line(point) for point in _objects(arguments.get("breakpoints"))]
         told = self._debugged.stops.in_file(_path(arguments), lines)
-        return {"breakpoints": [one | {"line": self._shown_line(one["line"])} for one in told]}
+        return {"breakpoints": [point | {"line": self._shown_line(point["line"])} for point in told]}
 
     def _set_function_breakpoints(self, arguments: Mapping[str, Any]) -> Mapping[str, Any]:
-        names = [str(one.get("name", "")) for one in _objects(arguments.get("breakpoints"))]
+        names = [str(point.get("name", "")) for point in _objects(arguments.get("breakpoints"))]
         return {"breakpoints": self._debugged.stops.by_name(names)}
 
     def _set_exception_breakpoints(self, arguments: Mapping[str, Any]) -> Mapping[str, Any]:
         named = arguments.get("filters")
-        filters = [{"filterId": one} for one in (named if isinstance(named, list) else ())]
+        filters = [{"filterId": name} for name in (named if isinstance(named, list) else ())]
         return {"breakpoints": self._debugged.stops.filters([*filters, *_objects(arguments.get("filterOptions"))])}
 
     def _data_breakpoint_info(self, arguments: Mapping[str, Any]) -> Mapping[str, Any]:
         asked = str(arguments.get("name", ""))
         if arguments.get("variablesReference"):
             children = self._children(arguments["variablesReference"])
-            asked = next((one.path for one in children if one.name == asked and one.path), asked)
+            asked = next((child.path for child in children if child.name == asked and child.path), asked)
         name = self._debugged.views.state_name(asked)
         if name is None:
             return {"dataId": None, "description": f"{asked} is no part of the state that changes"}
         return {"dataId": name, "description": name, "accessTypes": ["write"], "canPersist": True}
 
     def _set_data_breakpoints(self, arguments: Mapping[str, Any]) -> Mapping[str, Any]:
-        names = [str(one.get("dataId")) for one in _objects(arguments.get("breakpoints"))]
+        names = [str(point.get("dataId")) for point in _objects(arguments.get("breakpoints"))]
         return {"breakpoints": self._debugged.stops.by_value(names)}
 
     def _breakpoint_locations(self, arguments: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -439,16 +439,18 @@ class Adapter:
     def _variables(self, arguments: Mapping[str, Any]) -> Mapping[str, Any]:
         children = self._children(arguments.get("variablesReference"))
         first, count = (_natural(arguments.get(name)) for name in ("start", "count"))
-        return {"variables": [self._variable(one) for one in children[first : first + count if count else None]]}
-
-    def _variable(self, one: Variable) -> dict[str, Any]:
-        told: dict[str, Any] = {
-            "name": one.name,
-            "value": one.value,
-            "variablesReference": self._reference(one.children),
+        return {
+            "variables": [self._variable(variable) for variable in children[first : first + count if count else None]]
         }
-        if one.path is not None:
-            told["evaluateName"] = one.path
+
+    def _variable(self, variable: Variable) -> dict[str, Any]:
+        told: dict[str, Any] = {
+            "name": variable.name,
+            "value": variable.value,
+            "variablesReference": self._reference(variable.children),
+        }
+        if variable.path is not None:
+            told["evaluateName"] = variable.path
         return told
 
     def _reference(self, children: Callable[[], Sequence[Variable]] | None) -> int:
@@ -609,6 +611,6 @@ def _natural(value: Any) -> int:
 
 
 def _objects(given: Any) -> list[dict[str, Any]]:
-    if given is not None and not (isinstance(given, list) and all(isinstance(one, dict) for one in given)):
+    if given is not None and not (isinstance(given, list) and all(isinstance(item, dict) for item in given)):
         raise RequestError("a list of objects is wanted")
     return given or []

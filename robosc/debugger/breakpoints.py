@@ -111,9 +111,9 @@ class Targets:
         for prefix, make in ((_FORBIDDEN, self._becomes_forbidden), (_ALLOWED, self._becomes_allowed)):
             if text.startswith(prefix):
                 return [make(event_named(self.model, text.removeprefix(prefix).strip()))]
-        named = [one for one in self.model.requirements if one.name == text]
+        named = [requirement for requirement in self.model.requirements if requirement.name == text]
         if named:
-            return [self._requirement(one) for one in named]
+            return [self._requirement(requirement) for requirement in named]
         try:
             return [self._event(event_named(self.model, text))]
         except NamingError as error:
@@ -125,7 +125,7 @@ class Targets:
     def forbidding(self, text: str = "") -> list[Target]:
         """That a command becomes forbidden: those named, with commas between, or any. Raises NamingError."""
         if text.strip():
-            return [self._becomes_forbidden(event_named(self.model, one.strip())) for one in text.split(",")]
+            return [self._becomes_forbidden(event_named(self.model, name.strip())) for name in text.split(",")]
         kinds = (sct.EventKind.trigger, sct.EventKind.plain)
         events = [event for plant in self.model.plants for event in plant.events]
         return [self._becomes_forbidden(event) for event in events if event.controllable and event.kind in kinds]

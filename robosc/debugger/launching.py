@@ -62,10 +62,10 @@ class Launch:
     @classmethod
     def of(cls, arguments: Mapping[str, Any]) -> Launch:
         """What the arguments of the request say. Raises RequestError."""
-        for name, (kind, told) in _KEYS.items():
+        for name, (kind, expected) in _KEYS.items():
             given = arguments.get(name)
             if given is not None and (not isinstance(given, kind) or (isinstance(given, bool) and kind is int)):
-                raise RequestError(f"launch: `{name}` is {json.dumps(given)}, expected {told}")
+                raise RequestError(f"launch: `{name}` is {json.dumps(given)}, expected {expected}")
         if not arguments.get("program"):
             raise RequestError("launch: `program` names the model")
         script, counterexample = arguments.get("script") or None, arguments.get("counterexample") or None

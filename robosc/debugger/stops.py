@@ -83,7 +83,9 @@ class Stops:
         if moment.by is not None and REFUSED in self._filters:
             return Stop("exception", self._views.told(moment))
         for reason, points in (("breakpoint", self._in_files), ("function breakpoint", self._by_name)):
-            hit = [(point.identifier, what) for point in points for what in self._hit(point.targets, moment)]
+            hit = [
+                (point.identifier, description) for point in points for description in self._hit(point.targets, moment)
+            ]
             if hit:
                 return Stop(reason, hit[0][1], list(dict.fromkeys(number for number, _ in hit)))
         changed = [name for name in self._by_value if moment.before[name] != moment.after[name]]
@@ -166,8 +168,8 @@ class Stops:
         """What else stops the run: `filterId`, with a `condition` that names commands where only these count."""
         self._filters = {}
         told: list[dict[str, Any]] = []
-        for one in wanted:
-            name, condition = str(one.get("filterId")), str(one.get("condition") or "")
+        for requested in wanted:
+            name, condition = str(requested.get("filterId")), str(requested.get("condition") or "")
             if name not in {known["filter"] for known in FILTERS}:
                 told.append({"verified": False, "message": f"there is no filter `{name}`"})
                 continue

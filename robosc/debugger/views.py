@@ -128,9 +128,15 @@ class Views:
         """What a frame shows: the component that it is about first."""
         own = [] if plant is None else [Variable(name(plant), "", lambda: self._component(plant))]
         scopes = [
-            Variable("Components", "", lambda: [self._plant(one) for one in self._of(sct.PlantKind.behaviour)]),
+            Variable(
+                "Components", "", lambda: [self._plant(automaton) for automaton in self._of(sct.PlantKind.behaviour)]
+            ),
             Variable("Communication", "", self._communication),
-            Variable("Requirements", "", lambda: [self._plant(one) for one in self._of(sct.PlantKind.requirement)]),
+            Variable(
+                "Requirements",
+                "",
+                lambda: [self._plant(automaton) for automaton in self._of(sct.PlantKind.requirement)],
+            ),
             Variable("Times", "", self._times),
             Variable("Can happen", "", self._possible),
             Variable("Can't happen", "", self._impossible),
@@ -151,8 +157,8 @@ class Views:
 
     def _variables(self, plant: sct.Plant) -> list[Variable]:
         return [
-            Variable(one.name, shown(self._engine.value(one)), path=f"{name(plant)}.{one.name}")
-            for one in plant.variables
+            Variable(variable.name, shown(self._engine.value(variable)), path=f"{name(plant)}.{variable.name}")
+            for variable in plant.variables
         ]
 
     def _communication(self) -> list[Variable]:
@@ -217,7 +223,7 @@ class Views:
             if text in (name(plant), plant.name):
                 return str(here)
             if owner in (name(plant), plant.name):
-                variable = next((one for one in plant.variables if one.name == last), None)
+                variable = next((variable for variable in plant.variables if variable.name == last), None)
                 if variable is not None:
                     return shown(self._engine.value(variable))
                 if last in {location.name for location in plant.locations}:
@@ -231,7 +237,7 @@ class Views:
         for plant in self._model.plants:
             own, inner = text in (name(plant), plant.name), owner in (name(plant), plant.name)
             known = [plant.name] if own else [f"{plant.name}.{last}", f"{name(plant)}.{last}"] if inner else []
-            found = next((one for one in known if one in state), None)
+            found = next((candidate for candidate in known if candidate in state), None)
             if found is not None:
                 return found
         return text if text in state else None

@@ -115,8 +115,8 @@ class _Layouter:
                 stops = list(zip(ends, ports, strict=True))
             found.append(
                 [
-                    Link(one, other, one_port, other_port, True)
-                    for (one, one_port), (other, other_port) in pairwise(stops)
+                    Link(source, target, source_port, target_port, True)
+                    for (source, source_port), (target, target_port) in pairwise(stops)
                 ]
             )
         return found

@@ -132,11 +132,11 @@ def _chain(boxes: Mapping[str, _Item], link: Link) -> list[_Item]:
     if first.column == last.column:
         return [first, last]
     chain = [first, *between, last]
-    for one, other in pairwise(chain):
-        one_port = link.source_port if one is first else 0.0
-        other_port = link.target_port if other is last else 0.0
-        (one.right if way > 0 else one.left).append((other, other_port, one_port))
-        (other.left if way > 0 else other.right).append((one, one_port, other_port))
+    for item, following in pairwise(chain):
+        item_port = link.source_port if item is first else 0.0
+        following_port = link.target_port if following is last else 0.0
+        (item.right if way > 0 else item.left).append((following, following_port, item_port))
+        (following.left if way > 0 else following.right).append((item, item_port, following_port))
     return chain
 
 
@@ -183,7 +183,7 @@ def _crossings(layers: Sequence[Sequence[_Item]]) -> int:
             for other, port, own in item.right
         ]
         ends.sort()
-        total += sum(one[1] > other[1] for number, one in enumerate(ends) for other in ends[number + 1 :])
+        total += sum(end[1] > later[1] for number, end in enumerate(ends) for later in ends[number + 1 :])
     return total
 
 
@@ -218,8 +218,8 @@ def _place(layer: Sequence[_Item], wanted: Sequence[float]) -> None:
     for height, base in zip(wanted, offsets, strict=True):
         pools.append((height - base, 1))
         while len(pools) > 1 and pools[-2][0] >= pools[-1][0]:
-            (one, few), (other, more) = pools[-2:]
-            pools[-2:] = [((one * few + other * more) / (few + more), few + more)]
+            (upper, few), (lower, more) = pools[-2:]
+            pools[-2:] = [((upper * few + lower * more) / (few + more), few + more)]
     tops = [mean for mean, count in pools for _ in range(count)]
     for item, top, base in zip(layer, tops, offsets, strict=True):
         item.top = top + base

@@ -62,8 +62,8 @@ def lenses(
     done = [_lens(asked.places[robot], title, command, [uri]) for title, command in COMMANDS.items() if commands]
     if not isinstance(verdict, Verdict):
         return [_lens(asked.places[robot], verdict or RUNNING), *done]
-    told = {robot: verdict.robot, **{int(line): said for line, said in verdict.requirements.items()}}
-    return [*(_lens(asked.places[line], said) for line, said in told.items() if line in asked.places), *done]
+    told = {robot: verdict.robot, **{int(line): title for line, title in verdict.requirements.items()}}
+    return [*(_lens(asked.places[line], title) for line, title in told.items() if line in asked.places), *done]
 
 
 def _lens(place: types.Range, said: str, command: str = "", arguments: Sequence[Any] | None = None) -> types.CodeLens:

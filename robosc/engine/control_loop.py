@@ -281,7 +281,9 @@ class ControlLoop:
     def _provide(self) -> None:
         """Chooses the data to send: for each choice the first alternative whose event is enabled."""
         for alternatives in self._choices:
-            event, chosen = next((one for one in alternatives if self.engine.enabled(one[0])), ("", None))
+            event, chosen = next(
+                (alternative for alternative in alternatives if self.engine.enabled(alternative[0])), ("", None)
+            )
             if event and not (chosen is not None and chosen()):
                 self._run(event)
 

@@ -100,4 +100,4 @@ def what_of(target: Any) -> str | None:
     """One of `CLASSES` for what a name stands for; None where it stands for nothing."""
     if isinstance(target, rsc.InterfaceTypeReference):
         return "struct"
-    return next((what for made, what in _CLASSES.items() if isinstance(target, made)), None)
+    return next((kind for made, kind in _CLASSES.items() if isinstance(target, made)), None)

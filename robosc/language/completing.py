@@ -195,7 +195,7 @@ def _going_on(text: str, rule: str, preferred: str) -> str | None:
             return None
         wanted = set(found.expected)
         words = {preferred: preferred, **_GOING_ON}
-        following = next((said for word, said in words.items() if word in wanted), None)
+        following = next((phrase for word, phrase in words.items() if word in wanted), None)
         if following is None:
             return None
         added += f" {following}"

@@ -147,10 +147,15 @@ class File:
         """What other places can name, by its kind."""
         definitions = self.base.definitions if self.base is not None else ()
         kinds = (rsc.Component, rsc.ComplexDataType, rsc.Interface, rsc.Function)
-        enums = [found for found in definitions if isinstance(found, rsc.EnumDataType)]
+        enums = [definition for definition in definitions if isinstance(definition, rsc.EnumDataType)]
         return {
-            **{kind: by_name(found for found in definitions if isinstance(found, kind)) for kind in kinds},
-            rsc.NamedExpression: by_name(found for found in definitions if isinstance(found, NAMED_VALUES)),
+            **{
+                kind: by_name(definition for definition in definitions if isinstance(definition, kind))
+                for kind in kinds
+            },
+            rsc.NamedExpression: by_name(
+                definition for definition in definitions if isinstance(definition, NAMED_VALUES)
+            ),
             rsc.EnumValue: by_name(rule.value for enum in enums for rule in enum.rules if rule.value),
         }
 

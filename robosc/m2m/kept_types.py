@@ -104,15 +104,19 @@ class KeptTypes:
         named = {}
         if isinstance(declared, robosc.ComplexDataTypeReference) and isinstance(declared.type, robosc.ObjectDataType):
             named = {given.name: given.type for given in declared.type.properties}
-        found = [(one, fields) for one in defined if (fields := one.fields()) is not None]
+        found = [(definition, fields) for definition in defined if (fields := definition.fields()) is not None]
         # Of times the two agree on the seconds alone, and rospy not even on their name.
-        known = [(one, fields) for one, fields in found if str(one.wire).partition("/")[0] != _TIMES]
+        known = [
+            (definition, fields) for definition, fields in found if str(definition.wire).partition("/")[0] != _TIMES
+        ]
         agreed = [name for name in (known[0][1] if known else ()) if all(name in fields for _, fields in known)]
         for name in dict.fromkeys([*agreed, *named]):
             if self._left < 0:
                 break
             wires = [
-                _Defined(one.distribution, fields[name], Section.MESSAGE) for one, fields in known if name in fields
+                _Defined(definition.distribution, fields[name], Section.MESSAGE)
+                for definition, fields in known
+                if name in fields
             ]
             kind = self._type(named.get(name), wires)
             if kind is not None:

@@ -119,12 +119,17 @@ class RequirementAutomaton:
             allowed: list[ex.Expression] = []
             always = True
             for state, location in here.items():
-                tried = [one for one in state.transitions if self._event(one.event) is event]
-                self._edges(event, location, [(one, here[one.target or state]) for one in tried], expressions)
-                unguarded = any(one.guard is None for one in tried)
+                tried = [transition for transition in state.transitions if self._event(transition.event) is event]
+                self._edges(
+                    event,
+                    location,
+                    [(transition, here[transition.target or state]) for transition in tried],
+                    expressions,
+                )
+                unguarded = any(transition.guard is None for transition in tried)
                 always = always and unguarded
                 if tried:
-                    guards = [self._guard(one, expressions) for one in tried]
+                    guards = [self._guard(transition, expressions) for transition in tried]
                     parts = [sct.LocationReference(location=location), None if unguarded else disjunction(guards)]
                     allowed += filter(None, [conjunction(filter(None, parts))])
             holds = disjunction(allowed)

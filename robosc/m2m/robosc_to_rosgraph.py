@@ -237,15 +237,15 @@ class _Transformation:
         value = self.value_of(port, event)
         assert event.section is not None
         self.carriers[reception] = self.interface(port.communication), event.section
-        for told, declared in self.trace.inputs.items():
-            if told.port == port and told.event == event:
+        for carried, declared in self.trace.inputs.items():
+            if carried.port == port and carried.event == event:
                 read: ex.Expression
-                if isinstance(told, Data):
+                if isinstance(carried, Data):
                     read = robosc.Access(
-                        value=True, segments=[robosc.PropertySegment(property=part) for part in told.path]
+                        value=True, segments=[robosc.PropertySegment(property=part) for part in carried.path]
                     )
                 else:
-                    read = told.expression
+                    read = carried.expression
                 assigned = self.expressions(read, port.instance, value)
                 reception.inputs.append(rosgraph.InputAssignment(input=declared, value=assigned))
         return reception

@@ -135,21 +135,21 @@ class _Transformation:
     def inputs(self, plant: sct.Plant, port: PortInstance) -> None:
         """Algorithm 1, for what is in the cone of influence."""
         names = Names()
-        for told in self.told:
-            if told.port == port:
+        for carried in self.told:
+            if carried.port == port:
                 made = sct.Input()
-                if isinstance(told, Data):
-                    parts = [part.name for part in told.path]
-                    assert told.type is not None
-                    made.type = self.declarations.type(told.type)
+                if isinstance(carried, Data):
+                    parts = [part.name for part in carried.path]
+                    assert carried.type is not None
+                    made.type = self.declarations.type(carried.type)
                 else:
                     parts = [f"c{1 + sum(given.text is not None for given in plant.inputs)}"]
-                    made.type = self.declarations.computed(told)
-                    made.text = told.text
-                made.name = names.fresh("_".join([f"i_{told.event.kind.name}", *parts]))
+                    made.type = self.declarations.computed(carried)
+                    made.text = carried.text
+                made.name = names.fresh("_".join([f"i_{carried.event.kind.name}", *parts]))
                 plant.inputs.append(made)
-                self.trace.event(port, told.event.kind).inputs.append(made)
-                self.trace.inputs[told] = made
+                self.trace.event(port, carried.event.kind).inputs.append(made)
+                self.trace.inputs[carried] = made
 
     # Behaviour
 
@@ -353,7 +353,11 @@ class _Transformation:
     def requirement_automata(self) -> Iterator[RequirementAutomaton]:
         """Those of the orders, counts and automata, without edges: what reads one needs its locations."""
         kinds = (robosc.OrderRequirement, robosc.CountRequirement, robosc.AutomatonRequirement)
-        stated = (one for one in self.instances.statements(robosc.Requirement) if isinstance(one.element, kinds))
+        stated = (
+            statement
+            for statement in self.instances.statements(robosc.Requirement)
+            if isinstance(statement.element, kinds)
+        )
         for number, statement in enumerate(stated, start=1):
             name = _stated_name(statement)
             plant = self.plant(

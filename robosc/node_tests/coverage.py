@@ -66,7 +66,7 @@ def causes(model: sct.SupervisoryControlModel, event: sct.Event) -> list[ex.Expr
     """The conditions that the requirements on an event join by `and`; none where there is one."""
     supervisor = model.supervisor
     required = [guard.requirement for guard in supervisor.guards if guard.event is event] if supervisor else []
-    pending, found = [one for one in required if one is not None], []
+    pending, found = [condition for condition in required if condition is not None], []
     while pending:
         condition = pending.pop()
         if isinstance(condition, ex.Conjunction):
@@ -90,7 +90,7 @@ class Watcher:
         self._causes = {
             name: found for name in self._queued if (found := causes(loop.engine.model, self._events[name]))
         }
-        self._choices = [[alternative.event.name for alternative in one.alternatives] for one in executed.choices]
+        self._choices = [[alternative.event.name for alternative in choice.alternatives] for choice in executed.choices]
         self._seen_at_rest: dict[tuple[int, ...], frozenset[Goal]] = {}
 
     def happening(self, event: str) -> Iterator[Goal]:

@@ -72,7 +72,7 @@ class Guide:
         silent = event.kind in (*SILENT, sct.EventKind.data)
         at_rest = [] if silent else [~allowed[other] for other in allowed if other.kind == sct.EventKind.tau]
         if isinstance(goal.of, sct.Event) and goal.cause is not None:
-            others = [self._encoding.holds(one) for one in causes(self._model, goal.of) if one is not goal.cause]
+            others = [self._encoding.holds(cause) for cause in causes(self._model, goal.of) if cause is not goal.cause]
             ready = self._system.relations[goal.of].enabled
             return all_of([*at_rest, ready, ~self._encoding.holds(goal.cause), *others])
         if isinstance(goal.of, sct.Event):

@@ -271,7 +271,7 @@ class Plan:
                         ways[step.end] = [*ways[place], step]
                         onwards.append(step.end)
             if found:
-                return max(found, key=lambda one: one[:2])[2]
+                return max(found, key=lambda way: way[:2])[2]
             layer = onwards
         return []
 

@@ -285,7 +285,9 @@ class Tour(Drive):
 
     def _message(self, kind: Incoming, found: Class) -> tuple[Any, dict[str, Any]]:
         """Data of a class that came in least often until now."""
-        number = min(range(len(found.samples)), key=lambda one: (self._used[id(found), one], self._choice.random()))
+        number = min(
+            range(len(found.samples)), key=lambda sample: (self._used[id(found), sample], self._choice.random())
+        )
         self._used[id(found), number] += 1
         return message(kind.fields, found.samples[number]), nested(found.samples[number])
 

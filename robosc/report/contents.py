@@ -121,8 +121,8 @@ def _requirements(
     """One entry for each requirement and property of the text: several of the model may come from one."""
     guards = {guard.event: guard for guard in model.supervisor.guards} if model.supervisor else {}
     grouped: dict[str, list[sct.StatedRequirement]] = {}
-    for one in stated:
-        grouped.setdefault(requirement_identifier(one), []).append(one)
+    for requirement in stated:
+        grouped.setdefault(requirement_identifier(requirement), []).append(requirement)
     by_property = {verdict.property: verdict.outcome.value for verdict in verdicts}
     found = []
     for name, parts in grouped.items():
@@ -144,7 +144,7 @@ def _requirements(
                     for part in parts
                     if isinstance(part, sct.Requirement)
                 ],
-                "verdicts": [{"property": one.property, "outcome": one.outcome.value} for one in about],
+                "verdicts": [{"property": verdict.property, "outcome": verdict.outcome.value} for verdict in about],
                 "generated": [{"path": path, "lines": sorted(generated[path])} for path in sorted(generated)],
             }
         )

@@ -49,7 +49,9 @@ class Sources:
             return {}
         file = requirement.source.file if requirement.source else None
         cited = comment_text(f"{requirement.text}{f' ({PurePath(file.name).name})' if file else ''}")
-        found = {path: [number for number, text in told if cited in text] for path, told in self._comments.items()}
+        found = {
+            path: [number for number, text in comments if cited in text] for path, comments in self._comments.items()
+        }
         wanted = _in_node(requirement.text)
         for path, text in self._nodes.items():
             found[path] = [text.count("\n", 0, match.start()) + 1 for match in wanted.finditer(text)]
@@ -58,7 +60,7 @@ class Sources:
 
 def _in_node(requirement: str) -> re.Pattern[str]:
     """What a node says that speaks of this requirement."""
-    said = {line_comment(said + requirement, indent) for said in _SAID for indent in _INDENTS}
-    cited = [rf"^{re.escape(comment)}$" for comment in sorted(said)]
+    comments = {line_comment(phrase + requirement, indent) for phrase in _SAID for indent in _INDENTS}
+    cited = [rf"^{re.escape(comment)}$" for comment in sorted(comments)]
     cited.append(rf"^.*\badd_requirement\(\s*{re.escape(string_literal(requirement))}\)")
     return re.compile("|".join(cited), re.MULTILINE)

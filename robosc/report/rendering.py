@@ -56,7 +56,10 @@ def _outcomes(found: Mapping[str, Any]) -> dict[str, int]:
 def as_needs(found: Mapping[str, Any]) -> str:
     """The requirements, and a test case for each verdict about one, as sphinx-needs reads them (`needimport`)."""
     needs: dict[str, dict[str, Any]] = {}
-    names = {one["name"]: _identifier("REQ", found["robot"], one["name"]) for one in found["requirements"]}
+    names = {
+        requirement["name"]: _identifier("REQ", found["robot"], requirement["name"])
+        for requirement in found["requirements"]
+    }
     for requirement in found["requirements"]:
         outcomes = [verdict["outcome"] for verdict in requirement["verdicts"]]
         needs[names[requirement["name"]]] = {
@@ -98,4 +101,4 @@ def _identifier(prefix: str, robot: str, name: str) -> str:
 
 def _status(outcomes: list[str]) -> str:
     """The worst of the outcomes."""
-    return next((one for one in ("refuted", "skipped", "sampled", "proved") if one in outcomes), "open")
+    return next((outcome for outcome in ("refuted", "skipped", "sampled", "proved") if outcome in outcomes), "open")

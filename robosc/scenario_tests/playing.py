@@ -226,14 +226,17 @@ class Player(Drive):
         if by in (None, Blocked.PLANT):
             why = "it is allowed" if by is None else _WHY[Blocked.PLANT]
             return line.fault(f"the {told} is not forbidden: {why}", self._state())
-        if line.by is None or any(line.by in (one.name, one.text) or line.by in (one.text or "") for one in failing):
+        if line.by is None or any(
+            line.by in (requirement.name, requirement.text) or line.by in (requirement.text or "")
+            for requirement in failing
+        ):
             return None
         others = called(failing) if failing else "synthesis"
         return line.fault(f"the {told} is not forbidden by `{line.by}`, but by {others}", self._state())
 
     def _sent(self, line: Sent, event: sct.Event) -> Diagnostic | None:
         sent = [json.loads(text) for text in self._lines.kept[self._since :]]
-        found = [one.get("data", {}).get("value") for one in sent if one["event"] == event_name(event)]
+        found = [entry.get("data", {}).get("value") for entry in sent if entry["event"] == event_name(event)]
         told = words(event)
         if not line.expected:
             return line.fault(f"the {told} was sent") if found else None
@@ -247,7 +250,11 @@ class Player(Drive):
         engine = self._controller.engine
         plants = [plant for plant in self._graph.model.plants if plant.kind == sct.PlantKind.behaviour]
         told = [f"{plant.origin}.{plant.locations[engine.location(plant)].name}" for plant in plants]
-        told += [f"{plant.origin}.{one.name} = {engine.value(one)}" for plant in plants for one in plant.variables]
+        told += [
+            f"{plant.origin}.{variable.name} = {engine.value(variable)}"
+            for plant in plants
+            for variable in plant.variables
+        ]
         return f"the robot is in {', '.join(told)}" if told else ""
 
 

@@ -53,11 +53,11 @@ def shown(kind: Type) -> str:
     return str(kind)
 
 
-def compatible(one: Type, other: Type) -> bool:
+def compatible(left: Type, right: Type) -> bool:
     """Whether values of the types can be compared, and be alternatives of each other: ranges don't matter for that."""
-    if isinstance(one, ex.Enumeration) and isinstance(other, ex.Enumeration):
-        return [literal.name for literal in one.literals] == [literal.name for literal in other.literals]
-    return isinstance(one, range) and isinstance(other, range) if isinstance(one, range) else one == other
+    if isinstance(left, ex.Enumeration) and isinstance(right, ex.Enumeration):
+        return [literal.name for literal in left.literals] == [literal.name for literal in right.literals]
+    return isinstance(left, range) and isinstance(right, range) if isinstance(left, range) else left == right
 
 
 def combined(operator: str, left: Type, right: Type) -> Type:
@@ -80,7 +80,7 @@ def combined(operator: str, left: Type, right: Type) -> Type:
     elif operator == "-":
         made = range(left.start - high, left.stop - low)
     else:
-        corners = [one * other for one in (left.start, left.stop - 1) for other in (low, high)]
+        corners = [left_end * right_end for left_end in (left.start, left.stop - 1) for right_end in (low, high)]
         made = range(min(corners), max(corners) + 1)
     return bounded(operator, made)
 
@@ -101,13 +101,13 @@ def _divided(operator: str, left: range, right: range) -> range:
     return range(left.start // divisor, last // divisor + 1) if operator == "div" else range(min(last, divisor - 1) + 1)
 
 
-def joined(one: Type, other: Type) -> Type:
+def joined(left: Type, right: Type) -> Type:
     """The type of something that is one or the other. Raises TypeError where they are not compatible."""
-    if not compatible(one, other):
-        raise TypeError(f"the alternatives are {shown(one)} and {shown(other)}")
-    if isinstance(one, range) and isinstance(other, range):
-        return range(min(one.start, other.start), max(one.stop, other.stop))
-    return one
+    if not compatible(left, right):
+        raise TypeError(f"the alternatives are {shown(left)} and {shown(right)}")
+    if isinstance(left, range) and isinstance(right, range):
+        return range(min(left.start, right.start), max(left.stop, right.stop))
+    return left
 
 
 def overlap(variable: Type, value: Type) -> bool:

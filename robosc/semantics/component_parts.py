@@ -50,7 +50,11 @@ def components(graph: rosgraph.RosGraph) -> list[Parts]:
             plant,
             [] if plant is None else reported(graph, plant),
             [sending for sending in sendings if _owner(sending.event) == name],
-            [topic for topic in graph.subscriptions if any(_owner(one.event) == name for one in topic.receptions)],
+            [
+                topic
+                for topic in graph.subscriptions
+                if any(_owner(reception.event) == name for reception in topic.receptions)
+            ],
             [client for client in clients if _owner(client.request.event) == name],
         )
         for name, plant in plants.items()

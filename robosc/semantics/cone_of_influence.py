@@ -192,9 +192,9 @@ def read_data(
         return
     bounds = None if variable is None else _bounds(variable.type)
     value = declared_type(data_type(port.communication, event))
-    for part, told in inputs_in(expression, port, event, bounds):
+    for part, carried in inputs_in(expression, port, event, bounds):
         access = next(access for access in accesses(part) if access.value)
-        yield Reading(expression, part, told, Reason(access, within, variable), value)
+        yield Reading(expression, part, carried, Reason(access, within, variable), value)
 
 
 def _bounds(declared: robosc.DataType) -> tuple[int, int] | None:

@@ -146,8 +146,8 @@ class Expansion:
             templates = {**environment.templates, quantifier.template: instance.component}
             body = yield (quantifier.body, environment._replace(templates=templates))
             if counts:
-                one, none = ex.IntegerLiteral(value=1), ex.IntegerLiteral(value=0)
-                body = ex.Conditional(condition=body, then=one, otherwise=none, source=quantifier.source)
+                counted, uncounted = ex.IntegerLiteral(value=1), ex.IntegerLiteral(value=0)
+                body = ex.Conditional(condition=body, then=counted, otherwise=uncounted, source=quantifier.source)
             found.append(body)
         if not found:
             is_all = quantifier.quantifier == robosc.Quantifier.all

@@ -203,7 +203,7 @@ def _less_in(left: Interval, right: Interval) -> Interval:
 
 
 def _product_in(left: Interval, right: Interval) -> Interval:
-    corners = [one * other for one in left for other in right]
+    corners = [left_end * right_end for left_end in left for right_end in right]
     return Interval(min(corners), max(corners))
 
 

@@ -48,10 +48,12 @@ def data_beside(graph: rosgraph.RosGraph, event: sct.Event) -> dict[tuple[str, .
 
     None of it where the supervisor has conditions on the data computed: the data would decide them.
     """
-    given = [one for reception in receptions(graph) if reception.event == event for one in reception.inputs]
-    if any(one.input.text is not None for one in given):
+    given = [
+        assignment for reception in receptions(graph) if reception.event == event for assignment in reception.inputs
+    ]
+    if any(assignment.input.text is not None for assignment in given):
         return {}
-    told = [tuple(map(_field, _access(one).steps)) for one in given]
+    told = [tuple(map(_field, _access(assignment).steps)) for assignment in given]
     kept = [
         assigned.value
         for reaction in graph.reactions
@@ -205,7 +207,7 @@ class _Array(Sequence[Any]):
 
     def __getitem__(self, index: Any) -> Any:
         if isinstance(index, slice):
-            return [self[one] for one in range(*index.indices(len(self)))]
+            return [self[place] for place in range(*index.indices(len(self)))]
         if index >= len(self):
             raise IndexError
         return self._elements.get(index, _ABSENT), f"{self._place}[{index}]"

@@ -45,7 +45,9 @@ class Kept:
         self._node = NodeData(graph, engine)
         for plant in engine.model.plants:
             if plant.kind == sct.PlantKind.behaviour:
-                self._names |= {one: f"{one.component}.{one.name}" for one in reported(graph, plant)}
+                self._names |= {
+                    variable: f"{variable.component}.{variable.name}" for variable in reported(graph, plant)
+                }
         self.initial = {name: _finite(self._node.variables[variable]) for variable, name in self._names.items()}
         for reaction in graph.reactions:
             if any(assigned.variable in self._names for assigned in reaction.assignments):

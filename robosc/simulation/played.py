@@ -71,8 +71,8 @@ def recorded_moments(simulation: Simulation, path: str, node: str | None) -> Ite
             continue
         told_by = name
         began = report["time"] if began is None else began
-        for told in followed:
-            yield round(report["time"] - began, 3), told
+        for reported in followed:
+            yield round(report["time"] - began, 3), reported
     if began is None:
         asked = f"`{node}/state`" if node else "a topic `~/state`"
         raise PlayError(f"{path} has no reports of this robot on {asked}{f': {fault}' if fault else ''}")
@@ -85,11 +85,13 @@ def counterexample_steps(simulation: Simulation, wanted: str | None) -> tuple[li
     """
     verdicts = verify_system(simulation.engine.model)
     properties = [verdict.property for verdict in verdicts]
-    named = [one for one in properties if wanted is None or _is_called(one, wanted)]
+    named = [name for name in properties if wanted is None or _is_called(name, wanted)]
     if wanted is not None and not named:
         close = get_close_matches(wanted, properties, n=1)
         raise PlayError(f"there is no property `{wanted}`{f'; did you mean `{close[0]}`?' if close else ''}")
-    refuted = next((one for one in verdicts if one.outcome is Outcome.REFUTED and one.property in named), None)
+    refuted = next(
+        (verdict for verdict in verdicts if verdict.outcome is Outcome.REFUTED and verdict.property in named), None
+    )
     if refuted is None:
         raise PlayError("nothing is refuted: there is no counterexample")
     return _steps(simulation, [*refuted.trace, *refuted.onwards]), f"{refuted.property}: {refuted.explanation}\n"

@@ -147,7 +147,9 @@ class Tracker:
         found: list[dict[sct.Plant, tuple[sct.Edge, int]]] = [{} for _ in events]
         for plant, numbers in taking_part.items():
             moves = [self._moves[events[number]][plant] for number in numbers]
-            end = next((place for place, one in enumerate(plant.locations) if one.name == ends.get(plant)), None)
+            end = next(
+                (place for place, location in enumerate(plant.locations) if location.name == ends.get(plant)), None
+            )
             for number, step in zip(numbers, _path(moves, self.engine.location(plant), end), strict=True):
                 found[number][plant] = step
         return found

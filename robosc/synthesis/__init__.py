@@ -283,7 +283,11 @@ def _solved(all_found: _Found, statistics: Statistics, effort: int | None) -> So
             supervisor.initial = separating_expression(encoding, started, left_out, encoding.layout.state)
         # Within the controlled states a step leads where its guard lets it, and nowhere else.
         supervised = [(relation, relation.enabled & relation.requirement, relation.step) for relation in relations]
-        unwritten = {one.relation.event: one.where.node_count() for one in permissions if one.unwritten}
+        unwritten = {
+            permission.relation.event: permission.where.node_count()
+            for permission in permissions
+            if permission.unwritten
+        }
         if not unwritten:
             internal = internal_events(supervised, supervisor.guards)
             supervisor.settlingBound = completion(diagrams, internal, found.controlled, COMPLETION_EFFORT).bound

@@ -448,7 +448,7 @@ def _couplings(model: sct.SupervisoryControlModel, index: Mapping[Element, int])
                 own.update(dict.fromkeys(referenced(update.value)))
     for requirement in model.requirements:
         touched.setdefault(requirement.event, {}).update(dict.fromkeys(referenced(requirement.condition)))
-    conditions = [one.condition for one in model.invariants]
+    conditions = [invariant.condition for invariant in model.invariants]
     conditions += [*model.initialPredicates, *model.markerPredicates]
     together = [*touched.values(), *(dict.fromkeys(referenced(condition)) for condition in conditions)]
     return [sorted(elements, key=index.__getitem__) for elements in together]

@@ -189,9 +189,9 @@ def _merged(steps: Sequence[Step]) -> list[Step]:
     by_level: dict[tuple[int, bool], list[Step]] = {}
     for step in _merged_alike(steps):
         by_level.setdefault((step.level, step.present.node_level() == step.level), []).append(step)
-    for (_, at_level), some in by_level.items():
+    for (_, at_level), group in by_level.items():
         # Wide integers are accelerated by single events.
-        found += _as_one(some) if at_level and not some[0].encoding.layout.wide else some
+        found += _as_one(group) if at_level and not group[0].encoding.layout.wide else group
     return found
 
 
@@ -217,12 +217,12 @@ def _merged_alike(steps: Sequence[Step]) -> list[Step]:
     for step in steps:
         alike.setdefault((step.level, frozenset(step.changed)), []).append(step)
     found = []
-    for some in alike.values():
-        one = some[0]
-        if len(some) > 1:
-            one = replace(one, relation=one.encoding.diagrams.any_of(step.relation for step in some))
-        pays = len(some) != _PAIR or one.apart is not None or one.relation.node_count() <= _SMALL
-        found += [one] if pays else some
+    for group in alike.values():
+        merged = group[0]
+        if len(group) > 1:
+            merged = replace(merged, relation=merged.encoding.diagrams.any_of(step.relation for step in group))
+        pays = len(group) != _PAIR or merged.apart is not None or merged.relation.node_count() <= _SMALL
+        found += [merged] if pays else group
     return found
 
 

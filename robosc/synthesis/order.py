@@ -157,7 +157,7 @@ def _permutations(size: int) -> tuple[list[tuple[int, ...]], Mapping[_Kind, list
     spans: dict[_Kind, list[int]] = {}
     for members in range(1, 1 << size):
         places = [[place for place, vertex in enumerate(order) if members >> vertex & 1] for order in orders]
-        first, last = [min(one) for one in places], [max(one) for one in places]
+        first, last = [min(occupied) for occupied in places], [max(occupied) for occupied in places]
         spans[members, False, False] = [end - start for start, end in zip(first, last, strict=True)]
         spans[members, True, False] = last
         spans[members, False, True] = [-start for start in first]

@@ -68,7 +68,7 @@ class Step:
         return source, and_exists(target, self.same, self.following)
 
 
-def joined(one: Step, other: Step) -> Step:
+def joined(first: Step, second: Step) -> Step:
     """A step that does what one of the two does, at the level of the first; neither touches a wide integer."""
 
     def framed(step: Step) -> Diagram:
@@ -76,15 +76,15 @@ def joined(one: Step, other: Step) -> Step:
         kept = sorted(set(changed) - set(step.changed), key=lambda element: domains[element].levels, reverse=True)
         return all_of(map(encoding.keeps, kept)) & step.relation
 
-    encoding = one.encoding
+    encoding = first.encoding
     all_of, domains = encoding.diagrams.all_of, encoding.layout.domains
-    changed = tuple(dict.fromkeys((*one.changed, *other.changed)))
+    changed = tuple(dict.fromkeys((*first.changed, *second.changed)))
     return replace(
-        one,
-        relation=framed(one) | framed(other),
-        present=one.present & other.present,
-        following=one.following & other.following,
-        same=one.same & other.same,
+        first,
+        relation=framed(first) | framed(second),
+        present=first.present & second.present,
+        following=first.following & second.following,
+        same=first.same & second.same,
         changed=changed,
     )
 
@@ -258,7 +258,9 @@ def violations(
     They are those where an invariant does not hold, and those where an uncontrollable event can happen that is
     forbidden.
     """
-    found: dict[sct.StatedRequirement, Diagram] = {one: ~encoding.holds(one.condition) for one in model.invariants}
+    found: dict[sct.StatedRequirement, Diagram] = {
+        invariant: ~encoding.holds(invariant.condition) for invariant in model.invariants
+    }
     for relation in relations:
         if not relation.event.controllable:
             found.update((requirement, relation.enabled & ~asked) for requirement, asked in relation.asked.items())

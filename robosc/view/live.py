@@ -61,8 +61,8 @@ class Live(Moments):
         if self._began is None:
             self._began = report["time"]
         time = round(report["time"] - self._began, 3)
-        for told in followed:
-            self._add_told(time, self._tracker.timers.running, told)
+        for reported in followed:
+            self._add_told(time, self._tracker.timers.running, reported)
         self._say()
 
     def _say(self) -> None:

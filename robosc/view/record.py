@@ -44,8 +44,8 @@ class Record(Moments):
         """`graph` says what the node keeps; what a node has told, with times in seconds, is there before all else."""
         super().__init__(simulation, graph)
         self._seed = seed
-        for time, told in recorded or ():
-            self._add_told(time, {}, told)
+        for time, reported in recorded or ():
+            self._add_told(time, {}, reported)
         #: So many of the moments were recorded, and can't be played again.
         self._recorded = max(0, len(self.moments) - 1)
         self._graph = graph
@@ -94,7 +94,7 @@ class Record(Moments):
         `kept` are pairs of the fields on the way to other data and that data.
         """
         if isinstance(inputs, dict):
-            known = {one.name for one in self.events[event].inputs}
+            known = {carried.name for carried in self.events[event].inputs}
             if set(inputs) != known:
                 raise ActionError(f"{event} has the inputs {', '.join(sorted(known)) or '(none)'}")
             others = _others(kept)

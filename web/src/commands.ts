@@ -82,7 +82,7 @@ export class CommandsView {
     const reason = html("p", { class: "reason" });
     const why = html("div", { class: "why" });
     const links = html("p", { class: "links" });
-    for (const requirement of this.description.requirements.filter((one) => one.event === name))
+    for (const requirement of this.description.requirements.filter((stated) => stated.event === name))
       links.append(
         html(
           "button",
@@ -115,14 +115,14 @@ export class CommandsView {
   /** A button that lets an event happen, with a field for each of its inputs. */
   private performer(name: string, event: Event): HTMLElement {
     const fields = event.inputs.map((input) => [input, field(input)] as const);
-    const others = event.kept.map((one) => [one, free(one)] as const);
+    const others = event.kept.map((kept) => [kept, free(kept)] as const);
     const label = this.description.commands.includes(name) ? "send" : event.words;
     const button = html("button", { type: "button", "data-event": name, "aria-label": label === "send" ? `send ${event.words}` : label }, label);
     button.addEventListener("click", () =>
       this.asking?.perform?.(
         name,
         Object.fromEntries(fields.map(([input, shown]) => [input.name, value(input, shown)])),
-        others.map(([one, shown]) => [one.path, typed(one, shown)]),
+        others.map(([kept, shown]) => [kept.path, typed(kept, shown)]),
       ),
     );
     return html(
@@ -153,7 +153,7 @@ export class CommandsView {
 
 function field(input: Input): HTMLSelectElement | HTMLInputElement {
   if (input.values !== undefined)
-    return html("select", {}, ...input.values.map((one, number) => html("option", { value: number }, String(one))));
+    return html("select", {}, ...input.values.map((literal, number) => html("option", { value: number }, String(literal))));
   const { minimum = 0, maximum = 0 } = input;
   return html("input", { type: "number", min: minimum, max: maximum, value: Math.min(Math.max(0, minimum), maximum) });
 }

@@ -72,7 +72,7 @@ export function columns(middle: Box, left: Box[], right: Box[]): Drawing {
     const sizes = side.map((box) => size(box.texts, 24, 12));
     return { side, sizes, width: Math.max(0, ...sizes.map(({ width }) => width)) };
   });
-  const height = Math.max(...sides.map(({ sizes }) => sizes.reduce((sum, one) => sum + one.height + between, 0)), LINE + 12);
+  const height = Math.max(...sides.map(({ sizes }) => sizes.reduce((sum, box) => sum + box.height + between, 0)), LINE + 12);
   const center = size(middle.texts, 24, 12);
   const [before, after] = sides.map(({ side, width }) => (side.length > 0 ? width + apart : 0)) as [number, number];
   const box = { x: margin + before, y: margin, width: center.width, height };

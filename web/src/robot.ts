@@ -57,7 +57,7 @@ export class RobotView {
     for (const picture of this.pictures) {
       const { automaton } = picture;
       const state = whole.state.get(automaton.key);
-      const lit = automaton.states.findIndex((one) => one.name === state);
+      const lit = automaton.states.findIndex(({ name }) => name === state);
       if (lit !== picture.lit) {
         this.light(picture, picture.lit, false);
         this.light(picture, lit, true);

@@ -119,7 +119,7 @@ export class TimelineView {
     const lanes = [
       ...automata.map((automaton) => ({
         name: automaton.name,
-        colour: (state: string) => `--lane-${Math.max(0, automaton.states.findIndex((one) => one.name === state)) % 6}`,
+        colour: (state: string) => `--lane-${Math.max(0, automaton.states.findIndex(({ name }) => name === state)) % 6}`,
       })),
       ...commands.map((command) => ({ name: events[command]!.words, colour: (verdict: string) => `--${VERDICTS[verdict]}` })),
     ];

@@ -93,7 +93,8 @@ class Renderer:
             elements: list[Element] = [plant] if len(plant.locations) > 1 else []
             elements += plant.variables
             if elements:
-                yield f"  {listed([what_is(one, value(one, situation.codes[one])) for one in elements])}"
+                values = [what_is(element, value(element, situation.codes[element])) for element in elements]
+                yield f"  {listed(values)}"
 
     def _refused(self, refusal: Explanation | None) -> Iterator[str]:
         if refusal is None:

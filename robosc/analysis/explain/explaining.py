@@ -146,10 +146,13 @@ def _way(system: SynthesizedSystem, start: Codes, allowed: Diagram) -> tuple[Tra
 
 def blamed(system: SynthesizedSystem, end: Codes) -> list[Note]:
     """The invariants that a state violates, else the requirements that forbid something from it on."""
-    violated = [Note(one, one.text or "a requirement", ("forbids this state",)) for one in system.violated(end)]
+    violated = [
+        Note(requirement, requirement.text or "a requirement", ("forbids this state",))
+        for requirement in system.violated(end)
+    ]
     return violated or [
-        Note(one, one.text or "a requirement", (f"forbids the {words(one.event)}",))
-        for one in forbidden_from(system, end)
+        Note(requirement, requirement.text or "a requirement", (f"forbids the {words(requirement.event)}",))
+        for requirement in forbidden_from(system, end)
     ]
 
 

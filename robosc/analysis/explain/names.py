@@ -164,16 +164,16 @@ def _reported(model: sct.SupervisoryControlModel, report: Mapping[str, Any]) -> 
     if robot != model.name:
         raise NamingError(f"the state is one of the robot `{robot}`", f"the model is `{model.name}`")
     components = {plant.origin or plant.name: plant for plant in model.plants if plant.kind == sct.PlantKind.behaviour}
-    for name, told in report["components"].items():
+    for name, entry in report["components"].items():
         if name not in components:
             raise NamingError(f"there is no component `{name}`", _close(name, components, ""))
-        if not (isinstance(told, dict) and "state" in told and isinstance(told.get("variables"), dict)):
+        if not (isinstance(entry, dict) and "state" in entry and isinstance(entry.get("variables"), dict)):
             raise NamingError(f"the state does not tell that of `{name}`", "it needs `state` and `variables`")
         plant = components[name]
-        yield plant.name, told["state"]
+        yield plant.name, entry["state"]
         known = {variable.name: _whole_name(variable) for variable in plant.variables}
         yield from (
-            (known[known_name], chosen) for known_name, chosen in told["variables"].items() if known_name in known
+            (known[known_name], chosen) for known_name, chosen in entry["variables"].items() if known_name in known
         )
 
 

@@ -126,11 +126,12 @@ class CProgram:
 
         def for_all(elements: Sequence[Element]) -> str:
             told = (
-                f"DO({number}, {names.member(one)}, {smallest(one) % 2**64})" for number, one in enumerate(elements)
+                f"DO({number}, {names.member(element)}, {smallest(element) % 2**64})"
+                for number, element in enumerate(elements)
             )
             return " ".join(told)
 
-        durations = (f"DO({number}, {names.setting(one)})" for number, one in enumerate(self.model.durations))
+        durations = (f"DO({number}, {names.setting(duration)})" for number, duration in enumerate(self.model.durations))
         events = " ".join(f"{string_literal(event_name(event))}," for event in self.events)
         return (
             f'#include "{names.prefix}_supervisor.h"\n'

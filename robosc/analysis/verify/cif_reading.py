@@ -204,7 +204,10 @@ class _Reading:
     def _fill(self, read: Any, automaton: sct.Plant) -> list[sct.Event]:
         """Initial values and edges; returns the automaton's alphabet."""
         variables = [
-            variable for one in read.declarations if type(one).__name__ == "Variables" for variable in one.variables
+            variable
+            for declaration in read.declarations
+            if type(declaration).__name__ == "Variables"
+            for variable in declaration.variables
         ]
         for variable, declaration in zip(automaton.variables, variables, strict=True):
             value, kind = self._expression(declaration.initial, automaton, constant=True)
@@ -373,7 +376,7 @@ def _monitor(event: sct.Event, location: sct.Location) -> None:
     if any(guard is None for guard in guards):
         return
     otherwise: list[ex.Expression] = [ex.Negation(operand=copied(guard)) for guard in guards if guard is not None]
-    guard = reduce(lambda one, other: ex.Conjunction(left=one, right=other), otherwise) if otherwise else None
+    guard = reduce(lambda left, right: ex.Conjunction(left=left, right=right), otherwise) if otherwise else None
     location.edges.append(sct.Edge(event=event, target=location, guard=guard))
 
 

@@ -165,7 +165,7 @@ class _Comparison:
         encoding = system.encoding
         valid = encoding.diagrams.all_of(encoding.in_domain(domain.element) for domain in self._layout.state)
         ours, asked = (
-            view.diagrams.any_of(~view.holds(one.condition) for one in invariants)
+            view.diagrams.any_of(~view.holds(invariant.condition) for invariant in invariants)
             for view, invariants in ((encoding, self._model.invariants), (theirs, self._their_invariants))
         )
         differ = (ours ^ asked) & valid
@@ -173,7 +173,7 @@ class _Comparison:
             return None
         codes = pick(differ, self._layout.state)
         allowed = "forbids" if system.is_in(codes, asked) else "allows"
-        elements = (element for one in self._model.invariants for element in referenced(one.condition))
+        elements = (element for invariant in self._model.invariants for element in referenced(invariant.condition))
         return refuted(
             PROPERTY, f"by its invariants {self._text} {allowed} the state `{system.where(codes, elements)}`"
         )
@@ -209,7 +209,7 @@ class _Comparison:
                 compared.append((element, *bits, both))
             for element, our_bits, their_bits, within in compared:
                 pairs = zip(our_bits, their_bits, strict=True)
-                differ = encoding.diagrams.any_of((one ^ other) & within for one, other in pairs)
+                differ = encoding.diagrams.any_of((our_bit ^ their_bit) & within for our_bit, their_bit in pairs)
                 # Most are the same even for codes without a value: then the many domains need not be looked at.
                 if differ.satisfiable() and (differ & valid).satisfiable():
                     yield _Difference(event, element, our_bits, their_bits, differ & valid)

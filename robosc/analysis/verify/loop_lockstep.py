@@ -197,24 +197,24 @@ class Lockstep:
         pipe, answers = self._follower.stdin, self._follower.stdout
         assert pipe is not None
         assert answers is not None
-        lengths = accumulate(len(one.script) for one in noted)
+        lengths = accumulate(len(operations.script) for operations in noted)
         portion = noted[: max(sum(length <= _PORTION for length in lengths), 1)]
         try:
-            pipe.write("".join(one.script for one in portion))
+            pipe.write("".join(operations.script for operations in portion))
             pipe.flush()
         except BrokenPipeError:
             pass  # What it has said tells how far it came.
         kept = []
-        for one in portion:
+        for operations in portion:
             answer = answers.readline()
             if not answer:
-                raise DifferenceError(self._end(one.said), one.seen)
+                raise DifferenceError(self._end(operations.said), operations.seen)
             *theirs, numbers = answer.split(";")
-            for ours, told in zip(one.said, theirs, strict=True):
-                if ours != told:
-                    raise DifferenceError(self._difference(ours, told), one.seen)
+            for our_answer, their_answer in zip(operations.said, theirs, strict=True):
+                if our_answer != their_answer:
+                    raise DifferenceError(self._difference(our_answer, their_answer), operations.seen)
             number, first = map(int, numbers.split())
-            kept.append(Kept(one.saved, number, first, one.seen))
+            kept.append(Kept(operations.saved, number, first, operations.seen))
         return kept
 
     def _say(self, operation: str, result: bool) -> None:

@@ -167,7 +167,9 @@ def requirement_holds(system: GuardedSystem, requirement: sct.Requirement) -> Ve
 
     evidence = f"happens in {states}, asks for `{asked}`"
     broken = {relation: happens & ~relation.asked[requirement]}
-    return _nowhere(requirement_name(requirement), system, evidence, broken, explanation, last=lambda one: one.event)
+    return _nowhere(
+        requirement_name(requirement), system, evidence, broken, explanation, last=lambda relation: relation.event
+    )
 
 
 def invariant_holds(system: GuardedSystem, invariant: sct.StateInvariant | sct.InvariantProperty) -> Verdict:
@@ -266,7 +268,7 @@ def _nowhere(  # noqa: PLR0913 - all parts of a verdict
     if not anywhere.satisfiable():
         return Verdict(question, Outcome.PROVED, evidence)
     path = system.path_to(anywhere)
-    violated = next(one for one, states in violations.items() if system.is_in(path.states[-1], states))
+    violated = next(requirement for requirement, states in violations.items() if system.is_in(path.states[-1], states))
     trace = (*system.trace(path), *([trace_step(last(violated))] if last else []))
     return Verdict(question, Outcome.REFUTED, evidence, explanation(violated, path), trace)
 

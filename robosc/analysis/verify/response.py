@@ -179,27 +179,27 @@ class _Ends:
         system, several = self._loop.system, self._loop.system.diagrams.false
         for element in dict.fromkeys(element for relation, _ in self._moves for element in relation.changed):
             for bit in system.encoding.bits(element):
-                one, other = (
+                ending_set, ending_clear = (
                     coreachable(system.diagrams, steps(self._moves), self._quiescent & value, self._loop.states)
                     for value in (bit, ~bit)
                 )
-                several |= one & other
+                several |= ending_set & ending_clear
         return several
 
     def verdict(self, evidence: str) -> Verdict:
         """That there are some, with two ways from one of them."""
         system = self._loop.system
         path = self._loop.path_to(self.several)
-        one = self._way(path, self._quiescent)
-        other = self._way(path, self._quiescent & ~system.last(one))
+        way = self._way(path, self._quiescent)
+        other_way = self._way(path, self._quiescent & ~system.last(way))
         return Verdict(
             CONFLUENCE,
             Outcome.REFUTED,
             evidence,
-            _difference(system, one, other),
+            _difference(system, way, other_way),
             system.trace(path),
-            system.trace(one),
-            system.trace(other),
+            system.trace(way),
+            system.trace(other_way),
         )
 
     def _way(self, before: Path, goal: Diagram) -> Path:
@@ -209,8 +209,8 @@ class _Ends:
         return way
 
 
-def _difference(system: GuardedSystem, one: Path, other: Path) -> str:
-    ends = one.states[-1], other.states[-1]
+def _difference(system: GuardedSystem, way: Path, other_way: Path) -> str:
+    ends = way.states[-1], other_way.states[-1]
     differing = [element for element in ends[0] if ends[0][element] != ends[1][element]]
     first, second = (system.where(end, differing) for end in ends)
     return f"depending on their order, silent events end where `{first}` or where `{second}`"

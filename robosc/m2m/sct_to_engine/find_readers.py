@@ -34,7 +34,7 @@ def find_readers(
             chosen = event.choice.variable if event.choice else None
             note(event, [*([] if chosen is None else [chosen]), *_read(guards[event.event], shared)])
     for choice in model.choices:
-        cells = [cell for one in choice.alternatives for cell in _read(guards[one.event.event], shared)]
+        cells = [cell for alternative in choice.alternatives for cell in _read(guards[alternative.event.event], shared)]
         note(choice, [*([] if choice.variable is None else [choice.variable]), *cells])
     watched = [(term, condition) for term, condition in shared.conditions.items() if condition in read]
     for term, condition in watched:

@@ -162,7 +162,7 @@ class _Preparation:
                 }
                 for condition in self._model.conditions
             ],
-            "guards": _merged([(self._enumerator(event), told, lines, False) for event, told, lines in guards])
+            "guards": _merged([(self._enumerator(event), remarks, lines, False) for event, remarks, lines in guards])
             if events
             else _merged([(f"{self._names.prefix}_nothing", "", ["false"], False)]),
             "guards_read_state": any(
@@ -312,11 +312,11 @@ def _merged(cases: Sequence[tuple[str, str, list[str], bool]]) -> list[dict[str,
     A case is an enumerator, a comment, the lines, and whether these read a copy of the state.
     """
     merged: list[dict[str, Any]] = []
-    for event, told, lines, old in cases:
-        if merged and merged[-1]["lines"] == lines and not told:
+    for event, remarks, lines, old in cases:
+        if merged and merged[-1]["lines"] == lines and not remarks:
             merged[-1]["events"].append(event)
         else:
-            merged.append({"events": [event], "comment": told, "lines": lines, "old": old})
+            merged.append({"events": [event], "comment": remarks, "lines": lines, "old": old})
     return merged
 
 

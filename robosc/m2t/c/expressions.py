@@ -86,8 +86,8 @@ class CPrinter(Printer):
         """A number that is compared with an unsigned one is unsigned, a condition stands in parentheses."""
         if not isinstance(expression, COMPARISONS):
             return super().binary(expression, left, right)
-        one, other = expression.left, expression.right
-        sides = _compared(one, other, left), _compared(other, one, right)
+        first, second = expression.left, expression.right
+        sides = _compared(first, second, left), _compared(second, first, right)
         return Printed(f" {self.symbols[type(expression)]} ".join(sides), PRECEDENCE[type(expression)])
 
     def atom(self, expression: ex.Expression) -> str:

@@ -211,7 +211,7 @@ def _scaled(pieces: _Pieces, factor: int) -> _Pieces:
 
 def _sum(origin: ex.Expression, left: _Pieces, right: _Pieces) -> _Pieces:
     _limit(origin, len(left) * len(right))
-    return [(_both(one, other), first + second) for one, first in left for other, second in right]
+    return [(_both(condition, other), first + second) for condition, first in left for other, second in right]
 
 
 def _product(expression: ex.Multiplication, left: _Pieces, right: _Pieces) -> _Pieces:
@@ -255,9 +255,9 @@ def _values(pieces: _Pieces) -> int:
     return max(high for _, high in ranges) - min(low for low, _ in ranges) + 1
 
 
-def _both(one: ex.Expression | None, other: ex.Expression | None) -> ex.Expression | None:
+def _both(left: ex.Expression | None, right: ex.Expression | None) -> ex.Expression | None:
     """The conjunction of two conditions, either of which may be missing, in a tree of its own."""
-    parts = [copied(part) for part in (one, other) if part is not None]
+    parts = [copied(part) for part in (left, right) if part is not None]
     return ex.Conjunction(left=parts[0], right=parts[1]) if len(parts) == 2 else next(iter(parts), None)
 
 

@@ -58,7 +58,9 @@ class CifNames:
         for element in self._outer(model):
             self._names[element] = outer.fresh(element.name)
         #: What invariants with a name are called.
-        self.invariants = {one: outer.fresh(one.name.replace(".", "_")) for one in model.invariants if one.name}
+        self.invariants = {
+            invariant: outer.fresh(invariant.name.replace(".", "_")) for invariant in model.invariants if invariant.name
+        }
         #: The automaton that holds what synthesis added.
         self.supervisor = outer.fresh("sup")
         taken = {*self._names.values(), *self.invariants.values(), self.supervisor}

@@ -106,8 +106,8 @@ class Writer:
             texts.setdefault(said, []).append(invariant.text or "")
         if texts:
             yield ""
-        for said, found in texts.items():
-            yield from [*document(dict.fromkeys(filter(None, found))), said]
+        for text, found in texts.items():
+            yield from [*document(dict.fromkeys(filter(None, found))), text]
 
     def _plant(self, plant: sct.Plant) -> Iterator[str]:
         """What is in a plant."""

@@ -79,7 +79,10 @@ class _Maker:
             self._names.c.enumerator(event),
             plant.origin or plant.name,
             self._reasons.requirements(event),
-            [Reason(self._failing(one), string_literal(one.text or "a requirement")) for one in required],
+            [
+                Reason(self._failing(requirement), string_literal(requirement.text or "a requirement"))
+                for requirement in required
+            ],
             [reason for plant in self._model.plants for reason in self._missing(plant, event)],
             string_literal(explanation) if explanation else None,
         )

@@ -211,9 +211,9 @@ class RosTarget:
             "has_parameters_file": has_file,
             # The launch file of a layer has an argument for its log.
             "parameter_groups": _groups(
-                one
-                for one in declared
-                if kind == "controller" or one.name != "event_log" or configuration.write_events_to_log
+                parameter
+                for parameter in declared
+                if kind == "controller" or parameter.name != "event_log" or configuration.write_events_to_log
             ),
             "publishes_state": configuration.publish_state_information,
             "statuses": told,

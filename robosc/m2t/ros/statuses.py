@@ -59,9 +59,9 @@ def statuses(graph: rosgraph.RosGraph, node: Node, gates: Mapping[rosgraph.Sendi
         Status(
             words.fresh(identifier(parts.name)),
             string_literal(parts.name),
-            told.state if told else None,
+            component.state if component else None,
             string_literal(STATELESS),
-            told.variables if told else (),
+            component.variables if component else (),
             [
                 Command(
                     string_literal(request(sending)),
@@ -76,5 +76,5 @@ def statuses(graph: rosgraph.RosGraph, node: Node, gates: Mapping[rosgraph.Sendi
             [called[client] for client in parts.clients],
         )
         for parts in components(graph)
-        for told in [reported.get(string_literal(parts.name))]
+        for component in [reported.get(string_literal(parts.name))]
     ]

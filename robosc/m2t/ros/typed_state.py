@@ -108,7 +108,9 @@ class _Scope:
         word = re.sub("_+", "_", ascii_only).strip("_")
         word = word if word[:1].isalpha() else f"x{word}"
         found = next(
-            one for one in chain([word], (f"{word}_{number}" for number in count(2))) if one not in self._taken
+            candidate
+            for candidate in chain([word], (f"{word}_{number}" for number in count(2)))
+            if candidate not in self._taken
         )
         self._taken.add(found)
         return found

@@ -213,7 +213,9 @@ class _Loading:
 
     def _stop_if_wrong(self) -> None:
         documents = self._documents.values()
-        findings = [finding for one in documents for finding in sorted(one.findings, key=lambda found: found.span)]
+        findings = [
+            finding for document in documents for finding in sorted(document.findings, key=lambda found: found.span)
+        ]
         if findings:
             raise ModelError(findings)
 

@@ -123,7 +123,7 @@ class _Layout:
 
     def mask(self, slots: Iterable[Slot]) -> int:
         """The bits of some slots."""
-        return sum(ones << place for place, ones in (self._places[slot] for slot in slots))
+        return sum(mask << place for place, mask in (self._places[slot] for slot in slots))
 
     def value(self, slot: Slot, state: int) -> Value:
         """What a slot holds."""
@@ -238,7 +238,9 @@ class Lockstep:
     def _is_same_everywhere(self) -> bool:
         """Whether there is no difference in any state; False also where there are too many to try."""
         left = self._effort.values
-        asked: list[tuple[Sequence[Slot], _Pair | None, Sequence[Claim]]] = [(p.reads, p, ()) for p in self._pairs]
+        asked: list[tuple[Sequence[Slot], _Pair | None, Sequence[Claim]]] = [
+            (pair.reads, pair, ()) for pair in self._pairs
+        ]
         asked += [(reads, None, (claim, other)) for claim, other, _, reads, _ in self._claims]
         for reads, pair, _ in asked:
             read = [self._layout.domains[slot] for slot in reads]
@@ -488,5 +490,5 @@ def _line(source: ex.Located | None) -> str:
 
 
 def _lines(sources: Iterable[ex.Located | None]) -> str:
-    found = sorted({one.source.span.line for one in sources if one is not None and one.source is not None})
+    found = sorted({part.source.span.line for part in sources if part is not None and part.source is not None})
     return f" (line{'s' if len(found) > 1 else ''} {', '.join(map(str, found))})" if found else ""

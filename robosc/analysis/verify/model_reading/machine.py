@@ -133,8 +133,8 @@ class Event:
     @property
     def reads(self) -> frozenset[Slot]:
         """The slots on which it depends what the event does."""
-        found = [one.reads for one in self.participants]
-        return frozenset().union(*found, *(one.condition.reads for one in self.restrictions))
+        found = [participant.reads for participant in self.participants]
+        return frozenset().union(*found, *(restriction.condition.reads for restriction in self.restrictions))
 
     def happen(self, state: Mapping[Slot, Value], inputs: Mapping[str, Value]) -> Outcome:
         """What it does in a state with some inputs."""

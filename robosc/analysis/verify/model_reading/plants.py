@@ -77,7 +77,7 @@ class _Reading:
                     event.kind.name,
                     event.controllable,
                     event,
-                    inputs={one.name: _domain(one.type) for one in event.inputs},
+                    inputs={carried.name: _domain(carried.type) for carried in event.inputs},
                     timer=self.timer(event),
                 )
         for plant in self.plants:
@@ -137,7 +137,9 @@ class _Reading:
         read: dict[sct.Edge, Any] = {}
         for edge in [*everywhere, *(edge for edges in leaving.values() for edge in edges)]:
             guard = None if edge.guard is None else self.condition(edge.guard)
-            updates = [(Slot(slot.plant, one.variable.name), self.condition(one.value)) for one in edge.updates]
+            updates = [
+                (Slot(slot.plant, update.variable.name), self.condition(update.value)) for update in edge.updates
+            ]
             read[edge] = guard, updates
             reads.update(*(condition.reads for condition in [guard, *(value for _, value in updates)] if condition))
         domains = self.machine.domains

@@ -239,7 +239,9 @@ class _Reading:
                 if transition not in known:
                     known[transition] = self.way(transition, name, instance)
                 guard, fixed, assigned = known[transition]
-                reads.update(*(condition.reads for condition in [guard, *(one for _, one in assigned)] if condition))
+                reads.update(
+                    *(condition.reads for condition in [guard, *(value for _, value in assigned)] if condition)
+                )
                 ways.setdefault(state, []).append((guard, fixed, assigned))
         domains = self.machine.domains
         nothing = Taken({}, None)
@@ -299,14 +301,14 @@ class _Reading:
         """The expression with inputs of the event in place of the largest parts that the plants have inputs for."""
         event = self.plants.events.get(name)
         inputs = event.element.inputs if event is not None else []
-        computed = [(words_of(one.text), one.name) for one in inputs if one.text is not None]
+        computed = [(words_of(carried.text), carried.name) for carried in inputs if carried.text is not None]
         words = self.names.words(part) if computed else None
-        alike = {told: event.inputs[told] for said, told in computed if event and said == words}
+        alike = {input_name: event.inputs[input_name] for text, input_name in computed if event and text == words}
         if alike:
             kept = None if assigned is None else self.machine.domains[assigned]
             if isinstance(kept, range):
                 # Of one text there is an input for each range.
-                alike = {told: domain for told, domain in alike.items() if domain == kept}
+                alike = {input_name: domain for input_name, domain in alike.items() if domain == kept}
             if not alike:
                 raise UnlikeError("the plants have another range for what is computed of data", part)
             told = next(iter(alike))
@@ -315,7 +317,11 @@ class _Reading:
         found = self.names.meaning(part) if isinstance(part, robosc.Access) else None
         if isinstance(found, Data) and found.path is not None:
             wanted = "_".join(["i", name.name.removeprefix("u_"), *found.path])
-            fitted = [one.name for one in inputs if one.text is None and one.name.rstrip("_") == wanted.rstrip("_")]
+            fitted = [
+                carried.name
+                for carried in inputs
+                if carried.text is None and carried.name.rstrip("_") == wanted.rstrip("_")
+            ]
             if len(fitted) == 1:
                 self.machine.events[name].inputs[fitted[0]] = self.carried(name, found.path)
                 return self.names.leaf(Told(fitted[0]))
@@ -340,7 +346,7 @@ class _Reading:
             feedback = name.name == "u_feedback"
             declared = communication.feedbackType if feedback else communication.responseType
         for part in path:
-            declared = next(one.type for one in declared.type.properties if one.name == part)
+            declared = next(field.type for field in declared.type.properties if field.name == part)
         domain = self.names.domain(declared, Environment(instance, instance.arguments))
         return () if domain is None else domain
 
@@ -513,7 +519,7 @@ def _chosen(
         )
         return Taken({slot: location}, source) if all(holds) else None
 
-    return Participant(step, frozenset().union(*(one.reads for one, _ in asked if one)), source)
+    return Participant(step, frozenset().union(*(condition.reads for condition, _ in asked if condition)), source)
 
 
 def _always(writes: Mapping[Slot, Value], source: ex.Located) -> Participant:
@@ -528,9 +534,11 @@ def _broken(starting: Sequence[Restriction], source: ex.Located) -> Restriction:
     """That one of the requirements on starting an action does not hold; without any that is never so."""
 
     def compute(state: Mapping[Slot, Value], inputs: Mapping[str, Value]) -> bool:
-        return any(bool(one.condition.compute(state, inputs)) is not one.wanted for one in starting)
+        return any(
+            bool(restriction.condition.compute(state, inputs)) is not restriction.wanted for restriction in starting
+        )
 
-    reads = frozenset().union(*(one.condition.reads for one in starting))
+    reads = frozenset().union(*(restriction.condition.reads for restriction in starting))
     return Restriction(Condition(compute, reads), True, starting[0].source if starting else source)
 
 
